@@ -1,0 +1,175 @@
+"""How a model is declared: four records of variables and pure functions over them.
+
+A model is a difference equation with parameters p, inputs u, state x and outputs y. With the
+communication points t_k = t_0 + k dt it reads
+
+    x_0     = initial(p, u_0)
+    x_{k+1} = step(p, x_k, u_k, dt)         the inputs are held over [t_k, t_k + dt)
+    y_k     = outputs(p, x_k[, u_k])        what the model shows at t_k
+
+`outputs(p, x)` without `u` proves that no output feeds an input straight through. With `u`, each output
+that does so names the inputs in `depends`.
+
+A sampled model (`sampled = True`, a controller) computes in the step at t_k from the inputs at t_k, and
+its outputs hold from t_k on: y = outputs(p, step(p, x_k, u_k, dt)). They are FMI variables of variability
+`discrete`. The outputs of any other model are `continuous`: those after the step belong to t_k + dt.
+
+A variable is declared once, on one line:
+
+    mass: float = var(200.0, "kg", "Vehicle and rider", min=1.0)
+
+The record it stands in is its causality; the type of its start is its FMI type. Everything else that
+shows the variable (model description, tables, range checks) is generated from that line.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import inspect
+import math
+from collections.abc import Callable
+from typing import Any, ClassVar, TypeVar, dataclass_transform
+
+_KEY = "evcosim"
+_T = TypeVar("_T")
+
+
+@dataclasses.dataclass(frozen=True)
+class Variable:
+    """One declared variable of a record.
+
+    `type` is the FMI 2.0 type name: Real, Integer, Boolean or Enumeration. `unit` is a unit name of
+    measure ("" where none applies). `depends` are the inputs that reach this output within one instant;
+    `initially` those that reach it during initialization (None: whatever the model's `initial` reads).
+    """
+
+    name: str
+    type: str
+    start: Any
+    unit: str
+    description: str
+    min: float | None = None
+    max: float | None = None
+    nominal: float | None = None
+    depends: tuple[str, ...] = ()
+    initially: tuple[str, ...] | None = None
+    independent: bool = False
+
+    @property
+    def enumeration(self) -> type[enum.IntEnum] | None:
+        """The enumeration type of an Enumeration variable, else None."""
+        return type(self.start) if isinstance(self.start, enum.IntEnum) else None
+
+
+def var(
+    start: float | int | bool | enum.IntEnum,
+    unit: str,
+    description: str,
+    *,
+    min: float | None = None,
+    max: float | None = None,
+    nominal: float | None = None,
+    depends: tuple[str, ...] = (),
+    initially: tuple[str, ...] | None = None,
+) -> Any:
+    """Declare a variable: its start value, unit of measure ("" for none) and meaning, then its range."""
+    about = dict(
+        unit=unit, description=description, min=min, max=max, nominal=nominal, depends=depends, initially=initially
+    )
+    return dataclasses.field(default=start, metadata={_KEY: about})
+
+
+def time() -> Any:
+    """Declare the independent variable [s]: among the inputs, it holds t_k in the step that starts at t_k."""
+    about = dict(unit="s", description="Time at the start of the step", independent=True)
+    return dataclasses.field(default=0.0, metadata={_KEY: about})
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(var, time))
+def record(cls: type[_T]) -> type[_T]:
+    """Make a frozen record of declared variables. No slots: Parameters may cache what is derived from them."""
+    return dataclasses.dataclass(frozen=True)(cls)
+
+
+def variables(record_type: type) -> tuple[Variable, ...]:
+    """The declared variables of a record, in the order they are written."""
+    return tuple(
+        Variable(name=f.name, type=_fmi_type(f.default), start=f.default, **f.metadata[_KEY])
+        for f in dataclasses.fields(record_type)
+    )
+
+
+def _fmi_type(start: Any) -> str:
+    if isinstance(start, enum.IntEnum):
+        return "Enumeration"
+    if isinstance(start, bool):
+        return "Boolean"
+    if isinstance(start, int):
+        return "Integer"
+    if isinstance(start, float):
+        return "Real"
+    raise TypeError(f"a start value must be a float, int, bool or IntEnum, not {start!r}")
+
+
+def violations(values: Any) -> list[str]:
+    """What is out of range in a record, one sentence for each variable: its name, the rule and the values."""
+    found = []
+    for v in variables(type(values)):
+        value = getattr(values, v.name)
+        unit = f" {v.unit}" if v.unit else ""
+        if not math.isfinite(value):
+            found.append(f"{v.name} = {value} is not a finite number")
+        elif v.min is not None and value < v.min:
+            found.append(f"{v.name} = {value}{unit} is below its minimum {v.min}{unit}")
+        elif v.max is not None and value > v.max:
+            found.append(f"{v.name} = {value}{unit} is above its maximum {v.max}{unit}")
+    return found
+
+
+class Model:
+    """Base of every model. A subclass writes the four records and the three functions.
+
+    `sampled`: the outputs are those of a sampled controller (module docstring). `initial_inputs`: the
+    inputs that `initial` reads, so that an importer knows what must be known before the start.
+    Raises TypeError when a declaration contradicts itself.
+    """
+
+    sampled: ClassVar[bool] = False
+    initial_inputs: ClassVar[tuple[str, ...]] = ()
+
+    Parameters: ClassVar[type]
+    Inputs: ClassVar[type]
+    State: ClassVar[type]
+    Outputs: ClassVar[type]
+
+    initial: ClassVar[Callable[..., Any]]
+    step: ClassVar[Callable[..., Any]]
+    outputs: ClassVar[Callable[..., Any]]
+
+    def __init_subclass__(cls) -> None:
+        _check_declaration(cls)
+
+    @classmethod
+    def feeds_through(cls) -> bool:
+        """Whether `outputs` takes the inputs: some output depends on an input at the same instant."""
+        return len(inspect.signature(cls.outputs).parameters) == 3
+
+
+def _check_declaration(model: type[Model]) -> None:
+    names: set[str] = set()
+    for part in (model.Parameters, model.Inputs, model.Outputs):
+        for v in variables(part):
+            if v.name in names:
+                raise TypeError(f"{model.__name__}: {v.name} is declared twice")
+            names.add(v.name)
+    inputs = {v.name for v in variables(model.Inputs)}
+    outputs = variables(model.Outputs)
+    for v in outputs:
+        for name in (*v.depends, *(v.initially or ())):
+            if name not in inputs:
+                raise TypeError(f"{model.__name__}.{v.name} depends on {name}, which is no input")
+    if unknown := set(model.initial_inputs) - inputs:
+        raise TypeError(f"{model.__name__}.initial_inputs names {sorted(unknown)}, which are no inputs")
+    if model.feeds_through() != any(v.depends for v in outputs):
+        raise TypeError(f"{model.__name__}: outputs() takes the inputs if, and only if, an output declares `depends`")
