@@ -33,6 +33,7 @@ from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 _KEY = "evcosim"
 _T = TypeVar("_T")
+_EnumType = type[enum.IntEnum]  # named here, because inside Variable the name `type` is a field
 
 
 @dataclasses.dataclass(frozen=True)
@@ -57,9 +58,9 @@ class Variable:
     independent: bool = False
 
     @property
-    def enumeration(self) -> type[enum.IntEnum] | None:
+    def enumeration(self) -> _EnumType | None:
         """The enumeration type of an Enumeration variable, else None."""
-        return type(self.start) if isinstance(self.start, enum.IntEnum) else None
+        return self.start.__class__ if isinstance(self.start, enum.IntEnum) else None
 
 
 def var(
@@ -74,21 +75,27 @@ def var(
     initially: tuple[str, ...] | None = None,
 ) -> Any:
     """Declare a variable: its start value, unit of measure ("" for none) and meaning, then its range."""
-    about = dict(
-        unit=unit, description=description, min=min, max=max, nominal=nominal, depends=depends, initially=initially
-    )
+    about = {
+        "unit": unit,
+        "description": description,
+        "min": min,
+        "max": max,
+        "nominal": nominal,
+        "depends": depends,
+        "initially": initially,
+    }
     return dataclasses.field(default=start, metadata={_KEY: about})
 
 
 def time() -> Any:
     """Declare the independent variable [s]: among the inputs, it holds t_k in the step that starts at t_k."""
-    about = dict(unit="s", description="Time at the start of the step", independent=True)
+    about = {"unit": "s", "description": "Time at the start of the step", "independent": True}
     return dataclasses.field(default=0.0, metadata={_KEY: about})
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(var, time))
 def record(cls: type[_T]) -> type[_T]:
-    """Make a frozen record of declared variables. No slots: Parameters may cache what is derived from them."""
+    """Make a frozen record of declared variables. No slots: Parameters may cache what derives from them."""
     return dataclasses.dataclass(frozen=True)(cls)
 
 
@@ -172,4 +179,6 @@ def _check_declaration(model: type[Model]) -> None:
     if unknown := set(model.initial_inputs) - inputs:
         raise TypeError(f"{model.__name__}.initial_inputs names {sorted(unknown)}, which are no inputs")
     if model.feeds_through() != any(v.depends for v in outputs):
-        raise TypeError(f"{model.__name__}: outputs() takes the inputs if, and only if, an output declares `depends`")
+        raise TypeError(
+            f"{model.__name__}: outputs() takes the inputs if, and only if, an output declares `depends`"
+        )

@@ -1,0 +1,89 @@
+"""Battery: an open-circuit voltage behind a resistance, discharged by a power.
+
+The paper (Dardanelli et al., IEEE CDC-ECC 2011) measures state of charge, current and voltage and gives no
+model: everything here is chosen.
+
+    U  = U_0 + U_1 xi                                  open-circuit voltage [V]                      (B1)
+    P' = min(max(P, 0), U^2/(4 R_0))                   power the terminals can carry [W]             (B2)
+    i  = (U - sqrt(U^2 - 4 R_0 P'))/(2 R_0)            current that gives P' = (U - R_0 i) i [A]     (B3)
+    xi' = -i/(3600 Q)                                  state of charge [1], Q in A.h                 (B4)
+    E' = P'/3600                                       energy delivered at the terminals [Wh]        (B5)
+
+U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h (chosen). There is no regeneration: a negative power draws
+nothing. An empty battery (xi = 0) delivers nothing either: i = 0 and E rests.
+
+The code computes (B3) as i = 2 P'/(U + sqrt(...)), the same root without the difference of two near numbers.
+Current and voltage follow the power at the same instant (direct feedthrough). The step is explicit Euler: in
+10 ms at full power xi moves by 1e-5, so the current held over the step is off by 2e-6 of itself.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .base import Model, record, var
+
+
+class Battery(Model):
+    """State of charge, current and voltage of a battery that delivers `power` at its terminals."""
+
+    @record
+    class Parameters:
+        """Cell data, all chosen."""
+
+        empty_voltage: float = var(46.0, "V", "Open-circuit voltage at state of charge 0", min=1.0)
+        voltage_rise: float = var(8.0, "V", "Rise of the open-circuit voltage from empty to full", min=0.0)
+        resistance: float = var(0.06, "ohm", "Internal resistance", min=1e-6)
+        capacity: float = var(40.0, "A.h", "Charge from full to empty", min=1e-3)
+        initial_state_of_charge: float = var(1.0, "1", "State of charge at the start", min=0.0, max=1.0)
+
+    @record
+    class Inputs:
+        """What the vehicle draws."""
+
+        power: float = var(0.0, "W", "Electrical power drawn at the terminals", nominal=1000.0)
+
+    @record
+    class State:
+        """Charge left and energy given."""
+
+        state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
+        energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0)
+
+    @record
+    class Outputs:
+        """What a battery management system reports."""
+
+        state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
+        current: float = var(0.0, "A", "Discharge current", min=0.0, nominal=50.0, depends=("power",))
+        voltage: float = var(54.0, "V", "Voltage at the terminals", min=0.0, nominal=50.0, depends=("power",))
+        energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0, nominal=100.0)
+
+    @staticmethod
+    def initial(p: Battery.Parameters, u: Battery.Inputs) -> Battery.State:
+        """Charged to `initial_state_of_charge`, nothing delivered yet."""
+        return Battery.State(p.initial_state_of_charge, 0.0)
+
+    @staticmethod
+    def step(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs, dt: float) -> Battery.State:
+        """The state after `dt` [s] of the held power."""
+        _, i, power = _draw(p, x, u)
+        xi = max(0.0, x.state_of_charge - dt * i / (3600.0 * p.capacity))  # (B4)
+        return Battery.State(xi, x.energy + dt * power / 3600.0)  # (B5)
+
+    @staticmethod
+    def outputs(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> Battery.Outputs:
+        """Current and voltage of the power at this instant."""
+        ocv, i, _ = _draw(p, x, u)
+        return Battery.Outputs(x.state_of_charge, i, ocv - p.resistance * i, x.energy)
+
+
+def _draw(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> tuple[float, float, float]:
+    """Open-circuit voltage [V], current [A] and delivered power [W]."""
+    ocv = p.empty_voltage + p.voltage_rise * x.state_of_charge  # (B1)
+    if u.power <= 0.0 or x.state_of_charge <= 0.0:
+        return ocv, 0.0, 0.0
+    power = min(u.power, ocv * ocv / (4.0 * p.resistance))  # (B2)
+    # At the limit of (B2) the radicand is zero up to rounding, which must not make it negative.
+    root = sqrt(max(0.0, ocv * ocv - 4.0 * p.resistance * power))
+    return ocv, 2.0 * power / (ocv + root), power  # (B3)
