@@ -1,1 +1,4 @@
-"""placeholder docstring, replaced by the owner of this package."""
+"""What is connected to what: system and scenario files, units of measure, the CAN channel, results.
+
+Nothing here knows FMI binaries or models; `evcosim.master` runs what this package describes.
+"""

@@ -1,0 +1,20 @@
+"""The two ways evcosim refuses: bad input found before a step, and a run that failed."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class ConfigError(ValueError):
+    """Bad input, found before any step. The message names the place, the rule and the values."""
+
+
+class RunError(RuntimeError):
+    """A run that failed: the message names the unit, the time and the reason."""
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
+    close = difflib.get_close_matches(word, list(words), n=1, cutoff=0.6)
+    return f" (did you mean '{close[0]}'?)" if close else ""

@@ -1,0 +1,67 @@
+"""What a unit offers to the others: its variables, as an FMU's model description declares them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable
+
+from .errors import ConfigError, nearest
+from .units import UnitOfMeasure
+
+TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
+
+
+@dataclasses.dataclass(frozen=True)
+class VariableInfo:
+    """One variable of a unit.
+
+    `type` is one of TYPES; `start`, `min`, `max` are in `unit` (a name; "" where none is declared).
+    `depends` are the names of the inputs (for `depends_initially` also parameters) that reach an output
+    at the same instant; None: not declared, so every input may.
+    `items` are the (value, name) pairs of an enumeration.
+    """
+
+    name: str
+    type: str = "Real"
+    causality: str = "local"
+    variability: str = "continuous"
+    unit: str = ""
+    start: float | int | bool | str | None = None
+    min: float | None = None
+    max: float | None = None
+    description: str = ""
+    items: tuple[tuple[int, str], ...] = ()
+    depends: tuple[str, ...] | None = ()
+    depends_initially: tuple[str, ...] | None = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class UnitInterface:
+    """The variables of a unit by name, and the units of measure that it defines by name.
+
+    `place` says where the description comes from (a file) for error messages.
+    """
+
+    place: str
+    variables: dict[str, VariableInfo]
+    units_of_measure: dict[str, UnitOfMeasure] = dataclasses.field(default_factory=dict)
+
+    def of_causality(self, *causalities: str) -> tuple[VariableInfo, ...]:
+        """The variables of these causalities, in declared order."""
+        return tuple(v for v in self.variables.values() if v.causality in causalities)
+
+    def require(self, unit: str, name: str, causalities: Iterable[str], place: str) -> VariableInfo:
+        """The variable `name`, or ConfigError naming `place`, the unit and the nearest name there is."""
+        wanted = tuple(causalities)
+        if name not in self.variables:
+            offered = [v.name for v in self.of_causality(*wanted)]
+            raise ConfigError(
+                f"{place}: unit '{unit}' has no variable '{name}'{nearest(name, offered)}; "
+                f"{'/'.join(wanted)} variables of {self.place}: {', '.join(offered) or 'none'}"
+            )
+        variable = self.variables[name]
+        if variable.causality not in wanted:
+            raise ConfigError(
+                f"{place}: {unit}.{name} is of causality {variable.causality}, {' or '.join(wanted)} is needed here"
+            )
+        return variable
