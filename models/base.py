@@ -93,7 +93,7 @@ def time() -> Any:
     return dataclasses.field(default=0.0, metadata={_KEY: about})
 
 
-@dataclass_transform(frozen_default=True, field_specifiers=(var, time))
+@dataclass_transform(frozen_default=True)
 def record(cls: type[_T]) -> type[_T]:
     """Make a frozen record of declared variables. No slots: Parameters may cache what derives from them."""
     return dataclasses.dataclass(frozen=True)(cls)

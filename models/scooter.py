@@ -1,0 +1,218 @@
+"""Scooter: the longitudinal motion of a light electric two-wheeler and its motor drive (EMD).
+
+Source: Dardanelli et al., "Speed and acceleration controllers for a light electric two-wheeled vehicle",
+IEEE CDC-ECC 2011. SI inside; the throttle is in %.
+
+    M dv/dt = F_w - F_br - F_f                                                                       (1)
+    F_f = 1/2 rho CxA v^2 + r_v v + M g (C_r cos th + sin th)                                        (2)
+    F_f on a level road, th = 0: the road load of the force map                                      (3)
+    tau_m F_w' = (g/100) fade(v) F_max(v) - F_w                       the drive's current loop       (S1)
+    F_max(v) = min(F_b, 100 mu R(v)/(v_kmh - c))                      the force map                  (S2)
+    fade(v)  = 1 below 49.5 km/h, 0 above 50.5 km/h, linear between   the drive's speed limit        (S3)
+    w_f = v/r_f,  w_r = v/r_r                                         pure rolling                   (S4)
+    P = F_w v/eta + P_0                                               at the battery terminals       (S5)
+    d' = v
+
+Deviation: the paper defines F_g = M g cos th and multiplies it by (C_r cos th + sin th) in (2); the double
+cosine is a misprint, the form above is used.
+
+Force map. At a working point of (1)-(3), pole [rad/s] times gain [m/s per %] is F_max/(100 M). The
+published gain mu = 0.46 km/h per % and pole 0.03 Hz at 30 km/h (published) therefore give F_max(30 km/h) =
+482 N. A gain that is the same at every speed means v_kmh = c + mu g in steady state, which is (S2); c =
+17.03 km/h makes it pass through that force. Then the pole gets slower with speed, as in the paper's Fig. 3.
+Valid from 24 to 49 km/h; below some 23 km/h the boost is limited to F_b. The map belongs to the drive: R(v)
+in (S2) is the road load (3) of the vehicle the drive was matched to, the one of the default parameters,
+whatever they are set to.
+
+published: mu, the pole, the clipping of the throttle to 0..100 %, the limit of 50 km/h, v = (w_f r_f + w_r
+r_r)/2.
+chosen: M = 200 kg, rho = 1.2 kg/m3, CxA = 0.60 m2, r_v = 10 N.s/m, C_r = 0.014, F_b = 850 N, tau_m = 5 ms,
+the fade of 1 km/h, r_f = r_r = 0.2 m, eta = 0.85, P_0 = 40 W, g = 9.81 m/s2.
+
+At the edges: the vehicle never moves backward. At v = 0 it stands as long as the drive does not overcome
+brake, grade and rolling resistance, and its acceleration is then 0. Negative brake forces count as none. No
+slip, so that the paper's v = (w_f r_f + w_r r_r)/2 holds exactly. No regeneration: the brake is a friction
+brake, and P is never below P_0. At the start the drive gives no force.
+
+Step: (S1) is solved exactly for a command that changes linearly over the step, (1) by Heun's rule (order 2
+in dt, whatever dt/tau_m is; a step of 10 ms is exact to about 1e-5 m/s away from the corners of the map).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, exp, pi, sin
+
+from .base import Model, record, var
+
+GRAVITY = 9.81  # m/s2
+KMH = 3.6  # km/h in 1 m/s
+MATCHED_GAIN = 0.46  # km/h per %, published
+MATCHED_POLE = 0.03  # Hz at MATCHED_SPEED, published
+MATCHED_SPEED = 30.0  # km/h, published
+
+
+class Scooter(Model):
+    """Throttle, brake and grade in; speed, wheel speeds and electrical power out."""
+
+    @record
+    class Parameters:
+        """Vehicle and drive; the docstring of the module says which are published."""
+
+        mass: float = var(200.0, "kg", "Vehicle and rider", min=1.0)
+        air_density: float = var(1.2, "kg/m3", "Density of the air", min=0.0)
+        drag_area: float = var(0.60, "m2", "Drag coefficient times frontal area", min=0.0)
+        viscous_resistance: float = var(10.0, "N.s/m", "Resistance proportional to the speed", min=0.0)
+        rolling_resistance: float = var(0.014, "1", "Rolling resistance coefficient", min=0.0)
+        maximum_force: float = var(850.0, "N", "Limit of the low-speed boost", min=0.0)
+        drive_time_constant: float = var(0.005, "s", "Lag of the drive's current loop", min=1e-6)
+        speed_limit: float = var(50.0, "km/h", "Speed limit of the drive", min=0.0)
+        speed_limit_band: float = var(1.0, "km/h", "Band in which the drive's force fades out", min=1e-3)
+        drive_efficiency: float = var(0.85, "1", "Battery terminals to wheel", min=0.01, max=1.0)
+        auxiliary_power: float = var(40.0, "W", "Drawn by everything but the drive", min=0.0)
+        front_wheel_radius: float = var(0.2, "m", "Rolling radius of the front wheel", min=0.01)
+        rear_wheel_radius: float = var(0.2, "m", "Rolling radius of the rear wheel", min=0.01)
+        initial_speed: float = var(0.0, "m/s", "Speed at the start", min=0.0)
+
+        @cached_property
+        def drag(self) -> float:
+            """1/2 rho CxA [N.s2/m2]."""
+            return 0.5 * self.air_density * self.drag_area
+
+        @cached_property
+        def fade_end(self) -> float:
+            """Speed [m/s] from which the drive gives no force."""
+            return (self.speed_limit + 0.5 * self.speed_limit_band) / KMH
+
+        @cached_property
+        def fade_slope(self) -> float:
+            """Change of the fade with the speed [s/m]."""
+            return KMH / self.speed_limit_band
+
+        @cached_property
+        def force_map(self) -> ForceMap:
+            """The map of the drive, matched to the vehicle of the default parameters."""
+            return _matched_map(Scooter.Parameters())
+
+    @record
+    class Inputs:
+        """What the drive, the brake and the road do."""
+
+        throttle: float = var(0.0, "%", "Throttle request, clipped to 0..100 % by the drive")
+        brake_force: float = var(0.0, "N", "Force of the friction brakes", min=0.0)
+        road_grade: float = var(0.0, "rad", "Angle of the road, positive uphill", min=-1.5, max=1.5)
+
+    @record
+    class State:
+        """Motion and force of the drive."""
+
+        speed: float = var(0.0, "m/s", "Speed", min=0.0)
+        drive_force: float = var(0.0, "N", "Force of the drive at the wheel", min=0.0)
+        distance: float = var(0.0, "m", "Distance travelled", min=0.0)
+
+    @record
+    class Outputs:
+        """What the sensors of the vehicle and of the bench see."""
+
+        speed: float = var(0.0, "m/s", "Speed", min=0.0, nominal=10.0)
+        acceleration: float = var(0.0, "m/s2", "Acceleration", depends=("brake_force", "road_grade"))
+        front_wheel_speed: float = var(0.0, "rad/s", "Speed of the front wheel", min=0.0, nominal=50.0)
+        rear_wheel_speed: float = var(0.0, "rad/s", "Speed of the rear wheel", min=0.0, nominal=50.0)
+        power: float = var(40.0, "W", "Electrical power at the battery terminals", min=0.0, nominal=1000.0)
+        drive_force: float = var(0.0, "N", "Force of the drive at the wheel", min=0.0, nominal=100.0)
+        distance: float = var(0.0, "m", "Distance travelled", min=0.0, nominal=100.0)
+
+    @staticmethod
+    def initial(p: Scooter.Parameters, u: Scooter.Inputs) -> Scooter.State:
+        """Rolling at `initial_speed`, without force."""
+        return Scooter.State(p.initial_speed, 0.0, 0.0)
+
+    @staticmethod
+    def step(p: Scooter.Parameters, x: Scooter.State, u: Scooter.Inputs, dt: float) -> Scooter.State:
+        """The state after `dt` [s] of held inputs."""
+        v, f = x.speed, x.drive_force
+        m = p.mass
+        hold = _held_forces(p, u)
+        tau = p.drive_time_constant
+        decay = exp(-dt / tau)
+        # Predictor: command and resistance of the start, over the whole step.
+        c0, r0 = _command(p, v, u.throttle), _resistance(p, v)
+        impulse = dt * c0 + tau * (f - c0) * (1.0 - decay)  # (S1), integrated
+        v1 = max(0.0, v + (impulse - dt * (r0 + hold)) / m)
+        # Corrector: both change linearly to their values at the predicted speed.
+        c1, r1 = _command(p, v1, u.throttle), _resistance(p, v1)
+        ramp = tau * (c1 - c0) / dt
+        f1 = c1 - ramp + (f - c0 + ramp) * decay  # (S1)
+        impulse = 0.5 * dt * (c0 + c1) - tau * (f1 - f)
+        v1 = v + (impulse - dt * (0.5 * (r0 + r1) + hold)) / m  # (1)
+        moving = 1.0
+        if v1 < 0.0:  # it stops within the step and stays
+            moving = v / (v - v1)
+            v1 = 0.0
+        # The exact f1 is not negative; in a fade steeper than the step resolves, the ramp may make it so.
+        return Scooter.State(v1, max(0.0, f1), x.distance + 0.5 * moving * dt * (v + v1))
+
+    @staticmethod
+    def outputs(p: Scooter.Parameters, x: Scooter.State, u: Scooter.Inputs) -> Scooter.Outputs:
+        """What is measured at this instant; brake and grade act on the acceleration at once."""
+        v, f = x.speed, x.drive_force
+        a = (f - _resistance(p, v) - _held_forces(p, u)) / p.mass  # (1)
+        if v <= 0.0 and a < 0.0:
+            a = 0.0
+        power = f * v / p.drive_efficiency + p.auxiliary_power  # (S5)
+        w_f, w_r = v / p.front_wheel_radius, v / p.rear_wheel_radius  # (S4)
+        return Scooter.Outputs(v, a, w_f, w_r, power, f, x.distance)
+
+
+@dataclass(frozen=True)
+class ForceMap:
+    """(S2) with its numbers: F = peak (static + v (viscous + drag v))/(v - offset), everything in SI."""
+
+    peak: float
+    offset: float
+    static: float
+    viscous: float
+    drag: float
+
+
+def level_road_load(p: Scooter.Parameters, v: float) -> float:
+    """(3): the resistance [N] at speed v [m/s] on a level road."""
+    return p.mass * GRAVITY * p.rolling_resistance + _resistance(p, v)
+
+
+def _matched_map(p: Scooter.Parameters) -> ForceMap:
+    """The map with the published gain and pole for a vehicle of parameters p."""
+    gain, v0 = MATCHED_GAIN / KMH, MATCHED_SPEED / KMH
+    force = 100.0 * p.mass * 2.0 * pi * MATCHED_POLE * gain
+    offset = v0 - 100.0 * gain * level_road_load(p, v0) / force
+    static = p.mass * GRAVITY * p.rolling_resistance
+    return ForceMap(100.0 * gain, offset, static, p.viscous_resistance, p.drag)
+
+
+def maximum_force(p: Scooter.Parameters, v: float) -> float:
+    """(S2), (S3): the force [N] of full throttle at speed v [m/s]."""
+    k = p.force_map
+    force = p.maximum_force
+    if v > k.offset:
+        force = min(force, k.peak * (k.static + v * (k.viscous + k.drag * v)) / (v - k.offset))  # (S2)
+    fade = (p.fade_end - v) * p.fade_slope  # (S3)
+    if fade < 1.0:
+        force *= max(0.0, fade)
+    return force
+
+
+def _command(p: Scooter.Parameters, v: float, throttle: float) -> float:
+    return 0.01 * min(100.0, max(0.0, throttle)) * maximum_force(p, v)
+
+
+def _resistance(p: Scooter.Parameters, v: float) -> float:
+    """The part of (2) that depends on the speed."""
+    return v * (p.viscous_resistance + p.drag * v)
+
+
+def _held_forces(p: Scooter.Parameters, u: Scooter.Inputs) -> float:
+    """Brake, rolling resistance and grade [N]: what a step holds."""
+    th = u.road_grade
+    weight = p.mass * GRAVITY
+    return max(0.0, u.brake_force) + weight * (p.rolling_resistance * cos(th) + sin(th))  # (2)
