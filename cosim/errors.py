@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .results import Results
 
 
 class ConfigError(ValueError):
@@ -11,7 +15,12 @@ class ConfigError(ValueError):
 
 
 class RunError(RuntimeError):
-    """A run that failed: the message names the unit, the time and the reason."""
+    """A run that failed: the message names the unit, the time and the reason.
+
+    `results` is what was recorded up to then, where the run got as far as recording.
+    """
+
+    results: Results | None = None
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

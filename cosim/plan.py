@@ -1,0 +1,150 @@
+"""What a run does, resolved to slots of one array: the schedule that every engine runs.
+
+All values of a run stand in one float64 array, `memory`. Each recorded input and output has a slot;
+Integer, Boolean and Enumeration values are stored as floats. A continuous output has two slots: `valid`
+holds its value at the current communication point t_k, `latest` the one after the unit's last step
+(t_{k+1} once it has stepped). An input over a bus, or one that nothing drives, has a mailbox beside its
+slot: the value last received, or set by the user. An input slot is written from its route each step,
+so an override or a bias acts on what the unit receives and never on what was sent.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Literal
+
+from .channel import BusSettings, SignalRoute
+from .dbc import Message
+from .interface import UnitInterface, VariableInfo
+from .results import ResultVariable
+from .scenario import EventEntry
+from .stimuli import Signal
+from .system import Algorithm, Experiment, Value
+from .units import Affine
+
+BlockKind = Literal["input", "discrete", "continuous"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Block:
+    """Variables of one unit, FMI type and kind, in consecutive slots from `slot` on.
+
+    `latest`: the first slot of a continuous block's values after the step. Of a continuous block the
+    first `feedthrough` variables depend on an input at the same instant.
+    """
+
+    kind: BlockKind
+    type: str
+    variables: tuple[VariableInfo, ...]
+    slot: int
+    latest: int = -1
+    feedthrough: int = 0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the variables."""
+        return tuple(v.name for v in self.variables)
+
+
+@dataclasses.dataclass(frozen=True)
+class Route:
+    """Before a unit's step the value in slot `source`, mapped, is written to the input slot `sink`."""
+
+    source: int
+    sink: int
+    map: Affine = Affine()  # noqa: RUF009 - Affine is frozen, so a shared default is safe
+
+
+@dataclasses.dataclass(frozen=True)
+class Link:
+    """A direct connection, by variable name, for initialization. `map` converts into the receiver's unit."""
+
+    source: tuple[str, str]
+    sink: tuple[str, str]
+    map: Affine
+
+
+@dataclasses.dataclass(frozen=True)
+class Drive:
+    """A stimulus: `signal` over time in its own unit, mapped, drives the input slot `sink`."""
+
+    variable: str
+    sink: int
+    signal: Signal
+    map: Affine
+
+
+@dataclasses.dataclass(frozen=True)
+class UnitPlan:
+    """One unit: what it is given before the start, its blocks, and its routes.
+
+    It steps at every communication step k with k % every == 0, `substeps` FMU steps each time.
+    """
+
+    name: str
+    fmu: str
+    interface: UnitInterface
+    parameters: dict[str, Value]
+    start: dict[str, Value]
+    every: int
+    substeps: int
+    blocks: tuple[Block, ...]
+    routes: tuple[Route, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class MessagePlan:
+    """A message that is sent at the steps k with k >= first and (k - first) % every == 0.
+
+    It is sampled at the start of the step (`after` is None), or right after the turn of the unit with
+    index `after`, where signals of variability discrete come from that unit's step. `senders` are the
+    variables behind the signals, for messages to the user.
+    """
+
+    bus: str
+    message: Message
+    settings: BusSettings
+    routes: tuple[SignalRoute, ...]
+    senders: dict[str, str]
+    every: int
+    first: int
+    after: int | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Plan:
+    """A system with a scenario, ready to run. Times in s; `steps` communication steps to the stop time."""
+
+    system: str
+    scenario: str
+    experiment: Experiment
+    algorithm: Algorithm
+    steps: int
+    ideal: bool
+    units: tuple[UnitPlan, ...]
+    links: tuple[Link, ...]
+    messages: tuple[MessagePlan, ...]
+    drives: tuple[Drive, ...]
+    events: tuple[tuple[int, EventEntry], ...]
+    inputs: dict[str, InputPlan]
+    columns: tuple[ResultVariable, ...]
+    column_slots: tuple[int, ...]
+    initial: dict[int, float]
+    memory_size: int
+    warnings: tuple[str, ...]
+
+    def slot(self, name: str) -> int | None:
+        """The slot that shows a recorded variable at the current communication point."""
+        for column, slot in zip(self.columns, self.column_slots, strict=True):
+            if column.name == name:
+                return slot
+        return None
+
+
+@dataclasses.dataclass(frozen=True)
+class InputPlan:
+    """An input: its slot, its mailbox (None where a route or stimulus writes the slot), and what drives it."""
+
+    slot: int
+    mailbox: int | None
+    driver: str

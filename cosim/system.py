@@ -1,0 +1,132 @@
+"""The system file: units, buses and what is connected to what (TOML; docs/system-file.md)."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from .channel import BusSettings
+from .figures import FigureSpec
+from .files import DATA, FileModel, find, names_in, read_toml
+from .metrics import MetricSpec
+
+Value = bool | int | float | str
+Algorithm = Literal["gauss_seidel", "jacobi"]
+
+
+def _identifier(name: str) -> str:
+    if not name.isidentifier():
+        raise ValueError("a name is made of letters, digits and '_'")
+    return name
+
+
+def _variable(name: str) -> str:
+    if len(name.split(".", 1)) != 2 or not all(name.split(".", 1)):
+        raise ValueError("a variable is written unit.variable")
+    return name
+
+
+def _signal(name: str) -> str:
+    if len(name.split(".")) != 3:
+        raise ValueError("a signal is written bus.message.signal")
+    return name
+
+
+Identifier = Annotated[str, AfterValidator(_identifier)]
+VariableName = Annotated[str, AfterValidator(_variable)]
+SignalName = Annotated[str, AfterValidator(_signal)]
+
+
+class Experiment(FileModel):
+    """The communication points and the order of the units. Times in s."""
+
+    start_time: float = 0.0
+    stop_time: float = Field(default=10.0, allow_inf_nan=False)
+    step_size: float = Field(default=0.01, gt=0.0, allow_inf_nan=False)
+    algorithm: Algorithm = "gauss_seidel"
+    algebraic_loops: Literal["refuse", "iterate"] = "refuse"
+    loop_tolerance: float = Field(default=1e-9, gt=0.0)
+
+
+class UnitEntry(FileModel):
+    """One unit: its FMU (a built-in name or a path), parameters and starts, and how it is stepped.
+
+    `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
+    FMU steps a period is divided.
+    """
+
+    fmu: str
+    parameters: dict[str, Value] = {}
+    start: dict[str, Value] = {}
+    period: float | None = Field(default=None, gt=0.0)
+    substeps: int = Field(default=1, ge=1)
+
+
+class BusEntry(FileModel):
+    """A CAN bus: its database and how its codecs behave (see `channel`)."""
+
+    dbc: str
+    bitrate: int = Field(default=500_000, gt=0)
+    rounding: Literal["nearest", "half_even", "truncate"] = "nearest"
+    overflow: Literal["saturate", "wrap", "error"] = "saturate"
+
+    @property
+    def settings(self) -> BusSettings:
+        """The codec's settings."""
+        return BusSettings(rounding=self.rounding, overflow=self.overflow)
+
+
+class Connection(FileModel):
+    """One output to one or more inputs, over a bus signal or directly.
+
+    `initial` is what the receivers see before the first message, in their own unit of measure.
+    """
+
+    source: VariableName = Field(alias="from")
+    to: list[VariableName] = []
+    via: SignalName | None = None
+    initial: float | None = None
+
+
+class SystemFile(FileModel):
+    """What stands in a system file."""
+
+    name: Identifier
+    title: str = ""
+    source: str = ""
+    scenario: str | None = None
+    experiment: Experiment = Experiment()
+    units: dict[Identifier, UnitEntry] = Field(min_length=1)
+    buses: dict[Identifier, BusEntry] = {}
+    connect: list[Connection] = []
+    record: list[str] = ["*"]
+    figure: FigureSpec | None = None
+    metrics: list[MetricSpec] = []
+
+
+@dataclasses.dataclass(frozen=True)
+class System:
+    """A system file that was read, and where from."""
+
+    path: Path
+    file: SystemFile
+
+    @property
+    def scenario_folders(self) -> list[Path]:
+        """Where this system's scenarios are looked up: beside the system file, then built in."""
+        folders = [root / "scenarios" / self.file.name for root in (self.path.parent, DATA)]
+        return list(dict.fromkeys(folders))
+
+
+def system_names() -> list[str]:
+    """The names of the built-in systems."""
+    return names_in(DATA / "systems")
+
+
+def load_system(name: str) -> System:
+    """Read a system by built-in name or path. Raises ConfigError naming file, key, rule and value."""
+    path = find(name, [DATA / "systems"], "system")
+    return System(path, read_toml(path, SystemFile))

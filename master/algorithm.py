@@ -1,0 +1,245 @@
+"""The python engine: one communication step after the other, in the order that a reader would write.
+
+Time is a count: t_k = start + k * step_size. What step k does, under `gauss_seidel`:
+
+1. stimuli and the messages that are due and carry outputs valid at t_k are written to the inputs' side;
+2. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
+   biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
+   once; the continuous ones of a unit whose period is longer than a step only from the communication
+   point on at which they are valid. A message with discrete signals is sent right after its sender's turn;
+3. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k.
+
+Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
+one communication step to arrive.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cosim.channel import ChannelError, MessageChannel
+from ..cosim.errors import RunError
+from ..cosim.plan import MessagePlan, Plan, Route, UnitPlan
+from .unit import Unit
+
+_CHUNK = 256
+"""Steps between two looks at progress and Ctrl-C; stimuli are evaluated for so many steps at once."""
+
+
+def compile_routes(routes: Sequence[Route]) -> Callable[[memoryview], None]:
+    """A function that writes all inputs of a unit from their routes: one assignment for each."""
+    lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
+    scope: dict[str, Callable[[memoryview], None]] = {}
+    exec("def take(m):\n" + "\n".join(lines), scope)
+    return scope["take"]
+
+
+class _Turn:
+    """One unit in the schedule, with what happens round its step."""
+
+    def __init__(self, unit: Unit, plan: UnitPlan, run: Engine) -> None:
+        self.unit = unit
+        self.every = plan.every
+        self.take = compile_routes(plan.routes)
+        self.set_inputs, self.get_feedthrough = unit.set_inputs, unit.get_feedthrough
+        self.get_outputs, self.do_step = unit.get_outputs, unit.step
+        self.step_size = run.plan.experiment.step_size * plan.every / plan.substeps
+        self.substeps = plan.substeps
+        outputs = [b for b in plan.blocks if b.kind != "input"]
+        self.continuous = [(b.slot, b.latest, len(b.variables)) for b in outputs if b.kind == "continuous"]
+        self.fresh = [b.latest if b.kind == "continuous" else b.slot for b in outputs]
+        self.checks = [
+            (run.memory[f : f + len(b.variables)], np.zeros(len(b.variables)), b)
+            for f, b in zip(self.fresh, outputs, strict=True)
+        ]
+        self.has_feedthrough = any(b.feedthrough for b in outputs)
+        self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
+
+    def apply_effects(self, memory: memoryview) -> None:
+        for slot, (action, value) in self.effects.items():
+            memory[slot] = value if action == "override" else memory[slot] + value
+
+    def check_finite(self) -> None:
+        """Raise RunError when an output that was just read is NaN or infinite."""
+        for values, zeros, block in self.checks:
+            total = values.dot(zeros)  # 0 unless a value is NaN or infinite, and the fastest way to see it
+            if total != total:
+                i = int(np.argmin(np.isfinite(values)))
+                v = block.variables[i]
+                unit = f" {v.unit}" if v.unit else ""
+                raise RunError(f"{self.unit.name}.{v.name} = {values[i]}{unit}: an output must be finite")
+
+
+@dataclasses.dataclass
+class _Sender:
+    """A message in the schedule."""
+
+    plan: MessagePlan
+    channel: MessageChannel
+
+    def send(self, memory: memoryview, k: int) -> None:
+        if k < self.plan.first or (k - self.plan.first) % self.plan.every:
+            return
+        try:
+            self.channel.transmit(memory, k)
+        except ChannelError as error:
+            name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
+            sender = self.plan.senders.get(error.signal, "")
+            raise RunError(f"{sender} via {name}: {error}") from error
+
+
+class Engine:
+    """A plan with its units, and the steps done so far.
+
+    `rows` are the recorded rows up to now, shape (steps done, number of recorded slots).
+    """
+
+    def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
+        self.plan = plan
+        self.k = 0
+        self.whole = True
+        self.memory: NDArray[np.float64] = np.zeros(plan.memory_size)
+        self.recorded = max(plan.column_slots, default=-1) + 1
+        self.view = memoryview(self.memory)  # its items are Python floats, three times faster than numpy's
+        for unit_plan in plan.units:
+            units[unit_plan.name].bind(self.memory, unit_plan)
+        self.turns = [_Turn(units[p.name], p, self) for p in plan.units]
+        self.senders = [_Sender(m, self._channel(m, log_raw)) for m in plan.messages]
+        self._at_start = [s for s in self.senders if s.plan.after is None]
+        self._after = [[s for s in self.senders if s.plan.after == i] for i in range(len(self.turns))]
+        self._events = list(plan.events)
+        self._chunks: list[NDArray[np.float64]] = []
+        self._step = self._gauss_seidel if plan.algorithm == "gauss_seidel" else self._jacobi
+        self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
+                         for b in p.blocks if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
+
+    @staticmethod
+    def _channel(plan: MessagePlan, log_raw: bool) -> MessageChannel:
+        return MessageChannel(plan.message, plan.routes, plan.settings, log_raw=log_raw)
+
+    @property
+    def time(self) -> float:
+        """The current communication point t_k [s]."""
+        return self.time_at(self.k)
+
+    def time_at(self, k: int) -> float:
+        """t_k [s]."""
+        return self.plan.experiment.start_time + k * self.plan.experiment.step_size
+
+    def start(self) -> None:
+        """Read all outputs at the start time. The units have left initialization mode."""
+        for slot, value in self.plan.initial.items():
+            self.memory[slot] = value
+        for turn in self.turns:
+            turn.get_outputs()
+            self._publish(turn)
+            turn.check_finite()
+
+    # ---- stepping
+
+    def advance(self, steps: int, progress: Callable[[int], None] | None = None) -> None:
+        """Do `steps` steps. What was recorded before an error or Ctrl-C is kept.
+
+        Raises UnitError or RunError with the unit, the time and the reason.
+        """
+        end = self.k + steps
+        while self.k < end:
+            count = min(_CHUNK, end - self.k)
+            self._advance_chunk(count)
+            if progress is not None:
+                progress(self.k)
+
+    def _advance_chunk(self, count: int) -> None:
+        times = self.plan.experiment.start_time + self.plan.experiment.step_size * np.arange(
+            self.k, self.k + count
+        )
+        drives = [(d.sink, (d.map.scale * d.signal(times) + d.map.offset).tolist()) for d in self.plan.drives]
+        rows = np.empty((count, self.recorded))
+        first, view, row = self.k, self.view, self.memory[: self.recorded]
+        try:
+            for i in range(count):
+                while self._events and self._events[0][0] <= self.k:
+                    self._happen()
+                for slot, values in drives:
+                    view[slot] = values[i]
+                self._step(self.k, self.time_at(self.k))
+                rows[i] = row
+                self._publish_all(self.k)
+                self.k += 1
+        except RunError as error:
+            raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
+        finally:
+            self.whole = self.k == first + count
+            self._chunks.append(rows[: self.k - first])
+
+    def _gauss_seidel(self, k: int, time: float) -> None:
+        memory = self.view
+        for sender in self._at_start:
+            sender.send(memory, k)
+        for turn, messages in zip(self.turns, self._after, strict=True):
+            if k % turn.every == 0:
+                turn.take(memory)
+                self._do_turn(turn, time)
+            for sender in messages:
+                sender.send(memory, k)
+
+    def _jacobi(self, k: int, time: float) -> None:
+        memory = self.view
+        for sender in self.senders:
+            sender.send(memory, k)
+        due = [turn for turn in self.turns if k % turn.every == 0]
+        for turn in due:
+            turn.take(memory)
+        for turn in due:
+            self._do_turn(turn, time)
+
+    def _do_turn(self, turn: _Turn, time: float) -> None:
+        if turn.effects:
+            turn.apply_effects(self.view)
+        turn.set_inputs()
+        if turn.has_feedthrough:
+            turn.get_feedthrough()
+        for i in range(turn.substeps):
+            turn.do_step(time + i * turn.step_size, turn.step_size)
+        turn.get_outputs()
+        turn.check_finite()
+
+    def _publish_all(self, k: int) -> None:
+        for turn in self.turns:
+            if (k + 1) % turn.every == 0:
+                self._publish(turn)
+
+    def _publish(self, turn: _Turn) -> None:
+        """The continuous outputs after the step become those valid at the next communication point."""
+        for slot, latest, count in turn.continuous:
+            self.view[slot : slot + count] = self.view[latest : latest + count]
+
+    # ---- events and results
+
+    def _happen(self) -> None:
+        _, event = self._events.pop(0)
+        self.effect(event.variable, event.action, event.value)
+
+    def effect(self, name: str, action: str, value: float | None = None) -> None:
+        """Override or bias what an input receives from now on, or reset it."""
+        slot = self.plan.inputs[name].slot
+        effects = self._by_slot[slot].effects
+        if action == "reset":
+            effects.pop(slot, None)
+        elif value is None or not math.isfinite(value):
+            raise ValueError(f"{action} of {name} needs a finite value, not {value}")
+        else:
+            effects[slot] = ("override" if action == "override" else "bias", value)
+
+    @property
+    def rows(self) -> NDArray[np.float64]:
+        """The rows so far; unless the last step broke off, one more for the current communication point, in
+        which the inputs and the discrete outputs are those of the last step."""
+        now = [self.memory[None, : self.recorded]] if self.whole else []
+        return np.vstack([np.empty((0, self.recorded)), *self._chunks, *now])

@@ -1,0 +1,37 @@
+"""From what a system file calls an FMU to its file: built-in names come from `evcosim.fmus`.
+
+This is the one module of the master that knows the package of FMUs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..cosim.errors import ConfigError, nearest
+
+
+def builtin_names() -> tuple[str, ...]:
+    """The names of the FMUs that evcosim builds itself."""
+    from ..fmus import build
+
+    return build.names()
+
+
+def fmu_file(name: str, beside: Path | None = None) -> Path:
+    """The file of an FMU: a built-in name (built now if the cache does not have it), or a path.
+
+    A relative path is looked up beside the system file `beside`, then from the working folder.
+    Raises ConfigError with the nearest name where there is none.
+    """
+    from ..fmus import build
+
+    if name in build.names():
+        return build.built(name)
+    for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
+        if path.is_file():
+            return path
+    if name.endswith(".fmu") or "/" in name or "\\" in name:
+        raise ConfigError(f"{name}: there is no such FMU file")
+    raise ConfigError(
+        f"there is no built-in FMU '{name}'{nearest(name, build.names())}; built in: {', '.join(build.names())}"
+    )

@@ -1,0 +1,247 @@
+"""A loaded FMI 2.0 Co-Simulation unit: FMPy loads the library, the calls of a step go to it directly.
+
+FMPy's wrappers build lists and look functions up by name in every call. In a step we call the function
+pointers with arguments made once: value references, counts, and buffers that are parts of the run's memory.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from fmpy.fmi2 import FMU2Slave
+from numpy.typing import NDArray
+
+from ..cosim.interface import UnitInterface
+from ..cosim.plan import Block, UnitPlan
+from .fmu import Fmu, FmuError, check_runnable
+from .log import STATUS, UnitLog
+from .unit import UnitError, Value
+
+_WARNING = 1
+_C_TYPES: dict[str, Any] = {"Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int}
+_FMI_TYPE = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
+_COMPONENT, _SIZE, _FMI_BOOLEAN = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
+
+Call = Callable[[], None]
+
+
+class Fmi2Unit:
+    """An instance of an FMU in this process. See `unit.Unit` for the order of the calls.
+
+    Raises FmuError when the FMU cannot be run here or instantiated, UnitError when a call fails.
+    """
+
+    def __init__(self, fmu: Fmu, name: str) -> None:
+        check_runnable(fmu)
+        self.name = name
+        self.fmu = fmu
+        self.interface: UnitInterface = fmu.interface
+        self.log = UnitLog()
+        self._references = {v.name: int(v.valueReference) for v in fmu.description.modelVariables}
+        self._folder: Path | None = fmu.extract()
+        self._slave: Any = None
+        self._initialized = False
+        try:
+            self._instantiate()
+        except BaseException:
+            self.free()
+            raise
+        self._set_inputs: tuple[Call, ...] = ()
+        self._get_feedthrough: tuple[Call, ...] = ()
+        self._get_outputs: tuple[Call, ...] = ()
+
+    def _instantiate(self) -> None:
+        md = self.fmu.description
+        try:
+            self._slave = FMU2Slave(
+                guid=md.guid,
+                unzipDirectory=str(self._folder),
+                modelIdentifier=md.coSimulation.modelIdentifier,
+                instanceName=self.name,
+            )
+        except Exception as error:  # FMPy raises plain Exception when the library does not load
+            raise FmuError(f"{self.fmu.path}: {error}") from error
+        self._callbacks = self.log.callbacks()
+        try:
+            self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        except Exception as error:  # FMPy: "Failed to instantiate model"
+            said = self.log.last()
+            raise FmuError(
+                f"{self.fmu.path}: cannot be instantiated" + (f":\n{said}" if said else "")
+            ) from error
+        self._component = _COMPONENT(self._slave.component)
+        self._do_step = self._function(
+            "fmi2DoStep", _COMPONENT, ctypes.c_double, ctypes.c_double, _FMI_BOOLEAN
+        )
+
+    def _function(self, name: str, *argument_types: Any) -> Any:
+        """The function of the library, with argument types of our own (FMPy keeps others on its objects).
+
+        The calls into a pythonfmu FMU come back into this interpreter at once: keeping the interpreter
+        lock over them saves handing it over twice. Any other library is called without the lock.
+        """
+        handle = self._slave.dll._handle
+        library = (
+            ctypes.PyDLL(None, handle=handle) if self.fmu.holds_python else ctypes.CDLL(None, handle=handle)
+        )
+        function = library[name]
+        function.argtypes = argument_types
+        function.restype = ctypes.c_int
+        return function
+
+    # ---- before the steps
+
+    def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
+        """See `unit.Unit`. Makes the calls of a step, with all their arguments."""
+        inputs, through, outputs = [], [], []
+        for block in plan.blocks:
+            if block.kind == "input":
+                inputs.append(self._transfer("Set", memory, block, block.slot))
+            elif block.kind == "discrete":
+                outputs.append(self._transfer("Get", memory, block, block.slot))
+            else:
+                outputs.append(self._transfer("Get", memory, block, block.latest))
+                if block.feedthrough:
+                    for slot in (block.slot, block.latest):
+                        through.append(self._transfer("Get", memory, block, slot, block.feedthrough))
+        self._set_inputs, self._get_feedthrough, self._get_outputs = (
+            tuple(inputs),
+            tuple(through),
+            tuple(outputs),
+        )
+
+    def _transfer(
+        self, direction: str, memory: NDArray[np.float64], block: Block, slot: int, count: int | None = None
+    ) -> Call:
+        """A call without arguments that moves the first `count` values of a block between unit and memory."""
+        names = block.names[:count]
+        n = len(names)
+        references = (ctypes.c_uint * n)(*(self._references[name] for name in names))
+        c_type = _C_TYPES[block.type]
+        name = f"fmi2{direction}{block.type}"
+        function = self._function(name, _COMPONENT, ctypes.c_void_p, _SIZE, ctypes.c_void_p)
+        part = memory[slot : slot + n]
+        values = (c_type * n).from_buffer(part.data) if block.type == "Real" else (c_type * n)()
+        arguments = (self._component, references, _SIZE(n), values)
+
+        def call() -> None:
+            status = function(*arguments)
+            if status:
+                self._judge(name, status)
+
+        if block.type == "Real":
+            return call
+
+        whole = np.frombuffer(values, dtype=np.intc)  # type: ignore[call-overload] # ctypes arrays are buffers
+
+        def set_whole() -> None:
+            whole[:] = part
+            call()
+
+        def get_whole() -> None:
+            call()
+            part[:] = whole
+
+        return set_whole if direction == "Set" else get_whole
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        """See `unit.Unit`."""
+        self._checked(
+            "fmi2SetupExperiment", self._slave.setupExperiment, startTime=start_time, stopTime=stop_time
+        )
+        self._checked("fmi2EnterInitializationMode", self._slave.enterInitializationMode)
+
+    def exit_initialization(self) -> None:
+        """See `unit.Unit`."""
+        self._checked("fmi2ExitInitializationMode", self._slave.exitInitializationMode)
+        self._initialized = True
+
+    def get(self, name: str) -> Value:
+        """See `unit.Unit`."""
+        kind, reference = self._typed(name)
+        value = self._checked(f"fmi2Get{kind} of {name}", getattr(self._slave, f"get{kind}"), [reference])[0]
+        if kind == "String":
+            return str(value.decode("utf-8", "replace"))
+        if kind == "Boolean":
+            return bool(value)
+        return float(value) if kind == "Real" else int(value)
+
+    def set(self, name: str, value: Value) -> None:
+        """See `unit.Unit`."""
+        kind, reference = self._typed(name)
+        self._checked(f"fmi2Set{kind} of {name}", getattr(self._slave, f"set{kind}"), [reference], [value])
+
+    def _typed(self, name: str) -> tuple[str, int]:
+        return _FMI_TYPE.get(self.interface.variables[name].type, "String"), self._references[name]
+
+    # ---- the step
+
+    def set_inputs(self) -> None:
+        """See `unit.Unit`."""
+        for call in self._set_inputs:
+            call()
+
+    def get_feedthrough(self) -> None:
+        """See `unit.Unit`."""
+        for call in self._get_feedthrough:
+            call()
+
+    def step(self, time: float, step_size: float) -> None:
+        """See `unit.Unit`."""
+        status = self._do_step(self._component, time, step_size, 1)
+        if status:
+            self._judge("fmi2DoStep", status)
+
+    def get_outputs(self) -> None:
+        """See `unit.Unit`."""
+        for call in self._get_outputs:
+            call()
+
+    # ---- after the steps
+
+    def terminate(self) -> None:
+        """See `unit.Unit`."""
+        if self._initialized:
+            self._initialized = False
+            self._checked("fmi2Terminate", self._slave.terminate)
+
+    def free(self) -> None:
+        """See `unit.Unit`."""
+        slave, self._slave = self._slave, None
+        if slave is not None:
+            if slave.component is not None:
+                slave.freeInstance()
+            else:
+                slave.freeLibrary()
+        self.log.close()
+        folder, self._folder = self._folder, None
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    # ---- what a call answers
+
+    def _checked(self, what: str, function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+        """Call a wrapper of FMPy, which raises on a status worse than Warning."""
+        from fmpy.fmi1 import FMICallException
+
+        try:
+            return function(*arguments, **options)
+        except FMICallException as error:
+            self._fail(what, error.status)
+
+    def _judge(self, what: str, status: int) -> None:
+        if status > _WARNING or status < 0:
+            self._fail(what, status)
+        self.log.warnings += 1
+
+    def _fail(self, what: str, status: int) -> NoReturn:
+        word = STATUS[status] if 0 <= status < len(STATUS) else "no FMI status"
+        said = self.log.last()
+        raise UnitError(
+            f"unit '{self.name}': {what} returned {word} ({status})" + (f"\n{said}" if said else "")
+        )

@@ -1,0 +1,161 @@
+"""FMU files: reading the description, extracting the archive, and what they tell the plan."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import shutil
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from ..cosim.errors import ConfigError
+from ..cosim.interface import UnitInterface, VariableInfo
+from ..cosim.units import BASE_UNITS, UnitOfMeasure
+
+
+class FmuError(ConfigError):
+    """An FMU that cannot be used. The message names the file and the reason."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Fmu:
+    """An FMU file that was read: `description` is FMPy's ModelDescription."""
+
+    path: Path
+    description: Any
+    entries: tuple[str, ...]
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """SHA-256 of the file."""
+        return hashlib.sha256(self.path.read_bytes()).hexdigest()
+
+    @functools.cached_property
+    def interface(self) -> UnitInterface:
+        """What the FMU offers, as the plan needs it."""
+        return _interface(self)
+
+    @property
+    def platforms(self) -> tuple[str, ...]:
+        """The platforms that the FMU has binaries for, in FMI 2.0 names (linux64, win64, ...)."""
+        found = {e.split("/")[1] for e in self.entries if e.startswith("binaries/") and e.count("/") == 2}
+        return tuple(sorted(found - {""}))
+
+    @property
+    def holds_python(self) -> bool:
+        """Whether it was made with pythonfmu, so that its steps run in this process's interpreter."""
+        return "resources/slavemodule.txt" in self.entries
+
+    def extract(self) -> Path:
+        """Extract into a new temporary folder, which the caller removes."""
+        folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
+        try:
+            with zipfile.ZipFile(self.path) as archive:
+                archive.extractall(folder)  # extractall keeps member paths inside the folder
+        except (OSError, zipfile.BadZipFile, RuntimeError) as error:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise FmuError(f"{self.path}: cannot be extracted: {error}") from error
+        return folder
+
+
+def read_fmu(path: Path) -> Fmu:
+    """Read an FMU's description. Raises FmuError when it is none, or is damaged."""
+    from fmpy.model_description import read_model_description
+
+    if not path.exists():
+        raise FmuError(f"{path}: there is no such file")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            entries = tuple(archive.namelist())
+    except (OSError, zipfile.BadZipFile) as error:
+        raise FmuError(f"{path}: is not an FMU: {error}") from error
+    if "modelDescription.xml" not in entries:
+        raise FmuError(f"{path}: is not an FMU: it has no modelDescription.xml")
+    try:
+        description = read_model_description(str(path), validate=False)
+    except Exception as error:  # FMPy raises five unrelated types for broken descriptions
+        raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
+    return Fmu(path, description, entries)
+
+
+def check_runnable(fmu: Fmu) -> None:
+    """Raise FmuError unless this master can run the FMU on this machine."""
+    from fmpy import platform, sharedLibraryExtension
+
+    md = fmu.description
+    if md.fmiVersion != "2.0":
+        raise FmuError(f"{fmu.path}: is FMI {md.fmiVersion}; FMI 2.0 is supported")
+    if md.coSimulation is None:
+        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
+    binary = f"binaries/{platform}/{md.coSimulation.modelIdentifier}{sharedLibraryExtension}"
+    if binary not in fmu.entries:
+        raise FmuError(
+            f"{fmu.path}: has no binary for this platform ({platform}, Python on {sys.platform}): "
+            f"{binary} is missing; it has {', '.join(fmu.platforms) or 'none'}"
+        )
+
+
+def _interface(fmu: Fmu) -> UnitInterface:
+    md = fmu.description
+    depends = {u.variable.name: _names(u.dependencies) for u in md.outputs}
+    initially = {u.variable.name: _names(u.dependencies) for u in md.initialUnknowns}
+    variables = {v.name: _variable(v, depends, initially) for v in md.modelVariables}
+    return UnitInterface(str(fmu.path), variables, {u.name: _unit_of_measure(u) for u in md.unitDefinitions})
+
+
+def _names(variables: Any) -> tuple[str, ...] | None:
+    return None if variables is None else tuple(v.name for v in variables)
+
+
+def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any]) -> VariableInfo:
+    declared = v.declaredType
+    kind = str(v.type)
+    items = (
+        tuple((int(i.value), i.name) for i in (declared.items or ()))
+        if kind == "Enumeration" and declared
+        else ()
+    )
+    return VariableInfo(
+        name=v.name,
+        type=kind,
+        causality=v.causality or "local",
+        variability=v.variability or ("continuous" if kind == "Real" else "discrete"),
+        unit=_inherited(v, "unit") or "",
+        start=_number(v.start, kind),
+        min=_limit(_inherited(v, "min")),
+        max=_limit(_inherited(v, "max")),
+        description=v.description or "",
+        items=items,
+        depends=depends.get(v.name, ()),
+        depends_initially=initially.get(v.name, ()),
+    )
+
+
+def _inherited(v: Any, attribute: str) -> Any:
+    """An attribute of a variable, else of its declared type (FMI 2.0 section 2.2.3)."""
+    own = getattr(v, attribute, None)
+    return own if own is not None else getattr(v.declaredType, attribute, None)
+
+
+def _number(text: Any, kind: str) -> float | int | bool | str | None:
+    if text is None or kind == "String":
+        return None if text is None else str(text)
+    if kind == "Boolean":
+        return str(text).strip().lower() in ("true", "1")
+    return float(text) if kind == "Real" else int(text)
+
+
+def _limit(text: Any) -> float | None:
+    return None if text is None else float(text)
+
+
+def _unit_of_measure(unit: Any) -> UnitOfMeasure:
+    base = unit.baseUnit
+    if base is None:
+        return UnitOfMeasure(unit.name)
+    exponents = tuple(int(getattr(base, name) or 0) for name in BASE_UNITS)
+    return UnitOfMeasure(unit.name, exponents, float(base.factor), float(base.offset))

@@ -1,0 +1,120 @@
+"""Initialization: outputs reach inputs along the declared dependencies, before the first step.
+
+An input or output of a unit is a node; a direct connection leads from an output to an input, and a
+declared initial dependency from an input to an output of the same unit. Without a loop there is an order
+in which every value is final when it is passed on. A loop is an algebraic loop: it is refused by name, or
+iterated until nothing changes by more than a tolerance. What crosses a bus takes no part: before the
+first message a receiver sees its initial value.
+"""
+
+from __future__ import annotations
+
+import graphlib
+from collections.abc import Iterable, Mapping
+
+from ..cosim.errors import ConfigError
+from ..cosim.interface import UnitInterface
+from ..cosim.plan import Link, Plan
+from .unit import Unit, UnitError
+
+_ITERATIONS = 200
+_Node = tuple[str, str]
+
+
+def ordered_links(plan: Plan) -> tuple[Link, ...]:
+    """The direct connections in an order in which each source is final when it is passed on.
+
+    Raises ConfigError naming the loop where there is one and the experiment refuses loops; otherwise the
+    links of a system with loops stay in written order, to be iterated.
+    """
+    interfaces = {unit.name: unit.interface for unit in plan.units}
+    loop, order = _order(plan.links, interfaces)
+    if loop and plan.experiment.algebraic_loops == "refuse":
+        path = " -> ".join(".".join(node) for node in loop)
+        raise ConfigError(
+            f"system '{plan.system}': algebraic loop: {path}; break it with a bus or a unit without direct "
+            f'feedthrough, or set algebraic_loops = "iterate" in [experiment]'
+        )
+    rank = {node: i for i, node in enumerate(order)}
+    return tuple(sorted(plan.links, key=lambda link: rank.get(link.source, 0)))
+
+
+def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tuple[list[_Node], list[_Node]]:
+    """(the loop, nothing) or (nothing, the nodes in order)."""
+    links = tuple(links)
+    graph: dict[_Node, set[_Node]] = {}
+    for link in links:
+        graph.setdefault(link.sink, set()).add(link.source)
+    for unit, name in {link.source for link in links}:
+        output = interfaces[unit].variables[name]
+        inputs = {v.name for v in interfaces[unit].of_causality("input")}
+        needs = [output.depends, output.depends_initially]
+        known = inputs if None in needs else inputs.intersection(*[set().union(*(n or () for n in needs))])
+        graph.setdefault((unit, name), set()).update((unit, i) for i in known)
+    try:
+        return [], list(graphlib.TopologicalSorter(graph).static_order())
+    except graphlib.CycleError as error:
+        return list(error.args[1]), []
+
+
+def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
+    """Bring every unit from instantiated to ready for its first step.
+
+    Raises UnitError when a unit refuses, or a loop does not converge.
+    """
+    links = ordered_links(plan)
+    experiment = plan.experiment
+    slots = {slot: name for name, slot in ((n, i.slot) for n, i in plan.inputs.items())}
+    for unit_plan in plan.units:
+        unit = units[unit_plan.name]
+        for name, value in unit_plan.parameters.items():
+            unit.set(name, value)
+        unit.enter_initialization(experiment.start_time, experiment.stop_time)
+    _set_free_inputs(units, plan, slots)
+    if _loops(links, plan):
+        _iterate(units, links, experiment.loop_tolerance)
+    else:
+        for link in links:
+            _pass_on(units, link)
+    for unit in units.values():
+        unit.exit_initialization()
+
+
+def _loops(links: tuple[Link, ...], plan: Plan) -> bool:
+    return bool(_order(links, {unit.name: unit.interface for unit in plan.units})[0])
+
+
+def _set_free_inputs(units: Mapping[str, Unit], plan: Plan, slots: Mapping[int, str]) -> None:
+    """Inputs that no output reaches directly start at their start value, or at that of their stimulus."""
+    linked = {".".join(link.sink) for link in plan.links}
+    for slot, value in plan.initial.items():
+        name = slots.get(slot)
+        if name is not None and name not in linked:
+            _set_number(units, name, value)
+
+
+def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
+    unit, _, variable = name.partition(".")
+    kind = units[unit].interface.variables[variable].type
+    units[unit].set(variable, value if kind == "Real" else bool(value) if kind == "Boolean" else round(value))
+
+
+def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
+    value = link.map(float(units[link.source[0]].get(link.source[1])))
+    _set_number(units, ".".join(link.sink), value)
+    return value
+
+
+def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float) -> None:
+    before = [_pass_on(units, link) for link in links]
+    for _ in range(_ITERATIONS):
+        now = [_pass_on(units, link) for link in links]
+        changes = [abs(b - a) for a, b in zip(before, now, strict=True)]
+        if max(changes) <= tolerance:
+            return
+        before = now
+    worst = links[changes.index(max(changes))]
+    raise UnitError(
+        f"the algebraic loop through {'.'.join(worst.source)} -> {'.'.join(worst.sink)} does not converge: it still "
+        f"changes by {max(changes):.3g} after {_ITERATIONS} iterations (tolerance {tolerance:g})"
+    )

@@ -1,0 +1,300 @@
+"""The Python interface: a run of a system as a whole, or step by step.
+
+results = simulate("scooter", scenario="fig8", parameters={"vehicle.mass": 180.0})
+
+with Simulation("scooter") as sim:
+    while sim.time < 10.0:
+        sim.step(100)
+        if sim["vehicle.speed"] > 5.0:
+            sim.set("vehicle.road_grade", 0.05)
+    results = sim.results
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+import sys
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from ..cosim.errors import ConfigError, RunError, nearest
+from ..cosim.plan import Plan
+from ..cosim.resolve import Options, checked, participating, resolve
+from ..cosim.results import Results
+from ..cosim.scenario import Scenario, load_scenario
+from ..cosim.system import Algorithm, System, Value, load_system
+from .algorithm import Engine
+from .builtin import fmu_file
+from .fmi2 import Fmi2Unit
+from .fmu import Fmu, read_fmu
+from .initialization import initialize, ordered_links
+from .unit import Unit
+
+Progress = Callable[[float, float], None]
+"""Called with the simulated time reached and the stop time, both in s."""
+
+
+class Simulation:
+    """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
+
+    `system` and `scenario` are built-in names or paths of TOML files; `parameters` ("unit.parameter" to
+    value) override those of the files; `fmus` (unit to path) put other FMUs in the place of the named ones;
+    `ideal` leaves the buses out (unit conversion only); `log_frames` keeps the frames for `write_can_log`.
+    Raises ConfigError before any step for every input that does not fit.
+    """
+
+    def __init__(
+        self,
+        system: str | Path,
+        scenario: str | Path | None = None,
+        *,
+        parameters: Mapping[str, Value] | None = None,
+        fmus: Mapping[str, str | Path] | None = None,
+        ideal: bool = False,
+        algorithm: Algorithm | None = None,
+        stop_time: float | None = None,
+        log_frames: bool = False,
+    ) -> None:
+        self.system: System = load_system(str(system))
+        self.scenario: Scenario = load_scenario(self.system, None if scenario is None else str(scenario))
+        self._fmus = _read_fmus(self.system, self.scenario, fmus or {})
+        interfaces = {unit: fmu.interface for unit, fmu in self._fmus.items()}
+        options = Options(parameters or {}, algorithm, stop_time, ideal)
+        self.plan: Plan = resolve(self.system, self.scenario, interfaces, options)
+        self.log_frames = log_frames
+        self.warnings: list[str] = list(self.plan.warnings)
+        self.loop_seconds = 0.0
+        ordered_links(self.plan)  # an algebraic loop is refused before anything is instantiated
+        self._units: dict[str, Unit] = {}
+        self._slots = {c.name: s for c, s in zip(self.plan.columns, self.plan.column_slots, strict=True)}
+        try:
+            for unit, fmu in self._fmus.items():
+                self._units[unit] = Fmi2Unit(fmu, unit)
+            self._engine = Engine(self.plan, self._units, log_raw=log_frames)
+            initialize(self._units, self.plan)
+            self._engine.start()
+        except BaseException:
+            self._free()
+            raise
+
+    # ---- a loop of one's own
+
+    @property
+    def time(self) -> float:
+        """The current communication point [s]."""
+        return self._engine.time
+
+    @property
+    def finished(self) -> bool:
+        """Whether the stop time is reached; stepping on beyond it is allowed."""
+        return self._engine.k >= self.plan.steps
+
+    def step(self, steps: int = 1) -> None:
+        """Do `steps` communication steps.
+
+        Raises RunError with unit, time and reason; the results up to then are kept.
+        """
+        self._advance(steps, None)
+
+    def run(self, progress: Progress | None = None) -> None:
+        """Step to the stop time. Raises as `step` does."""
+        stop = self.plan.experiment.stop_time
+        tell = None if progress is None else lambda k: progress(self._engine.time_at(k), stop)
+        self._advance(max(0, self.plan.steps - self._engine.k), tell)
+
+    def _advance(self, steps: int, progress: Callable[[int], None] | None) -> None:
+        if not self._engine.whole:
+            raise RunError("the run has failed or was interrupted and cannot go on")
+        begin = time.perf_counter()
+        try:
+            self._engine.advance(steps, progress)
+        finally:
+            self.loop_seconds += time.perf_counter() - begin
+
+    def __getitem__(self, name: str) -> float:
+        """The value of any variable "unit.variable" at the current communication point, in its own unit."""
+        slot = self._slots.get(name)
+        if slot is not None:
+            return float(self._engine.memory[slot])
+        unit, variable = self._split(name)
+        value = self._units[unit].get(variable)
+        if isinstance(value, str):
+            raise ConfigError(f"{name} is a String")
+        return float(value)
+
+    def set(self, name: str, value: Value) -> None:
+        """Set an input that nothing drives; it keeps the value until it is set again.
+
+        Raises ConfigError for any other variable, a value of the wrong type or out of range.
+        """
+        unit, variable = self._split(name)
+        plan = self.plan.inputs.get(name)
+        if plan is None:
+            raise ConfigError(
+                f"{name} is no input{nearest(name, self.plan.inputs)}; only inputs can be set in a run"
+            )
+        if plan.driver or plan.mailbox is None:
+            raise ConfigError(f"{name} is driven by {plan.driver}; use override() to take its place")
+        number = checked(value, self._fmus[unit].interface.variables[variable], f"set {name}")
+        self._engine.memory[plan.mailbox] = float(number)
+
+    def override(self, name: str, value: float) -> None:
+        """From now on the input `name` receives `value`, whatever drives it."""
+        self._effect(name, "override", value)
+
+    def bias(self, name: str, value: float) -> None:
+        """From now on the input `name` receives `value` more than what drives it."""
+        self._effect(name, "bias", value)
+
+    def reset(self, name: str) -> None:
+        """End the override or bias of the input `name`."""
+        self._effect(name, "reset", None)
+
+    def _effect(self, name: str, action: str, value: float | None) -> None:
+        if name not in self.plan.inputs:
+            raise ConfigError(f"{name} is no input{nearest(name, self.plan.inputs)}; {action} acts on inputs")
+        self._engine.effect(name, action, value)
+
+    def _split(self, name: str) -> tuple[str, str]:
+        unit, _, variable = name.partition(".")
+        if unit not in self._fmus:
+            raise ConfigError(f"{name}: there is no unit '{unit}'{nearest(unit, self._fmus)}")
+        known = self._fmus[unit].interface.variables
+        if variable not in known:
+            raise ConfigError(f"{name}: unit '{unit}' has no variable '{variable}'{nearest(variable, known)}")
+        return unit, variable
+
+    # ---- results
+
+    @property
+    def results(self) -> Results:
+        """What was recorded up to now, with the manifest of the run."""
+        rows = self._engine.rows
+        columns = np.array(self.plan.column_slots, dtype=np.intp)
+        experiment = self.plan.experiment
+        times = experiment.start_time + experiment.step_size * np.arange(len(rows))
+        return Results(
+            time=times,
+            variables=self.plan.columns,
+            data=rows[:, columns],
+            manifest=self.manifest(),
+        )
+
+    def manifest(self) -> dict[str, Any]:
+        """What made these results: versions, FMU digests, parameters, settings and counts (JSON-able)."""
+        plan, experiment = self.plan, self.plan.experiment
+        return {
+            "evcosim": importlib.metadata.version("evcosim"),
+            "versions": {p: importlib.metadata.version(p) for p in ("fmpy", "pythonfmu", "numpy")}
+            | {"python": platform.python_version(), "platform": sys.platform},
+            "system": plan.system,
+            "scenario": plan.scenario,
+            "experiment": experiment.model_dump() | {"algorithm": plan.algorithm},
+            "ideal": plan.ideal,
+            "order": [unit.name for unit in plan.units],
+            "units": {
+                unit.name: {
+                    "fmu": unit.fmu,
+                    "file": self._fmus[unit.name].path.name,
+                    "sha256": self._fmus[unit.name].digest,
+                    "parameters": unit.parameters,
+                    "period": unit.every * experiment.step_size,
+                    "substeps": unit.substeps,
+                }
+                for unit in plan.units
+            },
+            "buses": {name: bus.model_dump() for name, bus in self.system.file.buses.items()},
+            "steps": self._engine.k,
+            "saturations": self.saturations(),
+            "warnings": self.warnings,
+            "loop_seconds": round(self.loop_seconds, 6),
+        }
+
+    def saturations(self) -> dict[str, dict[str, float]]:
+        """For each bus signal that was saturated: how often, and when [s] first."""
+        found = {}
+        for sender in self._engine.senders:
+            for signal, saturation in sender.channel.saturations.items():
+                if saturation.count:
+                    found[f"{sender.plan.bus}.{sender.plan.message.name}.{signal}"] = {
+                        "count": saturation.count,
+                        "first_time": self._engine.time_at(saturation.first_step),
+                    }
+        return found
+
+    # ---- the end
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close(orderly=error is None and self._engine.whole)
+
+    def close(self, orderly: bool = True) -> None:
+        """Terminate the units (not after an error) and release them. The results stay."""
+        try:
+            if orderly:
+                for unit in self._units.values():
+                    unit.terminate()
+        finally:
+            self._free()
+
+    def _free(self) -> None:
+        for unit in self._units.values():
+            unit.free()
+        self._units = {}
+
+
+def simulate(
+    system: str | Path,
+    scenario: str | Path | None = None,
+    *,
+    parameters: Mapping[str, Value] | None = None,
+    fmus: Mapping[str, str | Path] | None = None,
+    ideal: bool = False,
+    algorithm: Algorithm | None = None,
+    stop_time: float | None = None,
+    progress: Progress | None = None,
+) -> Results:
+    """Run a system to its stop time; the arguments are those of `Simulation`.
+
+    Raises ConfigError before any step, RunError when a step fails; what a failed run has recorded is in
+    the error's `results` (None where it failed before the first step).
+    """
+    with Simulation(
+        system,
+        scenario,
+        parameters=parameters,
+        fmus=fmus,
+        ideal=ideal,
+        algorithm=algorithm,
+        stop_time=stop_time,
+    ) as simulation:
+        try:
+            simulation.run(progress)
+        except RunError as error:
+            error.results = simulation.results
+            raise
+        return simulation.results
+
+
+def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path]) -> dict[str, Fmu]:
+    entries = participating(system, scenario)
+    for unit in fmus:
+        if unit not in entries:
+            raise ConfigError(
+                f"--fmu {unit}: there is no unit '{unit}'{nearest(unit, entries)}: {', '.join(entries)}"
+            )
+    read = {}
+    for unit, entry in entries.items():
+        path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
+        read[unit] = read_fmu(path)
+    return read

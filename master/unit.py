@@ -1,0 +1,66 @@
+"""What the algorithms ask of a unit. A loaded FMU is one; tests use units written in Python."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cosim.errors import RunError
+from ..cosim.interface import UnitInterface
+from ..cosim.plan import UnitPlan
+
+Value = float | int | bool | str
+
+
+class UnitError(RunError):
+    """A unit failed. The message names the unit, what was asked, the status and the unit's own last words."""
+
+
+class Unit(Protocol):
+    """A unit in a run. The calls come in this order:
+
+    1. `bind` once, then `set` of parameters and starts, then `enter_initialization(start, stop)`
+    2. `set` of inputs and `get` of outputs, any number, then `exit_initialization`
+    3. for each of its steps: `set_inputs`, `get_feedthrough`, `step`, `get_outputs`
+    4. `terminate`, then `free`; after an error `free` alone
+
+    Every call raises UnitError when the unit reports anything worse than a warning.
+    """
+
+    name: str
+    interface: UnitInterface
+
+    def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
+        """Keep the run's memory, shape (size,), and the slots of this unit's blocks in it."""
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        """Set the experiment up (times in s) and enter initialization mode."""
+
+    def exit_initialization(self) -> None:
+        """Leave initialization mode: parameters are fixed from now on."""
+
+    def get(self, name: str) -> Value:
+        """The value of any variable."""
+
+    def set(self, name: str, value: Value) -> None:
+        """Set any variable that may be set now."""
+
+    def set_inputs(self) -> None:
+        """Give the unit its inputs from the slots of its input blocks."""
+
+    def get_feedthrough(self) -> None:
+        """Read the outputs that depend on the inputs at the same instant into their slots, valid and latest."""
+
+    def step(self, time: float, step_size: float) -> None:
+        """Step from `time` to `time + step_size`, both in s."""
+
+    def get_outputs(self) -> None:
+        """Read the discrete outputs into their slots, the continuous ones into their latest slots."""
+
+    def terminate(self) -> None:
+        """End the run orderly."""
+
+    def free(self) -> None:
+        """Release everything; may be called twice."""
