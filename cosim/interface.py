@@ -62,6 +62,6 @@ class UnitInterface:
         variable = self.variables[name]
         if variable.causality not in wanted:
             raise ConfigError(
-                f"{place}: {unit}.{name} is of causality {variable.causality}, {' or '.join(wanted)} is needed here"
+                f"{place}: {unit}.{name} is of causality {variable.causality}, not {' or '.join(wanted)}"
             )
         return variable

@@ -1,4 +1,4 @@
-"""The connections of a system, resolved: routes within a step, messages on the buses, what drives each input."""
+"""The connections of a system, resolved: routes within a step, messages on buses, what drives each input."""
 
 from __future__ import annotations
 
@@ -227,8 +227,10 @@ _End = tuple[str, str, Mapping[str, UnitOfMeasure]]
 
 
 def _unit_map(work: _Connector, source: _End, target: _End, place: str) -> Affine:
-    """The map from the unit of `source` to that of `target`. Each FMU's own definition comes first, then those
-    of the other units (for a DBC, which defines none), then pint's."""
+    """The map from the unit of `source` to that of `target`.
+
+    Each FMU's own definition comes first, then those of the others (a DBC defines none), then pint's.
+    """
     (source_name, source_unit, source_defs), (target_name, target_unit, target_defs) = source, target
     if source_unit == target_unit and not (source_defs and target_defs):
         return Affine()

@@ -143,7 +143,7 @@ class Plan:
 
 @dataclasses.dataclass(frozen=True)
 class InputPlan:
-    """An input: its slot, its mailbox (None where a route or stimulus writes the slot), and what drives it."""
+    """An input: its slot, its mailbox (None: it has none), and what drives it ("": nothing)."""
 
     slot: int
     mailbox: int | None

@@ -17,7 +17,7 @@ Interpolation = Literal["linear", "hold"]
 
 
 class Sine(FileModel):
-    """mean + amplitude sin(2 pi (t - delay)/period + phase); mean before `delay`. Times in s, phase in rad."""
+    """mean + amplitude sin(2 pi (t - delay)/period + phase); mean before `delay`. Time in s, phase in rad."""
 
     amplitude: float
     period: float = Field(gt=0.0)

@@ -109,7 +109,8 @@ def read_columns(path: Path, column: str | None) -> tuple[NDArray[np.float64], N
         raise ConfigError(f"{path}: line 1: a header of two or more column names is needed, not {header}")
     if column is not None and column not in header[1:]:
         raise ConfigError(
-            f"{path}: there is no column '{column}'{nearest(column, header[1:])}; columns: {', '.join(header[1:])}"
+            f"{path}: there is no column '{column}'{nearest(column, header[1:])}; "
+            f"columns: {', '.join(header[1:])}"
         )
     wanted = (0, header.index(column, 1) if column is not None else 1)
     points = [

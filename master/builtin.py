@@ -33,5 +33,6 @@ def fmu_file(name: str, beside: Path | None = None) -> Path:
     if name.endswith(".fmu") or "/" in name or "\\" in name:
         raise ConfigError(f"{name}: there is no such FMU file")
     raise ConfigError(
-        f"there is no built-in FMU '{name}'{nearest(name, build.names())}; built in: {', '.join(build.names())}"
+        f"there is no built-in FMU '{name}'{nearest(name, build.names())}; "
+        f"built in: {', '.join(build.names())}"
     )

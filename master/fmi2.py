@@ -107,8 +107,10 @@ class Fmi2Unit:
             else:
                 outputs.append(self._transfer("Get", memory, block, block.latest))
                 if block.feedthrough:
-                    for slot in (block.slot, block.latest):
-                        through.append(self._transfer("Get", memory, block, slot, block.feedthrough))
+                    through += [
+                        self._transfer("Get", memory, block, slot, block.feedthrough)
+                        for slot in (block.slot, block.latest)
+                    ]
         self._set_inputs, self._get_feedthrough, self._get_outputs = (
             tuple(inputs),
             tuple(through),

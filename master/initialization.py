@@ -115,6 +115,6 @@ def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: floa
         before = now
     worst = links[changes.index(max(changes))]
     raise UnitError(
-        f"the algebraic loop through {'.'.join(worst.source)} -> {'.'.join(worst.sink)} does not converge: it still "
-        f"changes by {max(changes):.3g} after {_ITERATIONS} iterations (tolerance {tolerance:g})"
+        f"the algebraic loop through {'.'.join(worst.source)} -> {'.'.join(worst.sink)} does not converge: "
+        f"it still changes by {max(changes):.3g} after {_ITERATIONS} iterations (tolerance {tolerance:g})"
     )

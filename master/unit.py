@@ -51,7 +51,7 @@ class Unit(Protocol):
         """Give the unit its inputs from the slots of its input blocks."""
 
     def get_feedthrough(self) -> None:
-        """Read the outputs that depend on the inputs at the same instant into their slots, valid and latest."""
+        """Read the outputs that depend on inputs at the same instant into their slots, valid and latest."""
 
     def step(self, time: float, step_size: float) -> None:
         """Step from `time` to `time + step_size`, both in s."""

@@ -1,0 +1,73 @@
+"""Units of measure: conversion by definition, and pint for names without one."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.units import Affine, UnitOfMeasure, conversion, defined
+
+SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
+MS = UnitOfMeasure("m/s", SPEED)
+KMH = UnitOfMeasure("km/h", SPEED, 1 / 3.6)
+KELVIN = UnitOfMeasure("K", (0, 0, 0, 0, 1, 0, 0, 0))
+CELSIUS = UnitOfMeasure("degC", (0, 0, 0, 0, 1, 0, 0, 0), 1.0, 273.15)
+numbers = st.floats(-1e6, 1e6)
+
+
+def test_factors_are_rounded_once():
+    assert conversion(MS, KMH) == Affine(3.6)
+    assert conversion(KMH, MS) == Affine(5 / 18)
+
+
+def test_offsets():
+    assert conversion(CELSIUS, KELVIN)(20.0) == pytest.approx(293.15)
+    assert conversion(KELVIN, CELSIUS)(273.15) == pytest.approx(0.0, abs=1e-12)
+
+
+@given(numbers, st.sampled_from([(MS, KMH), (CELSIUS, KELVIN), (MS, MS)]))
+def test_there_and_back(x, pair):
+    a, b = pair
+    assert conversion(b, a)(conversion(a, b)(x)) == pytest.approx(x, rel=1e-12, abs=1e-9)
+
+
+@given(numbers, st.floats(0.01, 100), numbers)
+def test_expression_is_the_map(x, scale, offset):
+    affine = Affine(scale, offset)
+    assert eval(affine.expression("x"), {"x": x}) == affine(x)
+    assert affine.inverse()(affine(x)) == pytest.approx(x, rel=1e-9, abs=1e-6 * (1 + abs(offset)) / scale)
+
+
+def test_different_quantities_are_refused():
+    with pytest.raises(ConfigError, match=r"\[m/s\] and \[K\]"):
+        conversion(MS, KELVIN)
+
+
+def test_an_fmu_own_definition_comes_first():
+    odd = UnitOfMeasure("km/h", SPEED, 1.0)
+    assert defined("km/h", {"km/h": odd}) is odd
+    assert defined("km/h", {"km/h": UnitOfMeasure("km/h")}).factor == pytest.approx(1 / 3.6)
+
+
+@pytest.mark.parametrize(
+    ("name", "si", "factor"),
+    [
+        ("rpm", UnitOfMeasure("rad/s", (0, 0, -1, 0, 0, 0, 0, 1)), 0.104719755),
+        ("Nm", UnitOfMeasure("N.m", (1, 2, -2, 0, 0, 0, 0, 0)), 1.0),
+        ("%", UnitOfMeasure("1", (0,) * 8), 0.01),
+        ("deg/s", UnitOfMeasure("rad/s", (0, 0, -1, 0, 0, 0, 0, 1)), 0.0174532925),
+        ("m/s^2", UnitOfMeasure("m/s2", (0, 1, -2, 0, 0, 0, 0, 0)), 1.0),
+        ("m/s2", UnitOfMeasure("m/s2", (0, 1, -2, 0, 0, 0, 0, 0)), 1.0),
+        ("kW", UnitOfMeasure("W", (1, 2, -3, 0, 0, 0, 0, 0)), 1000.0),
+        ("A.h", UnitOfMeasure("C", (0, 0, 1, 1, 0, 0, 0, 0)), 3600.0),
+    ],
+)
+def test_names_that_only_a_dbc_uses(name, si, factor):
+    assert conversion(defined(name), si).scale == pytest.approx(factor, rel=1e-8)
+
+
+def test_an_unknown_name_is_named():
+    with pytest.raises(ConfigError, match="'furlongs/fortnite' is not known"):
+        defined("furlongs/fortnite")

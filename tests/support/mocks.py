@@ -1,0 +1,137 @@
+"""Units written in Python, and systems of them: the algorithms need no FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evcosim.cosim.interface import UnitInterface, VariableInfo
+from evcosim.cosim.plan import Block, Plan, UnitPlan
+from evcosim.cosim.resolve import Options, resolve
+from evcosim.cosim.scenario import Scenario, ScenarioFile
+from evcosim.cosim.system import System, SystemFile
+from evcosim.master.algorithm import Engine
+from evcosim.master.initialization import initialize
+from evcosim.master.unit import Value
+
+Values = dict[str, Any]
+
+
+def real(name: str, causality: str, **more: Any) -> VariableInfo:
+    """A Real variable; an input starts at 0 unless it says otherwise."""
+    if causality == "input":
+        more.setdefault("start", 0.0)
+    return VariableInfo(name, "Real", causality, **more)
+
+
+class MockUnit:
+    """A unit whose behavior is functions of its values by name.
+
+    `step(values, time, step_size)` changes values in place, and so does `through(values)`, which computes the
+    outputs that feed through. `calls` counts the steps; `log` notes what was called.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        variables: list[VariableInfo],
+        step: Callable[[Values, float, float], None] = lambda values, time, step_size: None,
+        through: Callable[[Values], None] = lambda values: None,
+        **start: float,
+    ) -> None:
+        self.name = name
+        self.interface = UnitInterface(f"mock {name}", {v.name: v for v in variables})
+        self.values: Values = {v.name: v.start if v.start is not None else 0.0 for v in variables} | start
+        self._step, self._through = step, through
+        self.steps: list[tuple[float, float]] = []
+        self.log: list[str] = []
+
+    def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
+        self.memory, self.blocks = memory, plan.blocks
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        self.log.append("enter")
+
+    def exit_initialization(self) -> None:
+        self.log.append("exit")
+
+    def get(self, name: str) -> Value:
+        self._through(self.values)
+        return self.values[name]
+
+    def set(self, name: str, value: Value) -> None:
+        self.values[name] = value
+
+    def set_inputs(self) -> None:
+        for block, i, slot in self._slots("input"):
+            self.values[block.names[i]] = self.memory[slot]
+
+    def get_feedthrough(self) -> None:
+        self._through(self.values)
+        for block in self.blocks:
+            for i in range(block.feedthrough):
+                self.memory[block.slot + i] = self.memory[block.latest + i] = self.values[block.names[i]]
+
+    def step(self, time: float, step_size: float) -> None:
+        self.steps.append((time, step_size))
+        self._step(self.values, time, step_size)
+        self._through(self.values)
+
+    def get_outputs(self) -> None:
+        for kind in ("discrete", "continuous"):
+            for block, i, slot in self._slots(kind):
+                self.memory[slot] = self.values[block.names[i]]
+
+    def _slots(self, kind: str) -> list[tuple[Block, int, int]]:
+        return [
+            (b, i, (b.latest if kind == "continuous" else b.slot) + i)
+            for b in self.blocks
+            if b.kind == kind
+            for i in range(len(b.variables))
+        ]
+
+    def terminate(self) -> None:
+        self.log.append("terminate")
+
+    def free(self) -> None:
+        self.log.append("free")
+
+
+def plan_of(
+    units: list[MockUnit],
+    system: Mapping[str, Any],
+    scenario: Mapping[str, Any] | None = None,
+    **options: Any,
+) -> Plan:
+    """The plan of a system of mocks; `system` and `scenario` are what would stand in the files."""
+    content = {"name": "mocks", "units": {u.name: {"fmu": "mock"} for u in units}}
+    for key, value in system.items():
+        if key == "units":
+            for name, entry in value.items():
+                content["units"][name] |= entry  # type: ignore[index] # a nested literal
+        else:
+            content[key] = value
+    file = SystemFile.model_validate(content)
+    described = System(Path("mocks.toml"), file)
+    driven = Scenario("test", Path("test.toml"), ScenarioFile.model_validate(scenario or {}))
+    return resolve(described, driven, {u.name: u.interface for u in units}, Options(**options))
+
+
+def started(units: list[MockUnit], plan: Plan) -> Engine:
+    """An engine of mocks, initialized and ready for its first step."""
+    by_name = {u.name: u for u in units}
+    engine = Engine(plan, by_name)
+    initialize(by_name, plan)
+    engine.start()
+    return engine
+
+
+def column(engine: Engine, name: str) -> NDArray[np.float64]:
+    """The recorded values of a variable, one for each step done and one for now."""
+    slot = engine.plan.slot(name)
+    assert slot is not None
+    return engine.rows[:, slot]
