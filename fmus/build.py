@@ -1,0 +1,194 @@
+"""Build FMUs: `build` into a folder, `built` through the cache, `build_model` from a model of one's own.
+
+    modelDescription.xml
+    binaries/<platform>/<Name>.<so|dll>            pythonfmu's native library
+    documentation/licenses/*.txt
+    resources/slavemodule.txt                      names the next file
+    resources/<Name>_<digest>_slave.py             what pythonfmu imports
+    resources/<Name>_<digest>/entry.py             joins model and slave
+    resources/<Name>_<digest>/evcosim/...          the model's sources, and the user's own beside them
+    resources/<Name>_<digest>/pythonfmu/...
+
+The digest is that of everything that goes in and of the code that puts it together; it also gives the guid.
+The same source gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from importlib import import_module
+from pathlib import Path
+from typing import NamedTuple
+
+from . import cache, runtime
+from .catalog import CATALOG, Experiment, model_file
+from .sources import Source, collect, file_of, rewritten
+
+_OWN_LICENSE = "MIT"
+_HERE = Path(__file__).parent
+# The digest covers the code that writes the parts which are no copies.
+_WRITERS = ("build.py", "archive.py", "description.py", "sources.py", "unit_definitions.py")
+
+_ENTRY = '''\
+"""The slave class of this FMU."""
+
+{imports}
+from .pythonfmu.fmi2slave import Fmi2Slave
+from .evcosim.fmus.slave import ModelSlave
+from .{module} import {name} as Model
+
+
+class {name}(ModelSlave, Fmi2Slave):
+    model = Model
+    identity = "{identity}"
+'''
+
+_SLAVE = '''\
+"""pythonfmu imports this module by its name and, for every instance, runs its text once more."""
+
+import ctypes
+
+from {identity}.entry import {name}
+
+# For every instance, pythonfmu also gives up a reference to this module's globals that it does not own.
+ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
+'''
+
+
+class Recipe(NamedTuple):
+    """What an FMU is made of, known without importing the model. `digest` is hexadecimal, 32 digits."""
+
+    name: str
+    module: str
+    sources: tuple[Source, ...]
+    experiment: Experiment
+    version: str
+    license: str
+    digest: str
+
+    @property
+    def identity(self) -> str:
+        """The name of the package inside the FMU, and so of this version of the model."""
+        return f"{self.name}_{self.digest[:12]}"
+
+
+def names() -> tuple[str, ...]:
+    """The FMUs that `build` and `built` know, in the catalog's order."""
+    return tuple(CATALOG)
+
+
+def build(name: str, folder: str | Path) -> Path:
+    """Write `folder/<name>.fmu` and return its path. Raises ValueError for an unknown name, OSError."""
+    return cache.write(Path(folder) / f"{name}.fmu", _content(_catalog_recipe(name)))
+
+
+def built(name: str) -> Path:
+    """The FMU of the present sources in the user's cache, built first if it is missing. Raises ValueError."""
+    recipe = _catalog_recipe(name)
+    return cache.fetch(f"{recipe.identity}.fmu", lambda: _content(recipe))
+
+
+def build_model(
+    model: type,
+    folder: str | Path,
+    *,
+    experiment: Experiment | None = None,
+    version: str = "",
+    license: str = "",
+) -> Path:
+    """Write `folder/<class name>.fmu` of a model in a file of one's own, a subclass of evcosim.models.base.Model.
+
+    What of the user's files is embedded says `sources`; `version` and `license` are those of the model, and
+    are left out where empty. Raises ValueError for sources that cannot be embedded and for unknown units,
+    OSError.
+    """
+    module, file = file_of(model.__module__)
+    recipe = _recipe(model.__qualname__, module, file, experiment or Experiment(), version, license)
+    return cache.write(Path(folder) / f"{recipe.name}.fmu", _content(recipe, model))
+
+
+def _catalog_recipe(name: str) -> Recipe:
+    if name not in CATALOG:
+        import difflib  # slow to import
+
+        near = difflib.get_close_matches(name, CATALOG, n=1, cutoff=0.5)
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        raise ValueError(f"there is no built-in FMU {name!r}{hint}; there are {', '.join(CATALOG)}")
+    entry = CATALOG[name]
+    module = f"evcosim.models.{entry.module}"
+    version = runtime.version("evcosim")
+    return _recipe(name, module, model_file(name), entry.experiment, version, _OWN_LICENSE)
+
+
+def _recipe(name: str, module: str, file: Path, experiment: Experiment, version: str, license: str) -> Recipe:
+    if not (name.isidentifier() and name.isascii()):
+        raise ValueError(f"{name}: an FMU is built from a class at the top of its module, with an ASCII name")
+    sources = tuple(collect(module, file))
+    digest = hashlib.sha256()
+    about = (name, module, experiment, version, license, runtime.version("evcosim"))
+    for part in (
+        repr(about).encode(),
+        *(part for source in sources for part in (source.path.encode(), source.content)),
+        *((_HERE / file).read_bytes() for file in _WRITERS),
+        *_flat(runtime.binaries()),
+        *_flat(runtime.python_files()),
+        *_flat(runtime.licenses()),
+    ):
+        digest.update(len(part).to_bytes(8, "big"))
+        digest.update(part)
+    return Recipe(name, module, sources, experiment, version, license, digest.hexdigest()[:32])
+
+
+def _flat(files: dict[str, bytes]) -> list[bytes]:
+    return [part for name, content in files.items() for part in (name.encode(), content)]
+
+
+def _content(recipe: Recipe, model: type | None = None) -> bytes:
+    """The FMU's bytes. A catalog model is imported only now, for its declarations."""
+    import uuid  # this and the two below are slow to import, and a run that finds its FMUs builds nothing
+
+    from .archive import packed
+    from .description import Origin, describe
+
+    if model is None:
+        model = getattr(import_module(recipe.module), recipe.name)
+    origin = Origin(
+        guid="{" + str(uuid.UUID(recipe.digest)) + "}",
+        tool=f"evcosim {runtime.version('evcosim')} with pythonfmu {runtime.version('pythonfmu')}",
+        version=recipe.version,
+        license=recipe.license,
+    )
+    entries = {"modelDescription.xml": describe(model, origin, recipe.experiment)}
+    for place, content in runtime.binaries().items():
+        platform, _, suffix = place.partition("/")
+        entries[f"binaries/{platform}/{recipe.name}{suffix}"] = content
+    for file, content in runtime.licenses().items():
+        entries[f"documentation/licenses/{file}"] = content
+    entries.update({f"resources/{path}": content for path, content in _resources(recipe).items()})
+    return packed(entries)
+
+
+def _resources(recipe: Recipe) -> dict[str, bytes]:
+    package = recipe.identity
+    embedded = {source.module for source in recipe.sources}
+    # All modules are imported at once: a folder that was unpacked for the first instance may be gone later.
+    imports = "\n".join(f"from . import {m}" if "." not in m else _import_line(m) for m in sorted(embedded))
+    fields = {"name": recipe.name, "identity": package, "module": recipe.module, "imports": imports}
+    files = {
+        "slavemodule.txt": f"{package}_slave\n".encode(),
+        f"{package}_slave.py": _SLAVE.format(**fields).encode(),
+        f"{package}/__init__.py": b"",
+        f"{package}/entry.py": _ENTRY.format(**fields).encode(),
+        f"{package}/evcosim/__init__.py": b"",
+        f"{package}/pythonfmu/__init__.py": b"",
+    }
+    for source in recipe.sources:
+        files[f"{package}/{source.path}"] = rewritten(source, package, embedded)
+    for file, content in runtime.python_files().items():
+        files[f"{package}/pythonfmu/{file}"] = content
+    return files
+
+
+def _import_line(module: str) -> str:
+    parent, _, last = module.rpartition(".")
+    return f"from .{parent} import {last}"

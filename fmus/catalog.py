@@ -1,0 +1,45 @@
+"""The FMUs that evcosim builds: name -> module of the model and the experiment that fits it.
+
+An FMU has the name of its model's class. One line adds one (docs/how-to/add-a-model.md). Nothing here imports
+a model: names are listed in no time.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+
+class Experiment(NamedTuple):
+    """FMI's DefaultExperiment [s]: what an importer does that is told nothing."""
+
+    stop_time: float = 10.0
+    step_size: float = 0.01
+
+
+class Entry(NamedTuple):
+    """The module of the model, below evcosim.models, and its experiment."""
+
+    module: str
+    experiment: Experiment
+
+
+CATALOG = {
+    "Scooter": Entry("scooter", Experiment(stop_time=60.0)),
+    "BoundController": Entry("bound_controller", Experiment(stop_time=60.0)),
+    "Battery": Entry("battery", Experiment(stop_time=60.0)),
+}
+
+
+def model_file(name: str) -> Path:
+    """The source file of a catalog entry's model."""
+    from .. import models  # light: a docstring
+
+    return Path(models.__file__ or "").parent / f"{CATALOG[name].module}.py"
+
+
+def text(name: str) -> str:
+    """What the model is, in one line: the first of its docstring, read without importing it."""
+    from .sources import text_of_class  # the parser is needed here only
+
+    return text_of_class(model_file(name), name)

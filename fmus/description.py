@@ -1,0 +1,185 @@
+"""modelDescription.xml (FMI 2.0) from a model's declarations; nothing is written down twice.
+
+`Outputs` lists as dependencies the inputs that reach an output within one instant; a sampled model's outputs
+hold between steps, so they have none. `InitialUnknowns` lists every parameter and the inputs that reach the
+output during initialization: those that `initial` reads and those that feed through, or what the variable's
+`initially` says instead.
+"""
+
+from __future__ import annotations
+
+import enum
+import inspect
+from collections.abc import Iterable
+from typing import NamedTuple
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from ..models.base import Model, Variable
+from .catalog import Experiment
+from .interface import Exposed, exposed
+from .slave import ModelSlave
+from .unit_definitions import define
+
+_CAPABILITIES = {
+    "needsExecutionTool": "true",  # a Python interpreter with the packages that the model imports
+    "canHandleVariableCommunicationStepSize": "true",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
+
+
+class Origin(NamedTuple):
+    """Where an FMU comes from: `version` and `license` are the model's, `tool` built it."""
+
+    guid: str
+    tool: str
+    version: str
+    license: str
+
+
+def describe(model: type[Model], origin: Origin, experiment: Experiment) -> bytes:
+    """The file's bytes, UTF-8. Raises ValueError that names model and variable for an unknown unit."""
+    variables = exposed(model)
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=model.__name__,
+        guid=origin.guid,
+        description=headline(model),
+        generationTool=origin.tool,
+        variableNamingConvention="structured",
+    )
+    for name, value in (("version", origin.version), ("license", origin.license)):
+        if value:
+            root.set(name, value)
+    SubElement(root, "CoSimulation", {"modelIdentifier": model.__name__, **_CAPABILITIES})
+    _units(root, model, variables)
+    _types(root, variables)
+    categories = SubElement(root, "LogCategories")
+    for name, text in ModelSlave.log_categories.items():
+        SubElement(categories, "Category", name=name, description=text)
+    SubElement(
+        root,
+        "DefaultExperiment",
+        startTime="0.0",
+        stopTime=repr(experiment.stop_time),
+        stepSize=repr(experiment.step_size),
+    )
+    listed = SubElement(root, "ModelVariables")
+    for entry in variables:
+        listed.append(_scalar_variable(entry, model.sampled))
+    _structure(root, model, variables)
+    ElementTree.indent(root)
+    text: bytes = ElementTree.tostring(root, "utf-8")
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + text + b"\n"
+
+
+def headline(described: type) -> str:
+    """The first line of a class's own docstring, without code marks."""
+    text = inspect.cleandoc(described.__doc__ or "") or described.__name__
+    return text.splitlines()[0].replace("`", "")
+
+
+def _units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
+    """Only Real variables carry a unit in FMI 2.0."""
+    used = {}
+    for _, _, v in variables:
+        if v.type == "Real" and v.unit:
+            try:
+                used[v.unit] = define(v.unit)
+            except ValueError as error:
+                raise ValueError(f"{model.__name__}.{v.name}: {error}") from None
+    if not used:
+        return
+    definitions = SubElement(root, "UnitDefinitions")
+    for name, definition in sorted(used.items()):
+        base = SubElement(SubElement(definitions, "Unit", name=name), "BaseUnit")
+        for symbol, exponent in definition.exponents:
+            base.set(symbol, str(exponent))
+        if definition.factor != 1.0:
+            base.set("factor", repr(definition.factor))
+        if definition.offset != 0.0:
+            base.set("offset", repr(definition.offset))
+
+
+def _types(root: Element, variables: Iterable[Exposed]) -> None:
+    enumerations = {
+        v.enumeration.__name__: v.enumeration for _, _, v in variables if v.enumeration is not None
+    }
+    if not enumerations:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for name, enumeration in sorted(enumerations.items()):
+        simple = SubElement(definitions, "SimpleType", name=name, description=headline(enumeration))
+        listed = SubElement(simple, "Enumeration")
+        for item in enumeration:
+            about = {"name": item.name.lower(), "value": str(int(item)), **_text_of(item)}
+            SubElement(listed, "Item", about)
+
+
+def _text_of(item: enum.IntEnum) -> dict[str, str]:
+    """An item's text, where the enumeration gives its members a `text`."""
+    text = getattr(item, "text", None)
+    return {} if text is None else {"description": str(text)}
+
+
+def _scalar_variable(entry: Exposed, sampled: bool) -> Element:
+    v = entry.variable
+    scalar = Element("ScalarVariable", name=v.name, valueReference=str(entry.reference))
+    scalar.set("description", v.description)
+    scalar.set("causality", entry.causality)
+    scalar.set("variability", _variability(entry, sampled))
+    if entry.causality in ("parameter", "output"):
+        scalar.set("initial", "exact" if entry.causality == "parameter" else "calculated")
+    typed = SubElement(scalar, v.type)
+    if v.enumeration is not None:
+        typed.set("declaredType", v.enumeration.__name__)
+    if v.type == "Real":
+        _set(typed, v, "unit", "nominal")
+    if v.type != "Boolean":
+        _set(typed, v, "min", "max")
+    if entry.causality in ("parameter", "input"):
+        typed.set("start", _number(v.start, v.type))
+    return scalar
+
+
+def _variability(entry: Exposed, sampled: bool) -> str:
+    if entry.causality == "parameter":
+        return "fixed"
+    if entry.variable.type != "Real" or (sampled and entry.causality == "output"):
+        return "discrete"
+    return "continuous"
+
+
+def _set(typed: Element, v: Variable, *attributes: str) -> None:
+    for attribute in attributes:
+        value = getattr(v, attribute)
+        if value not in (None, ""):
+            typed.set(attribute, value if attribute == "unit" else _number(value, v.type))
+
+
+def _number(value: float, kind: str) -> str:
+    """As FMI writes it: Boolean in words, Integer and Enumeration without a point, Real lossless."""
+    if kind == "Boolean":
+        return "true" if value else "false"
+    return repr(float(value)) if kind == "Real" else str(int(value))
+
+
+def _structure(root: Element, model: type[Model], variables: tuple[Exposed, ...]) -> None:
+    index = {entry.variable.name: str(entry.reference + 1) for entry in variables}  # FMI counts from 1
+    parameters = [entry.variable.name for entry in variables if entry.causality == "parameter"]
+    outputs = [entry.variable for entry in variables if entry.causality == "output"]
+    structure = SubElement(root, "ModelStructure")
+    if not outputs:
+        return
+    now = SubElement(structure, "Outputs")
+    initially = SubElement(structure, "InitialUnknowns")
+    for v in outputs:
+        instant = () if model.sampled else v.depends
+        reached = v.initially if v.initially is not None else (*model.initial_inputs, *v.depends)
+        for parent, names in ((now, instant), (initially, (*parameters, *reached))):
+            known = sorted({int(index[name]) for name in names})
+            SubElement(parent, "Unknown", index=index[v.name], dependencies=" ".join(map(str, known)))

@@ -1,0 +1,456 @@
+"""A model as an FMI 2.0 co-simulation slave, run by pythonfmu's native library.
+
+    instantiated, initialization    parameters and inputs can be set; outputs answer for the current ones:
+                                    x_0 = initial(p, u), y = outputs(p, x_0[, u])
+    exit of initialization          parameters outside their ranges are refused; then only inputs can be set
+    do_step(t, dt)                  u.time = t; x = step(p, x, u, dt); y = outputs(p, x[, u])
+    between steps                   outputs of a continuous model that feed through follow a changed input,
+                                    at time t + dt; those of a sampled model hold
+
+Errors. Every entry point catches whatever the model raises. pythonfmu can return three statuses only:
+- do_step that fails logs a message of status Error (category `logStatusError`) with type and text of the
+  exception and the place it was raised, leaves state and outputs as they were, and returns Discard; the
+  native library then also answers fmi2Terminated = true.
+- any other call that fails ends Fatal. The native library writes the message: if ours waited in the queue, it
+  would call the importer's logger while a Python exception is set, which breaks an importer in Python.
+- a step whose result is NaN or infinite is no error here: the importer checks what it receives.
+
+What pythonfmu's library does and this module makes good:
+- On a failed call it gives up its references to class, instance and message list, and in fmi2FreeInstance
+  once more. `_hold` takes them in advance, so a failing FMU never kills its importer.
+- Messages are printf formats (FMI 2.0, fmi2CallbackLogger), and it passes no arguments: "%" is doubled.
+- It leaves the resources folder at the front of sys.path; the slave takes it off.
+What it does and nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line is
+a failed call without `_hold`; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
+fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
+
+Relative imports only: this file also runs inside FMUs, in a package of another name.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import enum
+import io
+import operator
+import os
+import pickle
+import sys
+import traceback
+import weakref
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, ClassVar, NamedTuple
+
+from ..models.base import Model, Variable, violations
+from .interface import exposed
+
+_ERROR = 3  # fmi2Error
+_PACKAGE = __name__.partition(".")[0]
+_FOLDER = os.path.join(os.path.dirname(__file__), "..", "..")
+
+
+class Refused(Exception):
+    """The importer asked for what FMI or the model's declaration does not allow; the text says all."""
+
+
+class SlaveError(Exception):
+    """A failed call. pythonfmu logs the repr, so the repr is the message."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+class Snapshot(NamedTuple):
+    """All that distinguishes two instances of one FMU. Parameters are rebuilt from `values`."""
+
+    values: tuple[Any, ...]
+    state: Any
+    started: bool
+    stale: bool
+
+
+class Layout:
+    """What the slave of one model looks up instead of reflecting on each call."""
+
+    def __init__(self, model: type[Model]) -> None:
+        variables = exposed(model)
+        self.starts = [v.start for _, _, v in variables]
+        self.parameters = _span(r for r, causality, _ in variables if causality == "parameter")
+        self.inputs = _span(r for r, causality, _ in variables if causality in ("input", "independent"))
+        self.outputs = _span(r for r, causality, _ in variables if causality == "output")
+        self.time = next((r for r, causality, _ in variables if causality == "independent"), None)
+        self.variables = [v for _, _, v in variables]
+
+        self.readable = {
+            kind: frozenset(r for r, _, v in variables if _storage(v) == kind)
+            for kind in ("Real", "Integer", "Boolean")
+        }
+        self.settable = {r: causality for r, causality, _ in variables if causality in ("parameter", "input")}
+        self.enumerations = {r: v.enumeration for r, _, v in variables if v.enumeration is not None}
+
+        outputs = [v for _, causality, v in variables if causality == "output"]
+        self.take = _taker([v.name for v in outputs])
+        self.converters = [_converter(v) for v in outputs]
+        self.feeds_through = model.feeds_through()
+        self.follows_inputs = self.feeds_through and not model.sampled
+
+
+def _span(references: Iterable[int]) -> slice:
+    numbers = list(references)
+    return slice(numbers[0], numbers[-1] + 1) if numbers else slice(0, 0)
+
+
+def _storage(v: Variable) -> str:
+    """The FMI functions that read and write a variable: enumerations are accessed as Integer."""
+    return "Integer" if v.type == "Enumeration" else v.type
+
+
+def _taker(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
+    if len(names) > 1:
+        take: Callable[[Any], tuple[Any, ...]] = operator.attrgetter(*names)
+        return take
+    return lambda record: tuple(getattr(record, name) for name in names)
+
+
+def _converter(v: Variable) -> Callable[[Any], Any]:
+    """The native library reads plain Python numbers, and does not check that it got one."""
+    converters: dict[str, Callable[[Any], Any]]
+    converters = {"Real": float, "Boolean": bool, "Integer": _int32, "Enumeration": _int32}
+    return converters[v.type]
+
+
+def _int32(value: Any) -> int:
+    number = operator.index(value)
+    if not -(2**31) <= number < 2**31:
+        raise OverflowError(f"{number} does not fit an FMI Integer")
+    return number
+
+
+class ModelSlave:
+    """Mixin before pythonfmu's Fmi2Slave. A subclass names its `model` and the `identity` of its FMU."""
+
+    model: ClassVar[type[Model]]
+    identity: ClassVar[str]
+    log_categories: ClassVar[dict[str, str]] = {"logStatusError": "Exceptions that the model raised"}
+
+    _layout: ClassVar[Layout]
+    _living: ClassVar[weakref.WeakSet[ModelSlave]]
+
+    instance_name: str
+    log_queue: list[Any]
+    log: Callable[[str, int, str], None]
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        cls._layout = Layout(cls.model)
+        cls._living = weakref.WeakSet()
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if sys.path and sys.path[0] == kwargs.get("resources"):
+            del sys.path[0]
+        self._values: list[Any] = list(self._layout.starts)
+        self._parameters: Any = None
+        self._inputs: Any = None
+        self._state: Any = None
+        self._started = False
+        self._stale = True  # outputs (and before the start the state) do not belong to the inputs
+        self._step = self.model.step
+        self._outputs = self.model.outputs
+        self._living.add(self)
+
+    # -- time ----------------------------------------------------------------------------------------------
+
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """fmi2SetupExperiment: the start time is what `initial` sees as time."""
+        self._set_time(start_time)
+
+    def exit_initialization_mode(self) -> None:
+        """fmi2ExitInitializationMode: check the parameters, compute x_0, and fix the parameters."""
+        try:
+            self._initialize()
+            self._started = True
+        except BaseException as error:
+            raise self._failure("fmi2ExitInitializationMode", error) from None
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """fmi2DoStep: True for OK, False for Discard."""
+        try:
+            if not self._started:
+                raise Refused("the initialization mode has not been left")
+            self._set_time(current_time)
+            u = self._inputs
+            if u is None:
+                u = self._inputs = self.model.Inputs(*self._values[self._layout.inputs])
+            state = self._step(self._parameters, self._state, u, step_size)
+            if self._layout.time is not None and self._layout.follows_inputs:
+                self._set_time(current_time + step_size)
+                u = None
+            self._show(state, u)
+            self._state = state
+            return True
+        except BaseException as error:
+            self.log(_message(f"fmi2DoStep at t = {current_time} s", error), _ERROR, "logStatusError")
+            return False
+
+    def _set_time(self, time: float) -> None:
+        if self._layout.time is not None:
+            self._values[self._layout.time] = time
+            self._inputs = None
+            self._stale = self._stale or not self._started
+
+    def _initialize(self) -> None:
+        """x_0 and its outputs from the current parameters and inputs."""
+        p = self._derive_parameters()
+        if bad := violations(p):
+            raise Refused("; ".join(bad))
+        u = self.model.Inputs(*self._values[self._layout.inputs])
+        state = self.model.initial(p, u)
+        self._parameters = p
+        self._show(state, u)
+        self._state = state
+
+    def _derive_parameters(self) -> Any:
+        return self.model.Parameters(*self._values[self._layout.parameters])
+
+    def _show(self, state: Any, u: Any) -> None:
+        """Store the outputs of a state; `u` None: of the inputs that are set now."""
+        layout = self._layout
+        if layout.feeds_through:
+            if u is None:
+                u = self._inputs = self.model.Inputs(*self._values[layout.inputs])
+            y = self._outputs(self._parameters, state, u)
+        else:
+            y = self._outputs(self._parameters, state)
+        values = layout.take(y)
+        try:
+            self._values[layout.outputs] = map(operator.call, layout.converters, values)
+        except (TypeError, ValueError, OverflowError):
+            raise _misfit(layout, values) from None
+        self._stale = False
+
+    def _refresh(self) -> None:
+        if self._started:
+            self._show(self._state, self._inputs)
+        else:
+            self._initialize()
+
+    # -- values --------------------------------------------------------------------------------------------
+
+    def get_real(self, references: Sequence[int]) -> list[float]:
+        """fmi2GetReal."""
+        try:
+            return self._get("Real", references)
+        except BaseException as error:
+            raise self._failure("fmi2GetReal", error) from None
+
+    def get_integer(self, references: Sequence[int]) -> list[int]:
+        """fmi2GetInteger, for Integer and Enumeration."""
+        try:
+            return self._get("Integer", references)
+        except BaseException as error:
+            raise self._failure("fmi2GetInteger", error) from None
+
+    def get_boolean(self, references: Sequence[int]) -> list[bool]:
+        """fmi2GetBoolean."""
+        try:
+            return self._get("Boolean", references)
+        except BaseException as error:
+            raise self._failure("fmi2GetBoolean", error) from None
+
+    def get_string(self, references: Sequence[int]) -> list[str]:
+        """fmi2GetString: there are no String variables."""
+        try:
+            return self._get("String", references)
+        except BaseException as error:
+            raise self._failure("fmi2GetString", error) from None
+
+    def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
+        """fmi2SetReal."""
+        try:
+            self._set("Real", references, values)
+        except BaseException as error:
+            raise self._failure("fmi2SetReal", error) from None
+
+    def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
+        """fmi2SetInteger, for Integer and Enumeration; a number that is no item of the enumeration fails."""
+        try:
+            self._set(
+                "Integer", references, [self._member(r, v) for r, v in zip(references, values, strict=True)]
+            )
+        except BaseException as error:
+            raise self._failure("fmi2SetInteger", error) from None
+
+    def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
+        """fmi2SetBoolean."""
+        try:
+            self._set("Boolean", references, values)
+        except BaseException as error:
+            raise self._failure("fmi2SetBoolean", error) from None
+
+    def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
+        """fmi2SetString: there are no String variables."""
+        try:
+            self._set("String", references, values)
+        except BaseException as error:
+            raise self._failure("fmi2SetString", error) from None
+
+    def _get(self, kind: str, references: Sequence[int]) -> list[Any]:
+        if self._stale:
+            self._refresh()
+        readable = self._layout.readable.get(kind, frozenset())
+        if not readable.issuperset(references):
+            raise _unknown(kind, set(references) - readable)
+        values = self._values
+        return [values[r] for r in references]
+
+    def _set(self, kind: str, references: Sequence[int], values: Sequence[Any]) -> None:
+        layout = self._layout
+        readable = layout.readable.get(kind, frozenset())
+        if not readable.issuperset(references):
+            raise _unknown(kind, set(references) - readable)
+        for r in references:
+            causality = layout.settable.get(r)
+            if causality is None or (self._started and causality == "parameter"):
+                raise self._not_settable(r)
+        stored = self._values
+        for r, value in zip(references, values, strict=True):
+            stored[r] = value
+        self._inputs = None
+        if layout.follows_inputs or not self._started:
+            self._stale = True
+
+    def _member(self, reference: int, value: int) -> int:
+        enumeration = self._layout.enumerations.get(reference)
+        if enumeration is None:
+            return value
+        try:
+            return enumeration(value)
+        except ValueError:
+            items = ", ".join(f"{int(item)} {item.name.lower()}" for item in enumeration)
+            name = self._layout.variables[reference].name
+            raise Refused(f"{name} = {value} is no item of its enumeration ({items})") from None
+
+    def _not_settable(self, reference: int) -> Refused:
+        name = self._layout.variables[reference].name
+        causality = self._layout.settable.get(reference)
+        if causality == "parameter":
+            return Refused(f"{name} is a fixed parameter: it cannot be set after the initialization")
+        return Refused(f"{name} is neither parameter nor input: it cannot be set")
+
+    # -- FMU state: pythonfmu calls the two conversions on the class -----------------------------------------
+
+    def _get_fmu_state(self) -> Snapshot:
+        return Snapshot(tuple(self._values), self._state, self._started, self._stale)
+
+    def _set_fmu_state(self, snapshot: Snapshot) -> None:
+        try:
+            if not isinstance(snapshot, Snapshot):
+                raise Refused("this is no state of this FMU")
+            self._values = list(snapshot.values)
+            self._state = snapshot.state
+            self._started = snapshot.started
+            self._stale = snapshot.stale
+            self._inputs = None
+            self._parameters = self._derive_parameters()
+        except BaseException as error:
+            raise self._failure("fmi2SetFMUstate", error) from None
+
+    @classmethod
+    def _fmu_state_to_bytes(cls, snapshot: Snapshot) -> bytes:
+        try:
+            return cls._stamp() + pickle.dumps(tuple(snapshot), protocol=4)
+        except BaseException as error:
+            raise cls._class_failure("fmi2SerializeFMUstate", error) from None
+
+    @classmethod
+    def _fmu_state_from_bytes(cls, data: bytes) -> Snapshot:
+        try:
+            stamp = cls._stamp()
+            if not data.startswith(stamp):
+                found = data[: len(stamp)].partition(b"\n")[0].decode("ascii", "replace")
+                raise Refused(f"these bytes are a state of {found!r}, this FMU is {cls.identity!r}")
+            return Snapshot(*_Unpickler(io.BytesIO(data[len(stamp) :])).load())
+        except BaseException as error:
+            raise cls._class_failure("fmi2DeSerializeFMUstate", error) from None
+
+    @classmethod
+    def _stamp(cls) -> bytes:
+        return f"{cls.identity}\n".encode("ascii")
+
+    # -- failures ------------------------------------------------------------------------------------------
+
+    def _failure(self, call: str, error: BaseException) -> SlaveError:
+        _hold(type(self), self, self.log_queue)
+        return SlaveError(_message(call, error))
+
+    @classmethod
+    def _class_failure(cls, call: str, error: BaseException) -> SlaveError:
+        """Which instance made the call is unknown here: hold all. The others leak, the lesser evil."""
+        _hold(cls)
+        for instance in list(cls._living):
+            _hold(instance, instance.log_queue)
+        return SlaveError(_message(call, error))
+
+
+def _hold(*objects: object) -> None:
+    """Take the references that the native library will give up twice (module docstring)."""
+    for item in objects:
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(item))
+
+
+def _unknown(kind: str, references: set[int]) -> Refused:
+    return Refused(
+        f"there is no {kind} variable with value reference {', '.join(map(str, sorted(references)))}"
+    )
+
+
+def _misfit(layout: Layout, values: tuple[Any, ...]) -> Refused:
+    """Which of the outputs has a value that its FMI type cannot hold."""
+    outputs = layout.variables[layout.outputs]
+    for v, convert, value in zip(outputs, layout.converters, values, strict=True):
+        try:
+            convert(value)
+        except (TypeError, ValueError, OverflowError):
+            return Refused(f"output {v.name} is {value!r}, which is no {v.type}")
+    return Refused(f"the model gave {len(values)} outputs instead of {len(outputs)}")
+
+
+def _message(call: str, error: BaseException) -> str:
+    """One line for the importer's log: call, exception and place; safe for printf and UTF-8."""
+    try:
+        text = str(error)
+    except Exception:
+        text = "(its text cannot be shown: str() of it fails)"
+    if not isinstance(error, Refused):
+        text = f"{type(error).__name__}: {text}{_place(error)}"
+    line = f"{call}: {text}".replace("%", "%%").replace("\0", "\\0")
+    return line.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def _place(error: BaseException) -> str:
+    frames = traceback.extract_tb(error.__traceback__)
+    if not frames:
+        return ""
+    file = os.path.abspath(frames[-1].filename)
+    folder = os.path.abspath(_FOLDER) + os.sep
+    return f" ({file.removeprefix(folder)}:{frames[-1].lineno})"
+
+
+class _Unpickler(pickle.Unpickler):
+    """Loads records and enumerations of this FMU's own package and numpy arrays, nothing that could act."""
+
+    _NUMPY: ClassVar = {"_reconstruct", "_frombuffer", "scalar", "ndarray", "dtype"}
+
+    def find_class(self, module: str, name: str) -> Any:
+        if module.split(".")[0] == "numpy" and name in self._NUMPY:
+            return super().find_class(module, name)
+        if module.split(".")[0] == _PACKAGE:
+            found = super().find_class(module, name)
+            if isinstance(found, type) and found.__module__ == module and _is_data(found):
+                return found
+        raise Refused(f"a state of this FMU does not contain {module}.{name}")
+
+
+def _is_data(cls: type) -> bool:
+    return hasattr(cls, "__dataclass_fields__") or issubclass(cls, enum.Enum)
