@@ -53,10 +53,10 @@ class _Turn:
         self.substeps = plan.substeps
         outputs = [b for b in plan.blocks if b.kind != "input"]
         self.continuous = [(b.slot, b.latest, len(b.variables)) for b in outputs if b.kind == "continuous"]
-        self.fresh = [b.latest if b.kind == "continuous" else b.slot for b in outputs]
-        self.checks = [
-            (run.memory[f : f + len(b.variables)], np.zeros(len(b.variables)), b)
-            for f, b in zip(self.fresh, outputs, strict=True)
+        self.read = [
+            (run.memory[f : f + len(b.variables)], b)
+            for b in outputs
+            for f in [b.latest if b.kind == "continuous" else b.slot]
         ]
         self.has_feedthrough = any(b.feedthrough for b in outputs)
         self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
@@ -67,9 +67,9 @@ class _Turn:
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
-        for values, zeros, block in self.checks:
-            total = values.dot(zeros)  # 0 unless a value is NaN or infinite, and the fastest way to see it
-            if total != total:
+        for values, block in self.read:
+            # NaN and infinity survive the sum of squares: the fastest way to see one; huge values follow on
+            if not math.isfinite(values.dot(values)) and not np.isfinite(values).all():
                 i = int(np.argmin(np.isfinite(values)))
                 v = block.variables[i]
                 unit = f" {v.unit}" if v.unit else ""

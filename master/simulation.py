@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.plan import Plan
 from ..cosim.resolve import Options, checked, participating, resolve
@@ -185,6 +186,21 @@ class Simulation:
             data=rows[:, columns],
             manifest=self.manifest(),
         )
+
+    def write_can_log(self, path: str | Path) -> int:
+        """Write the frames that crossed the buses; the suffix (.log candump, .blf, .asc) names the format.
+
+        Returns their number. Raises ConfigError when the run did not keep them (`log_frames`) or for
+        another suffix, OSError where the file cannot be written.
+        """
+        if not self.log_frames:
+            raise ConfigError("the frames of this run were not kept; ask for log_frames before the run")
+        experiment = self.plan.experiment
+        logs = [
+            BusLog(bus, [s.channel.log for s in self._engine.senders if s.plan.bus == bus])
+            for bus in self.system.file.buses
+        ]
+        return write_can_log(path, logs, experiment.step_size, experiment.start_time)
 
     def manifest(self) -> dict[str, Any]:
         """What made these results: versions, FMU digests, parameters, settings and counts (JSON-able)."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan import Block, Plan, UnitPlan
-from evcosim.cosim.resolve import Options, resolve
+from evcosim.cosim.resolve import Options, participating, resolve
 from evcosim.cosim.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system import System, SystemFile
 from evcosim.master.algorithm import Engine
@@ -57,6 +57,7 @@ class MockUnit:
         self.log.append("enter")
 
     def exit_initialization(self) -> None:
+        self._through(self.values)
         self.log.append("exit")
 
     def get(self, name: str) -> Value:
@@ -118,7 +119,8 @@ def plan_of(
     file = SystemFile.model_validate(content)
     described = System(Path("mocks.toml"), file)
     driven = Scenario("test", Path("test.toml"), ScenarioFile.model_validate(scenario or {}))
-    return resolve(described, driven, {u.name: u.interface for u in units}, Options(**options))
+    taking_part = participating(described, driven)
+    return resolve(described, driven, {u.name: u.interface for u in units if u.name in taking_part}, Options(**options))
 
 
 def started(units: list[MockUnit], plan: Plan) -> Engine:
