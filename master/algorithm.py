@@ -56,6 +56,7 @@ class _Turn:
         self.read = [
             (run.memory[f : f + len(b.variables)], b)
             for b in outputs
+            if b.type == "Real"
             for f in [b.latest if b.kind == "continuous" else b.slot]
         ]
         self.has_feedthrough = any(b.feedthrough for b in outputs)

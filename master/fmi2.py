@@ -25,8 +25,6 @@ from .unit import UnitError, Value
 _WARNING = 1
 _C_TYPES: dict[str, Any] = {"Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int}
 _FMI_TYPE = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
-_COMPONENT, _SIZE, _FMI_BOOLEAN = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
-
 Call = Callable[[], None]
 
 
@@ -74,13 +72,17 @@ class Fmi2Unit:
             raise FmuError(
                 f"{self.fmu.path}: cannot be instantiated" + (f":\n{said}" if said else "")
             ) from error
-        self._component = _COMPONENT(self._slave.component)
-        self._do_step = self._function(
-            "fmi2DoStep", _COMPONENT, ctypes.c_double, ctypes.c_double, _FMI_BOOLEAN
+        self._component = ctypes.c_void_p(self._slave.component)
+        self._do_step = self._function("fmi2DoStep")
+        self._time, self._step_size, self._no_set_state = (
+            ctypes.c_double(),
+            ctypes.c_double(),
+            ctypes.c_int(1),
         )
 
-    def _function(self, name: str, *argument_types: Any) -> Any:
-        """The function of the library, with argument types of our own (FMPy keeps others on its objects).
+    def _function(self, name: str) -> Any:
+        """A function of the library without argument types: what is passed must be ctypes objects, which are
+        then passed on as they are, in a third of the time (FMPy's own function objects have types).
 
         The calls into a pythonfmu FMU come back into this interpreter at once: keeping the interpreter
         lock over them saves handing it over twice. Any other library is called without the lock.
@@ -90,7 +92,6 @@ class Fmi2Unit:
             ctypes.PyDLL(None, handle=handle) if self.fmu.holds_python else ctypes.CDLL(None, handle=handle)
         )
         function = library[name]
-        function.argtypes = argument_types
         function.restype = ctypes.c_int
         return function
 
@@ -107,10 +108,8 @@ class Fmi2Unit:
             else:
                 outputs.append(self._transfer("Get", memory, block, block.latest))
                 if block.feedthrough:
-                    through += [
-                        self._transfer("Get", memory, block, slot, block.feedthrough)
-                        for slot in (block.slot, block.latest)
-                    ]
+                    through.append(self._transfer("Get", memory, block, block.latest, block.feedthrough))
+                    through.append(_copy(memory, block.latest, block.slot, block.feedthrough))
         self._set_inputs, self._get_feedthrough, self._get_outputs = (
             tuple(inputs),
             tuple(through),
@@ -126,13 +125,13 @@ class Fmi2Unit:
         references = (ctypes.c_uint * n)(*(self._references[name] for name in names))
         c_type = _C_TYPES[block.type]
         name = f"fmi2{direction}{block.type}"
-        function = self._function(name, _COMPONENT, ctypes.c_void_p, _SIZE, ctypes.c_void_p)
+        function = self._function(name)
         part = memory[slot : slot + n]
         values = (c_type * n).from_buffer(part.data) if block.type == "Real" else (c_type * n)()
-        arguments = (self._component, references, _SIZE(n), values)
+        component, size = self._component, ctypes.c_size_t(n)
 
         def call() -> None:
-            status = function(*arguments)
+            status = function(component, references, size, values)
             if status:
                 self._judge(name, status)
 
@@ -195,7 +194,8 @@ class Fmi2Unit:
 
     def step(self, time: float, step_size: float) -> None:
         """See `unit.Unit`."""
-        status = self._do_step(self._component, time, step_size, 1)
+        self._time.value, self._step_size.value = time, step_size
+        status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
         if status:
             self._judge("fmi2DoStep", status)
 
@@ -247,3 +247,13 @@ class Fmi2Unit:
         raise UnitError(
             f"unit '{self.name}': {what} returned {word} ({status})" + (f"\n{said}" if said else "")
         )
+
+
+def _copy(memory: NDArray[np.float64], source: int, target: int, count: int) -> Call:
+    view = memoryview(memory)
+    values, place = view[source : source + count], slice(target, target + count)
+
+    def copy() -> None:
+        view[place] = values
+
+    return copy
