@@ -13,9 +13,9 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import heapq
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from .channel import RawLog
 from .dbc import Message, Signal

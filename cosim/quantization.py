@@ -33,7 +33,7 @@ Rounding = Literal["nearest", "half_even", "truncate"]
 Overflow = Literal["saturate", "wrap", "error"]
 Kind = Literal["integer", "exact", "float32", "float64"]
 
-_EXACT = 2.0**51  # below this magnitude every rounding of the generated code is exact in doubles
+_EXACT = 2.0**50  # up to here every rounding of the generated code is exact in doubles, with a margin
 
 
 class ChannelError(RunError):
@@ -79,16 +79,13 @@ def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int 
     """
     if math.isnan(value):
         raise ChannelError(signal.name, value, "the value is NaN")
-    x = value if settings.overflow == "wrap" else _saturate(signal, value)  # (1)
-    if settings.overflow == "error" and x != value:
-        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_limits(signal)}")
+    wraps = settings.overflow == "wrap"
+    x = value if wraps else _saturate(signal, value)  # (1)
     n = quantize(signal, settings.rounding, x)  # (2), (3)
-    if settings.overflow == "wrap":
-        raw = _wrap(signal, n, value)  # (4)
-    else:
-        raw = _clip(signal, n)  # (4)
-        if settings.overflow == "error" and raw != (_to_float(signal, n) if signal.is_float else n):
-            raise ChannelError(signal.name, value, f"the value {value!r} is outside {_limits(signal)}")
+    low, high = signal.raw_range
+    if settings.overflow == "error" and (x != value or not low <= n <= high):
+        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_limits(signal)}")
+    raw = _wrap(signal, n, value) if wraps else _clip(signal, n)  # (4)
     return raw, decode(signal, raw)  # (5)
 
 
@@ -162,7 +159,7 @@ class SignalOperation:
     A value with `low` <= x <= `high` is sent as raw = rounding((x - offset) / scale) and received as
     raw * scale + offset. Any other value saturates (or wraps, or is an error: `overflow`): `raw_above` is
     sent for one above `high`, `raw_below` for one below `low` (both None unless overflow is "saturate").
-    `kind` says what arithmetic does that right: "integer": doubles, since |raw| <= 2**51; "exact": integers
+    `kind` says what arithmetic does that right: "integer": doubles, since |raw| <= 2**50; "exact": integers
     of any size (`quantize` and `decode`); "float32", "float64": no rounding, but to that format.
     """
 
