@@ -96,7 +96,7 @@ def build_model(
     version: str = "",
     license: str = "",
 ) -> Path:
-    """Write `folder/<class name>.fmu` of a model in a file of one's own, a subclass of evcosim.models.base.Model.
+    """Write `folder/<class name>.fmu` of a model of one's own, a subclass of evcosim.models.base.Model.
 
     What of the user's files is embedded says `sources`; `version` and `license` are those of the model, and
     are left out where empty. Raises ValueError for sources that cannot be embedded and for unknown units,

@@ -73,8 +73,8 @@ def describe(model: type[Model], origin: Origin, experiment: Experiment) -> byte
         listed.append(_scalar_variable(entry, model.sampled))
     _structure(root, model, variables)
     ElementTree.indent(root)
-    text: bytes = ElementTree.tostring(root, "utf-8")
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + text + b"\n"
+    content: bytes = ElementTree.tostring(root, "utf-8")
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + content + b"\n"
 
 
 def headline(described: type) -> str:

@@ -1,0 +1,83 @@
+"""A model that raises ends its simulation, with a message, and never its importer."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+IMPORTER = Path(__file__).with_name("failing_importer.py")
+FATAL = "log 4  'Fatal py exception encountered: [{call}] PyObject_CallMethod\\nfmi2{text}"
+
+
+@pytest.mark.parametrize(
+    ("way", "expected"),
+    [
+        (
+            "in_step",
+            "log 3 logStatusError 'fmi2DoStep at t = 0.5 s: ZeroDivisionError: no 100 % step (failing.py:",
+        ),
+        ("in_step", "status 2\n"),
+        ("in_step", "terminated 1\n"),
+        ("interrupt", "log 3 logStatusError 'fmi2DoStep at t = 0.5 s: KeyboardInterrupt:  (failing.py:"),
+        (
+            "in_initial",
+            FATAL.format(
+                call="getReal",
+                text="GetReal: RuntimeError: 100 % sure %s %n \u00fc \\\\udc80 \\\\0 (failing.py:",
+            ),
+        ),
+        (
+            "out_of_range",
+            FATAL.format(
+                call="exitInitializationMode",
+                text="ExitInitializationMode: throttle = 120.0 % is above its maximum 100.0 %'",
+            ),
+        ),
+        ("in_outputs", FATAL.format(call="getReal", text="GetReal: KeyError: ").replace("'F", '"F')),
+        ("in_outputs", "status 2\n"),
+        (
+            "no_number",
+            "log 3 logStatusError 'fmi2DoStep at t = 0.5 s: output total is None, which is no Real'",
+        ),
+        ("setting", FATAL.format(call="setReal", text="SetReal: throttle is a fixed parameter")),
+        ("state", "status 4\n"),
+    ],
+)
+def test_the_importer_lives_and_knows_why(toy, tmp_path, way, expected):
+    arguments = [toy("Failing").path, tmp_path / "unpacked", way]
+    done = subprocess.run(
+        [sys.executable, IMPORTER, *arguments], capture_output=True, text=True, timeout=60, encoding="utf-8"
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1] == "alive"
+    assert done.stdout.count("after reset [2.0]\n") == 2
+    assert expected in done.stdout
+    assert done.stderr == ""
+
+
+def test_a_thousand_instances_in_one_process(toy, tmp_path):
+    script = f"""
+import fmpy, gc, sys
+from fmpy.fmi2 import FMU2Slave
+folder = {str(tmp_path / "unpacked")!r}
+fmpy.extract({str(toy("Failing").path)!r}, folder)
+path = list(sys.path)
+for k in range(1000):
+    unit = FMU2Slave(guid="", unzipDirectory=folder, modelIdentifier="Failing", instanceName=f"i{{k}}")
+    unit.instantiate()
+    unit.setupExperiment()
+    unit.enterInitializationMode()
+    unit.exitInitializationMode()
+    unit.fmi2FreeInstance(unit.component)
+gc.collect()
+from collections import Counter
+living = Counter(type(o).__name__ for o in gc.get_objects())
+assert living["Failing"] == 0, living["Failing"]
+assert sys.path == path
+print("alive")
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "alive\n", "")

@@ -1,0 +1,3 @@
+"""A module beside the toy, embedded with it."""
+
+SCALE = 0.7
