@@ -1,0 +1,313 @@
+"""BoundController: keeps a scooter below a speed bound and an acceleration bound (the ECU).
+
+Source: Dardanelli et al., "Speed and acceleration controllers for a light electric two-wheeled vehicle",
+IEEE CDC-ECC 2011, section IV. Speeds are in km/h and throttles in %, as on the bus; T_s = dt.
+
+Observer of the speed from the quantized measurement v_m and the applied throttle g_e:
+
+    x' = -x/T + (mu/T) g_e + G1 (v_m - v_e) + G2 eta,  eta' = v_m - v_e,  v_e = x                    (5)
+    s^2 + (G1 + 1/T) s + G2 = s^2 + 2 zeta w_o s + w_o^2
+    a_e[k] = (v_e[k] - v_e[k-1])/(3.6 T_s)
+    v constant => |v_e - v| <= 0.5 km/h in the limit; not in transients                          (6)-(7)
+
+Reference of the acceleration controller, t_0 its entry:
+
+    v_ref = v_e(t_0) + 3.6 * integral of a_b dt from t_0 in ACCELERATION, else v_ref = v_e           (8)
+
+The factor 3.6 (v in km/h, a in m/s2) is missing in the paper. R_v tracks the speed bound v_b in its place.
+
+    R_v, R_a = K_p (1 + 1/(s T_i)),  K_p = w_c T/mu                                             (9)-(10)
+
+The paper draws anti-windup and bumpless switching in its Fig. 7; read as one law for both controllers, with
+the indicator s = 1 in the state of the controller and 0 elsewhere:
+
+    e = s (r - v_e),  g_f = s (r - r(t_0))/mu,  u = I + K_p e + g_f            r = v_ref or v_b     (C1)
+    I' = (K_p/T_i) e + (g_e - u)/T_t                                always                          (C2)
+
+Where the controller works inside 0..100 %, g_e = u and (C2) is the integral of (9)-(10); where the applied
+throttle is clipped or another's, I tracks it: anti-windup and bumpless entry in one. Once a sample, (C2) is
+I + (T_s K_p/T_i) e + min(1, T_s/T_t) (g_e - u).
+
+Supervisor, once a sample; g_a and g_v are the candidates u of R_a and R_v, g_d the rider's throttle:
+
+    DRIVER        g_e = g_d:   v_e >= v_b and g_v <= g_d                    -> VELOCITY
+                               a_e >= a_b and g_a <= g_d and v_e < v_b      -> ACCELERATION         (C3)
+    ACCELERATION  g_e = g_a:   v_e >= v_b and g_a <= g_d                    -> VELOCITY
+                               g_a > g_d                                    -> DRIVER               (C4)
+    VELOCITY      g_e = g_v:   g_v > g_d                                    -> DRIVER               (C5)
+
+The controller of a new state is evaluated once more, with s = 1. Throttles are compared to 1e-9 %: a
+tracking integrator nears the rider's constant throttle but need not reach its last bit. Optionally DRIVER is
+kept for `dwell_time` after each entry (the paper's remark against frequent switching).
+
+published: mu = 0.46 km/h per %, T from the pole at 0.03 Hz, 100 Hz, w_c = 2 pi 0.3 rad/s of R_v, the
+clipping of g_e to 0..100 %.
+chosen: w_o = 1.2 rad/s, zeta = 1, w_c = 1.5 rad/s of R_a ("slightly lower" in the paper), T_i = T, T_t = 10
+ms, no dwell time.
+
+The step at t_k reads v_e[k] from the observer, decides g_e[k], and then moves the observer on to t_k+1 by the
+exact solution of (5) for v_m[k] and g_e[k] held. At the start the observer is in equilibrium at (v_m, g_e),
+so that v_e = v_m, and the state is DRIVER, with its dwell time over.
+
+`use_observer = false` is the paper's comparison: v_m in place of v_e, and as a_e its difference through a
+first-order low-pass of 0.5 s (chosen). `enabled = false` applies the rider's throttle at all times.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from functools import cached_property, lru_cache
+from math import cos, cosh, exp, pi, sin, sinh, sqrt
+from typing import NamedTuple
+
+from .base import Model, record, var
+
+KMH = 3.6  # km/h in 1 m/s
+SAME_THROTTLE = 1e-9  # %, see the supervisor above
+SAME_TIME = 1e-9  # s, because a time counted down in steps ends near 0
+
+
+class ControllerState(IntEnum):
+    """Who commands the throttle."""
+
+    DRIVER = 0
+    ACCELERATION = 1
+    VELOCITY = 2
+
+
+DRIVER, ACCELERATION, VELOCITY = ControllerState
+
+
+class BoundController(Model):
+    """The rider's throttle in, the applied throttle out: lower where a bound would be exceeded."""
+
+    sampled = True
+    initial_inputs = ("throttle_request", "speed_measured")
+
+    @record
+    class Parameters:
+        """Model of the vehicle, tuning and options; the docstring of the module says which are published."""
+
+        gain: float = var(0.46, "km/(h.%)", "Speed per throttle of the vehicle (mu)", min=1e-6)
+        time_constant: float = var(1.0 / (2.0 * pi * 0.03), "s", "Time constant of the vehicle (T)", min=1e-3)
+        observer_bandwidth: float = var(1.2, "rad/s", "Natural frequency of the observer (w_o)", min=1e-3)
+        observer_damping: float = var(1.0, "1", "Damping of the observer (zeta)", min=0.1)
+        speed_bandwidth: float = var(0.6 * pi, "rad/s", "Crossover frequency of R_v (w_c)", min=0.0)
+        acceleration_bandwidth: float = var(1.5, "rad/s", "Crossover frequency of R_a (w_c)", min=0.0)
+        integral_time: float = var(
+            1.0 / (2.0 * pi * 0.03), "s", "Integral time of R_v and R_a (T_i)", min=1e-3
+        )
+        tracking_time: float = var(
+            0.01, "s", "Time in which an idle or clipped integral follows (T_t)", min=1e-6
+        )
+        dwell_time: float = var(0.0, "s", "Shortest stay in the state driver", min=0.0)
+        filter_time: float = var(0.5, "s", "Low-pass of the acceleration without observer", min=1e-3)
+        enabled: bool = var(True, "", "Whether the bounds act; if not, the rider's throttle is applied")
+        use_observer: bool = var(True, "", "Whether the observer gives the speed; if not, the measurement")
+
+        @cached_property
+        def observer_gain(self) -> float:
+            """G1 of (5) [1/s]."""
+            return 2.0 * self.observer_damping * self.observer_bandwidth - 1.0 / self.time_constant
+
+        @cached_property
+        def speed_gain(self) -> float:
+            """K_p of R_v [% per km/h], (9)."""
+            return self.speed_bandwidth * self.time_constant / self.gain
+
+        @cached_property
+        def acceleration_gain(self) -> float:
+            """K_p of R_a [% per km/h], (10)."""
+            return self.acceleration_bandwidth * self.time_constant / self.gain
+
+    @record
+    class Inputs:
+        """The rider, the measurement, and the bounds."""
+
+        throttle_request: float = var(0.0, "%", "Throttle of the rider (g_d), clipped to 0..100 %")
+        speed_measured: float = var(0.0, "km/h", "Measured speed (v_m)", nominal=10.0)
+        speed_bound: float = var(30.0, "km/h", "Speed bound (v_b)", nominal=10.0)
+        acceleration_bound: float = var(1.0, "m/s2", "Acceleration bound (a_b)")
+
+    @record
+    class State:
+        """Observer and integrals at the next sample, and what this sample shows."""
+
+        observer_speed: float = var(0.0, "km/h", "Speed of the observer at the next sample (x)")
+        observer_offset: float = var(0.0, "km.s/h", "Integral of v_m - v_e at the next sample (eta)")
+        speed_integral: float = var(0.0, "%", "Integral of R_v at the next sample (I)")
+        acceleration_integral: float = var(0.0, "%", "Integral of R_a at the next sample (I)")
+        speed_estimate: float = var(0.0, "km/h", "Estimated speed (v_e)")
+        acceleration_estimate: float = var(0.0, "m/s2", "Estimated acceleration (a_e)")
+        state: ControllerState = var(DRIVER, "", "Who commands the throttle")
+        throttle: float = var(0.0, "%", "Applied throttle (g_e)")
+        reference: float = var(0.0, "km/h", "Reference of the active controller (r), or the speed estimate")
+        entry_reference: float = var(0.0, "km/h", "Reference at the entry of the state, r(t_0)")
+        dwell_left: float = var(0.0, "s", "Time for which driver is kept")
+
+    @record
+    class Outputs:
+        """The applied throttle and what explains it."""
+
+        throttle: float = var(
+            0.0, "%", "Applied throttle (g_e)", min=0.0, max=100.0, initially=("throttle_request",)
+        )
+        state: ControllerState = var(DRIVER, "", "Who commands the throttle", initially=())
+        speed_estimate: float = var(
+            0.0, "km/h", "Estimated speed (v_e)", nominal=10.0, initially=("speed_measured",)
+        )
+        acceleration_estimate: float = var(0.0, "m/s2", "Estimated acceleration (a_e)", initially=())
+        speed_reference: float = var(
+            0.0,
+            "km/h",
+            "What the active controller tracks: v_ref, the speed bound, or in driver the estimate",
+            nominal=10.0,
+            initially=("speed_measured",),
+        )
+
+    @staticmethod
+    def initial(p: BoundController.Parameters, u: BoundController.Inputs) -> BoundController.State:
+        """DRIVER, with the observer in equilibrium at the measured speed and the rider's throttle."""
+        g, v = _clip(u.throttle_request), u.speed_measured
+        return BoundController.State(v, _offset(p, v, g), g, g, v, 0.0, DRIVER, g, v, v, 0.0)
+
+    @staticmethod
+    def step(
+        p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
+    ) -> BoundController.State:
+        """The sample at t_k: estimate, decide, apply, then predict the observer at t_k + dt [s]."""
+        g_d, v_b, a_b = _clip(u.throttle_request), u.speed_bound, u.acceleration_bound
+        v_e, a_e = _estimate(p, x, u, dt)
+        active = x.state
+        entry = x.entry_reference
+        i_a, i_v = x.acceleration_integral, x.speed_integral
+
+        # The candidates of this sample; an idle controller offers its integral.
+        e_a = e_v = 0.0
+        g_a, g_v = i_a, i_v
+        reference = v_e
+        if active == ACCELERATION:
+            reference = x.reference + KMH * a_b * dt  # (8)
+            e_a = reference - v_e
+            g_a = i_a + p.acceleration_gain * e_a + (reference - entry) / p.gain  # (C1)
+        elif active == VELOCITY:
+            reference = v_b
+            e_v = v_b - v_e
+            g_v = i_v + p.speed_gain * e_v + (v_b - entry) / p.gain  # (C1)
+
+        following = _supervise(p, x, (v_e, a_e), (v_b, a_b), (g_a, g_v, g_d))
+        if following != active:
+            # Who leaves is idle from now on; who enters starts at t_0 = t_k, where g_f = 0.
+            e_a = e_v = 0.0
+            g_a, g_v = i_a, i_v
+            reference = v_e
+            if following == VELOCITY:
+                reference = v_b
+                e_v = v_b - v_e
+                g_v = i_v + p.speed_gain * e_v  # (C1)
+            entry = reference
+
+        g_e = g_d if following == DRIVER else _clip(g_a if following == ACCELERATION else g_v)
+        follow = min(1.0, dt / p.tracking_time)
+        i_a += dt * p.acceleration_gain / p.integral_time * e_a + follow * (g_e - g_a)  # (C2)
+        i_v += dt * p.speed_gain / p.integral_time * e_v + follow * (g_e - g_v)  # (C2)
+        speed, offset = _predict(p, x, u.speed_measured, g_e, dt)
+        dwell = max(0.0, x.dwell_left - dt)
+        if following == DRIVER and active != DRIVER:
+            dwell = p.dwell_time
+        return BoundController.State(
+            speed, offset, i_v, i_a, v_e, a_e, following, g_e, reference, entry, dwell
+        )
+
+    @staticmethod
+    def outputs(p: BoundController.Parameters, x: BoundController.State) -> BoundController.Outputs:
+        """What the last sample decided."""
+        return BoundController.Outputs(
+            x.throttle, x.state, x.speed_estimate, x.acceleration_estimate, x.reference
+        )
+
+
+def _clip(throttle: float) -> float:
+    return min(100.0, max(0.0, throttle))
+
+
+def _estimate(
+    p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
+) -> tuple[float, float]:
+    """v_e [km/h] and a_e [m/s2] of this sample."""
+    if p.use_observer:
+        v_e = x.observer_speed
+        return v_e, (v_e - x.speed_estimate) / (KMH * dt)
+    v_e = u.speed_measured
+    difference = (v_e - x.speed_estimate) / (KMH * dt)
+    passed = 1.0 - exp(-dt / p.filter_time)
+    return v_e, x.acceleration_estimate + passed * (difference - x.acceleration_estimate)
+
+
+def _supervise(
+    p: BoundController.Parameters,
+    x: BoundController.State,
+    estimate: tuple[float, float],
+    bound: tuple[float, float],
+    throttle: tuple[float, float, float],
+) -> ControllerState:
+    """The state of this sample, from (v_e, a_e), (v_b, a_b) and the candidates (g_a, g_v, g_d)."""
+    if not p.enabled:
+        return DRIVER
+    v_e, a_e = estimate
+    v_b, a_b = bound
+    g_a, g_v, g_d = throttle
+    g_d += SAME_THROTTLE
+    if x.state == DRIVER:  # (C3)
+        if x.dwell_left > SAME_TIME:
+            return DRIVER
+        if v_e >= v_b:
+            return VELOCITY if g_v <= g_d else DRIVER
+        return ACCELERATION if a_e >= a_b and g_a <= g_d else DRIVER
+    if x.state == ACCELERATION:  # (C4)
+        if g_a > g_d:
+            return DRIVER
+        return VELOCITY if v_e >= v_b else ACCELERATION
+    return DRIVER if g_v > g_d else VELOCITY  # (C5)
+
+
+class _Transition(NamedTuple):
+    """How the observer's distance from its equilibrium (x, eta) decays over one step."""
+
+    speed_speed: float
+    speed_offset: float
+    offset_speed: float
+    offset_offset: float
+
+
+@lru_cache(maxsize=64)
+def _transition(w: float, zeta: float, dt: float) -> _Transition:
+    """exp(A dt) of (5), A = [[-2 zeta w, w^2], [-1, 0]]."""
+    decay = exp(-zeta * w * dt)
+    turn = w * sqrt(abs(1.0 - zeta * zeta))
+    if turn * dt < 1e-9:  # critically damped
+        c, s = 1.0, dt
+    elif zeta < 1.0:
+        c, s = cos(turn * dt), sin(turn * dt) / turn
+    else:
+        c, s = cosh(turn * dt), sinh(turn * dt) / turn
+    # exp(A dt) = decay (c + s (A + zeta w)), because (A + zeta w)^2 = w^2 (zeta^2 - 1).
+    return _Transition(decay * (c - s * zeta * w), decay * s * w * w, -decay * s, decay * (c + s * zeta * w))
+
+
+def _offset(p: BoundController.Parameters, v_m: float, g_e: float) -> float:
+    """eta of the equilibrium of (5) at a constant v_m and g_e; its speed is v_m."""
+    return (v_m - p.gain * g_e) / (p.time_constant * p.observer_bandwidth**2)
+
+
+def _predict(
+    p: BoundController.Parameters, x: BoundController.State, v_m: float, g_e: float, dt: float
+) -> tuple[float, float]:
+    """(5) after dt of constant v_m and g_e: it decays to their equilibrium."""
+    phi = _transition(p.observer_bandwidth, p.observer_damping, dt)
+    rest = _offset(p, v_m, g_e)
+    dx, de = x.observer_speed - v_m, x.observer_offset - rest
+    return (
+        v_m + phi.speed_speed * dx + phi.speed_offset * de,
+        rest + phi.offset_speed * dx + phi.offset_offset * de,
+    )
