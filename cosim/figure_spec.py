@@ -1,0 +1,84 @@
+"""What a figure shows: the specification that stands in system and scenario files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from . import units
+from .errors import ConfigError, nearest
+from .files import FileModel
+from .results import ResultVariable
+
+
+class SignalSpec(FileModel):
+    """One line: a variable `unit.variable`, its text in the legend, and how it is drawn.
+
+    `step` draws each value held until the next; by default so are inputs and sampled outputs.
+    `weight` is the width of the line in points.
+    """
+
+    name: str
+    label: str | None = None
+    style: Literal["solid", "dashed", "dotted", "dashdot"] | None = None
+    weight: float | None = Field(default=None, gt=0.0, le=10.0)
+    step: bool | None = None
+
+
+def _from_name(value: Any) -> Any:
+    return {"name": value} if isinstance(value, str) else value
+
+
+class PanelSpec(FileModel):
+    """One panel: what its axis says, the unit that all its signals are converted to, and the signals.
+
+    A signal is a table or a variable's name alone. `limits` are the ends of the axis, in `unit`.
+    """
+
+    label: str = ""
+    unit: str = ""
+    signals: list[Annotated[SignalSpec, BeforeValidator(_from_name)]] = Field(min_length=1)
+    limits: tuple[float, float] | None = None
+
+    @model_validator(mode="after")
+    def _limits_rise(self) -> PanelSpec:
+        if self.limits is not None and not self.limits[0] < self.limits[1]:
+            raise ValueError("limits: the first must be below the second")
+        return self
+
+
+class FigureSpec(FileModel):
+    """A figure: panels from top to bottom, the enumeration whose states shade them, a title and a note."""
+
+    title: str | None = None
+    shade: str | None = None
+    panels: list[PanelSpec] = Field(min_length=1)
+    note: str | None = None
+
+
+def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:
+    """Check that a figure can be drawn from these variables. Raises ConfigError naming `place`."""
+    for i, panel in enumerate(spec.panels, 1):
+        for signal in panel.signals:
+            here = f"{place}: panel {i}"
+            panel_conversion(_known(signal.name, variables, here), panel.unit, here)
+    if spec.shade is not None and not _known(spec.shade, variables, f"{place}: shade").items:
+        raise ConfigError(f"{place}: shade: '{spec.shade}' is not an enumeration, so it has no states")
+
+
+def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> ResultVariable:
+    if name not in variables:
+        raise ConfigError(f"{place}: no variable '{name}' is recorded{nearest(name, variables)}")
+    return variables[name]
+
+
+def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.Affine:
+    """From the variable's unit to the panel's. Without a declared unit nothing is converted."""
+    if variable.unit in ("", unit):
+        return units.Affine()
+    try:
+        return units.conversion(units.defined(variable.unit), units.defined(unit))
+    except ConfigError as error:
+        raise ConfigError(f"{place}: '{variable.name}' [{variable.unit}] in [{unit}]: {error}") from error

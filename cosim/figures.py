@@ -1,0 +1,375 @@
+"""Figures of results: stacked panels over one time axis, shaded by the states of an enumeration.
+
+What a figure shows is a `FigureSpec`, which stands in a system or scenario file or is made from the
+results (`default_spec`). Colors are those of Okabe and Ito (Color Universal Design, 2008), which color-blind
+readers tell apart; every signal of a panel also has a dash pattern and a width of its own, for print in
+black and white. matplotlib is used through its objects alone: no display, no global state, the user's
+matplotlibrc ignored, so that equal results give equal bytes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import itertools
+import math
+import re
+import textwrap
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import ConfigError
+from .figure_choice import MAX_PANELS, default_spec
+from .figure_spec import FigureSpec, PanelSpec, SignalSpec, check, panel_conversion
+from .results import Array, Results
+from .writing import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "FigureSpec",
+    "PanelSpec",
+    "SignalSpec",
+    "check",
+    "default_spec",
+    "draw",
+    "draw_comparison",
+    "pretty",
+    "save",
+    "thinned",
+    "write",
+]
+
+_COLORS = ("#0072B2", "#D55E00", "#009E73", "#000000", "#CC79A7", "#56B4E9", "#E69F00", "#7F7F7F")
+_DASHES: tuple[Any, ...] = (
+    "solid",
+    (0, (5, 1.5)),
+    (0, (1.2, 1.2)),
+    (0, (7, 1.5, 1.2, 1.5)),
+    (0, (2.5, 1.5)),
+    (0, (9, 3)),
+    (0, (4, 1.2, 1.2, 1.2, 1.2, 1.2)),
+    (0, (1.2, 3)),
+)
+_STYLES = {"solid": _DASHES[0], "dashed": _DASHES[1], "dotted": _DASHES[2], "dashdot": _DASHES[3]}
+# Backgrounds of the states: pale, of falling lightness, so that they differ in gray as well.
+_SHADES = ("#FFFFFF", "#FBE3C0", "#BBD7EE", "#F3CDE0", "#BFE3CF", "#D9D9D9")
+
+_WIDTH = 10.0  # inches; at _DPI 1440 pixels
+_DPI = 144
+_POINTS = 40_000  # of all lines together: about 1 MB of SVG
+_SPANS = 1000  # shaded stretches at most: one pixel each
+_MINUTES = 600.0  # s; a longer run has its time axis in minutes
+
+_RC = {
+    "font.size": 10.0,
+    "axes.labelsize": 10.0,
+    "axes.titlesize": 11.0,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "#B0B0B0",
+    "grid.linewidth": 0.5,
+    "grid.alpha": 0.6,
+    "legend.fontsize": 9.0,
+    "legend.frameon": False,
+    "legend.handlelength": 3.2,
+    "lines.dash_capstyle": "butt",
+    "figure.dpi": _DPI,
+    "savefig.dpi": _DPI,
+    "svg.hashsalt": "evcosim",
+}
+
+
+def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None = None) -> Figure:
+    """The figure of some results; without a spec, of `default_spec(results)`.
+
+    Raises ConfigError when the spec names a variable that is not there or measures something else.
+    """
+    spec = spec or default_spec(results)
+    check(spec, {v.name: v for v in results.variables}, "figure")
+    with _style():
+        figure, panels = _panels([_height(p) for p in spec.panels], title or spec.title or _title(results))
+        clock = _Clock.of(results)
+        limit = _points_per_line(sum(len(p.signals) for p in spec.panels))
+        if spec.shade is not None:
+            _draw_states(panels, results, spec.shade, clock)
+        for axes, panel in zip(panels, spec.panels, strict=True):
+            _draw_panel(axes, results, panel, clock, limit)
+        _finish(figure, panels, clock, spec.note)
+        return figure
+
+
+def draw_comparison(
+    a: Results, b: Results, names: Sequence[str] | None = None, labels: tuple[str, str] = ("a", "b")
+) -> Figure:
+    """Two runs over each other, a panel for each variable: those named, or the six that differ most.
+
+    Raises ConfigError when the runs have no variable in common, or one is named that they have not.
+    """
+    from .compare import compare, worst
+
+    if names is None:
+        names = worst(compare(a, b).rows, MAX_PANELS)
+    if not names:
+        raise ConfigError("the two results have no variable in common")
+    with _style():
+        figure, panels = _panels([1.0] * len(names), f"{labels[0]} and {labels[1]}")
+        clock = _Clock.of(a, b)
+        limit = _points_per_line(2 * len(names))
+        looks = (_Look(_COLORS[0], _DASHES[0], 2.6), _Look(_COLORS[1], _DASHES[1], 1.2))
+        for axes, name in zip(panels, names, strict=True):
+            unit = a.variable(name).unit or b.variable(name).unit
+            for results, label, look in zip((a, b), labels, looks, strict=True):
+                _draw_signal(axes, results, SignalSpec(name=name, label=label), unit, clock, limit, look)
+            _fit_axis(axes)
+            _label_axis(axes, name, unit)
+        _add_legend(panels[0])
+        _finish(figure, panels, clock, None)
+        return figure
+
+
+def save(figure: Figure, folder: Path, stem: str = "figure") -> tuple[Path, Path]:
+    """Write STEM.png (1440 pixels wide) and STEM.svg into a folder; equal figures give equal bytes.
+
+    Raises ConfigError when a file cannot be written.
+    """
+    paths = (Path(folder) / f"{stem}.png", Path(folder) / f"{stem}.svg")
+    for path in paths:
+        write(figure, path)
+    return paths
+
+
+def write(figure: Figure, path: Path) -> None:
+    """Write a figure in the format that the name of the file ends in. Raises ConfigError."""
+    kind = path.suffix.removeprefix(".").lower()
+    known = figure.canvas.get_supported_filetypes()
+    if kind not in known:
+        raise ConfigError(
+            f"{path}: '{kind}' is not a format of figures; use one of {', '.join(sorted(known))}"
+        )
+    dated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
+    metadata = {dated[kind]: None} if kind in dated else None
+    with _style(), replacing(path) as file:
+        figure.savefig(file, format=kind, metadata=metadata)
+
+
+@contextlib.contextmanager
+def _style() -> Iterator[None]:
+    """matplotlib's own defaults with ours on top, whatever the user's matplotlibrc says."""
+    from matplotlib import style
+
+    with style.context(["default", _RC]):
+        yield
+
+
+def _panels(heights: list[float], title: str) -> tuple[Figure, list[Axes]]:
+    from matplotlib.figure import Figure
+
+    tall = 1.9 * sum(heights) + 1.1
+    figure = Figure(figsize=(_WIDTH, tall), layout="constrained")
+    grid: NDArray[Any] = figure.subplots(
+        len(heights), sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
+    )
+    if title:
+        figure.suptitle(title, fontsize=12, fontweight="bold")
+    return figure, list(grid[:, 0])
+
+
+def _height(panel: PanelSpec) -> float:
+    return max(1.0, 0.12 * len(panel.signals) + 0.2)  # so that the legend fits beside the panel
+
+
+def _title(results: Results) -> str:
+    parts = [results.manifest.get(key) for key in ("system", "scenario")]
+    return " · ".join(part for part in parts if isinstance(part, str))
+
+
+@dataclasses.dataclass(frozen=True)
+class _Clock:
+    """The time axis: `scale` from seconds to its `unit`, and its ends in that unit."""
+
+    scale: float
+    unit: str
+    begin: float
+    end: float
+
+    @classmethod
+    def of(cls, *runs: Results) -> _Clock:
+        times = [t for run in runs if len(run) for t in (float(run.time[0]), float(run.time[-1]))] or [0.0]
+        begin, end = min(times), max(times)
+        scale, unit = (1.0 / 60.0, "min") if end - begin > _MINUTES else (1.0, "s")
+        return cls(scale, unit, scale * begin, scale * end)
+
+
+def _points_per_line(lines: int) -> int:
+    return max(300, min(4000, _POINTS // max(1, lines)))
+
+
+def _draw_panel(axes: Axes, results: Results, panel: PanelSpec, clock: _Clock, limit: int) -> None:
+    named = {signal.style for signal in panel.signals}
+    free = [look for name, look in _STYLES.items() if name not in named] + list(_DASHES[len(_STYLES) :])
+    unused = itertools.cycle(free)  # so that no other line of the panel looks like one with a named style
+    for place, signal in enumerate(panel.signals):
+        dashes = _STYLES[signal.style] if signal.style else next(unused)
+        _draw_signal(axes, results, signal, panel.unit, clock, limit, _Look.of(place, dashes))
+    shown = {(v.type, v.items) for signal in panel.signals for v in [results.variable(signal.name)]}
+    if len(shown) == 1:
+        kind, states = next(iter(shown))
+        states = ((0, "false"), (1, "true")) if kind == "Boolean" else states
+        if states:
+            axes.set_yticks([value for value, _ in states], [name for _, name in states])
+    if panel.limits is None:
+        _fit_axis(axes)
+    else:
+        axes.set_ylim(*panel.limits)
+    _label_axis(axes, panel.label, panel.unit)
+    _add_legend(axes)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Look:
+    """What tells a line from its neighbors: color, dash pattern and width in points."""
+
+    color: str
+    dashes: Any
+    width: float
+
+    @classmethod
+    def of(cls, place: int, dashes: Any) -> _Look:
+        # the first line is the widest: one that the next ones cover is seen on both sides of them
+        return cls(_COLORS[place % len(_COLORS)], dashes, max(1.1, 2.2 - 0.35 * place))
+
+
+def _draw_signal(
+    axes: Axes, results: Results, signal: SignalSpec, unit: str, clock: _Clock, limit: int, look: _Look
+) -> None:
+    variable = results.variable(signal.name)
+    convert = panel_conversion(variable, unit, "figure")
+    held = variable.held if signal.step is None else signal.step
+    values = results.column(signal.name)
+    keep = thinned(values, limit // 2 if held else limit)  # a step has two points for each value
+    label = signal.label or signal.name
+    if not variable.unit and unit not in ("", "1"):
+        label += " (no unit declared)"
+    axes.plot(
+        clock.scale * results.time[keep],
+        convert.scale * values[keep] + convert.offset,
+        color=look.color,
+        linestyle=look.dashes,
+        linewidth=signal.weight or (0.6 * look.width if _is_band(values[keep]) else look.width),
+        drawstyle="steps-post" if held else "default",
+        label="\n".join(textwrap.wrap(label, 26, break_on_hyphens=False)),
+    )
+
+
+def _is_band(values: Array) -> bool:
+    """Whether a line goes up and down so often that it fills an area: thin, it shows what lies behind."""
+    with np.errstate(invalid="ignore"):
+        way, span = float(np.sum(np.abs(np.diff(values)))), float(np.ptp(values)) if len(values) else 0.0
+    return span > 0.0 and way > 60.0 * span
+
+
+def thinned(values: Array, limit: int) -> NDArray[np.intp]:
+    """The indices of about `limit` values that draw the same picture.
+
+    In each of limit/2 equal stretches the smallest and the largest value stay, in their order in time, so
+    that a spike of one sample survives. The first and the last value always stay.
+    """
+    n = len(values)
+    if n <= limit:
+        return np.arange(n)
+    width = math.ceil(n / max(1, limit // 2))
+    whole = n - n % width
+    blocks = values[:whole].reshape(-1, width)
+    begin = np.arange(0, whole, width)
+    keep = [begin + blocks.argmin(axis=1), begin + blocks.argmax(axis=1), np.array([0, n - 1])]
+    if whole < n:
+        keep.append(whole + np.array([values[whole:].argmin(), values[whole:].argmax()]))
+    return np.unique(np.concatenate(keep))
+
+
+def _label_axis(axes: Axes, label: str, unit: str) -> None:
+    shown = f"[{pretty(unit)}]" if unit else ""
+    wrapped = "\n".join(textwrap.wrap(label, 24))
+    axes.set_ylabel(f"{wrapped}\n{shown}" if len(label) > 14 and shown else f"{wrapped} {shown}".strip())
+
+
+def _fit_axis(axes: Axes) -> None:
+    """Limits with room around all lines; a constant in the middle, its rounding errors not blown up."""
+    drawn = [np.asarray(line.get_ydata(), dtype=np.float64) for line in axes.get_lines()]
+    values = np.concatenate([y[np.isfinite(y)] for y in drawn])
+    if not len(values):
+        return
+    low, high = float(values.min()), float(values.max())
+    size = max(abs(low), abs(high))
+    room = 0.07 * (high - low) if high - low > 1e-6 * size else 0.1 * size or 1.0
+    axes.set_ylim(low - room, high + room)
+
+
+def _add_legend(axes: Axes) -> None:
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+
+
+def pretty(unit: str) -> str:
+    """A unit's name as print has it: m/s2 as m/s², N.m as N·m."""
+    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda m: m[0].translate(raised), unit).replace(".", "·")
+
+
+def _draw_states(panels: list[Axes], results: Results, name: str, clock: _Clock) -> None:
+    from matplotlib.patches import Patch
+
+    values = results.column(name)
+    handles = [Patch(visible=False, label=f"{name}:")]
+    for place, (value, text) in enumerate(results.variable(name).items):
+        face = _SHADES[place % len(_SHADES)]
+        hatch = "///" if place >= len(_SHADES) else None
+        spans = [(clock.scale * a, clock.scale * (b - a)) for a, b in _spans(results.time, values, value)]
+        for axes in panels if spans else []:
+            bars = axes.broken_barh(spans, (0.0, 1.0), transform=axes.get_xaxis_transform())
+            bars.set(facecolor=face, hatch=hatch, edgecolor="#C0C0C0", linewidth=0.0, zorder=0.1)
+        handles.append(Patch(facecolor=face, hatch=hatch, edgecolor="#808080", linewidth=0.6, label=text))
+    legend = panels[0].legend(
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=min(7, len(handles)),
+        handlelength=1.8,
+        columnspacing=1.6,
+    )
+    panels[0].add_artist(legend)  # beside the legend of the lines, which would replace it
+    legend.set_clip_on(False)  # the layout makes room for what is not clipped
+
+
+def _spans(time: Array, values: Array, value: float) -> list[tuple[float, float]]:
+    """The stretches [t_k, t_j) in which a held variable has this value.
+
+    More than _SPANS of them would not be seen: then the state at each of as many equal distances counts.
+    """
+    if len(time) > 1 and np.count_nonzero(np.diff(values)) > _SPANS:
+        rows = np.linspace(0, len(time) - 1, _SPANS).astype(np.intp)
+        time, values = time[rows], values[rows]
+    inside = np.concatenate(([False], values[:-1] == value, [False]))  # the last value lasts no time
+    edges = np.flatnonzero(inside[1:] != inside[:-1])
+    return [(float(time[a]), float(time[b])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _finish(figure: Figure, panels: list[Axes], clock: _Clock, note: str | None) -> None:
+    panels[-1].set_xlabel(f"time [{clock.unit}]")
+    if clock.end > clock.begin:
+        panels[-1].set_xlim(clock.begin, clock.end)
+    if note:
+        figure.supxlabel(
+            "\n".join(textwrap.wrap(note, 130)), x=0.01, ha="left", fontsize=8.5, color="#505050"
+        )
+    figure.align_ylabels(panels)

@@ -1,0 +1,304 @@
+"""Metrics: the numbers of a run that a system or scenario file names.
+
+A metric reduces a signal x(t), or the difference of two, over the run from t_0 to t_n:
+
+    final, max, min, range   the last value, the extremes, max - min
+    mean                     (1/T) integral x dt,  T = t_n - t_0
+    rms                      sqrt((1/T) integral x^2 dt)
+    integral                 integral x dt
+    integral_above           integral max(x - threshold, 0) dt
+    share_above              the share of T in which x > threshold
+    share_equal              the share of T in which x = value
+    time_above, time_equal   the same as a time
+    changes                  how often x changes its value
+
+Integrals are trapezoidal for continuous signals; what is held from one communication point to the next (an
+input, a sampled output) is integrated as it is held. `per` divides by a second reduction. The unit of
+measure of the outcome follows from those of the signals and is converted to the metric's `unit`: no factor
+stands in a file.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from . import units
+from .errors import ConfigError, nearest
+from .files import FileModel
+from .results import Array, Results, ResultVariable
+from .units import BASE_UNITS, UnitOfMeasure
+
+_TAKES = {
+    "threshold": ("share_above", "time_above", "integral_above"),
+    "value": ("share_equal", "time_equal"),
+}
+_SHARES = ("share_above", "share_equal")
+_TIMES = ("time_above", "time_equal")
+_VALUES = ("final", "mean", "max", "min", "rms", "range")  # these are in the unit of the signal
+_NEEDS_DURATION = ("mean", "rms", *_SHARES)
+
+
+class Reduction(FileModel):
+    """A signal, `minus` another one if given, and how it is reduced to one number.
+
+    `threshold` is in `threshold_unit`, or else in the unit of the signal. `value` is a number or the name
+    of a state of an enumeration.
+    """
+
+    signal: str
+    minus: str | None = None
+    reduce: Literal[
+        "final",
+        "mean",
+        "max",
+        "min",
+        "rms",
+        "range",
+        "integral",
+        "integral_above",
+        "share_above",
+        "share_equal",
+        "time_above",
+        "time_equal",
+        "changes",
+    ] = "final"
+    threshold: float | None = Field(default=None, allow_inf_nan=False)
+    threshold_unit: str | None = None
+    value: bool | int | float | str | None = None
+
+    @model_validator(mode="after")
+    def _has_what_it_needs(self) -> Reduction:
+        for key, reductions in _TAKES.items():
+            given, wanted = getattr(self, key) is not None, self.reduce in reductions
+            if given != wanted:
+                raise ValueError(f"reduce = \"{self.reduce}\" {'needs' if wanted else 'takes no'} '{key}'")
+        if self.threshold_unit is not None and self.threshold is None:
+            raise ValueError("'threshold_unit' stands without a 'threshold'")
+        return self
+
+
+class MetricSpec(Reduction):
+    """A named number and the unit of measure that it is given in."""
+
+    name: str
+    unit: str = "1"
+    per: Reduction | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Metric:
+    """The outcome: a number in a unit of measure, or NaN and the reason why there is none."""
+
+    name: str
+    value: float
+    unit: str
+    reason: str = ""
+
+    @property
+    def text(self) -> str:
+        """The value with its unit, as a person reads it."""
+        if math.isnan(self.value):
+            return f"- ({self.reason})"
+        return f"{self.value:.4g}" if self.unit in ("", "1") else f"{self.value:.4g} {self.unit}"
+
+
+def check(specs: Sequence[MetricSpec], variables: Mapping[str, ResultVariable], place: str) -> None:
+    """Check metrics against the variables that a run will record.
+
+    Raises ConfigError naming `place` for an unknown variable or state (with the nearest there is), a unit
+    of measure that cannot come out, and a name given twice. A variable that declares no unit is no error
+    here: what needs its unit then has no value, and says so.
+    """
+    seen: set[str] = set()
+    for spec in specs:
+        here = f"{place}: metric '{spec.name}'"
+        if spec.name in seen:
+            raise ConfigError(f"{here} is there twice")
+        seen.add(spec.name)
+        for part in (spec, spec.per) if spec.per else (spec,):
+            _check_reduction(part, variables, here)
+        try:
+            _scale(spec, variables)
+        except _NoValueError:
+            continue
+        except ConfigError as error:
+            raise ConfigError(f"{here}: {error}") from error
+
+
+def _check_reduction(part: Reduction, variables: Mapping[str, ResultVariable], place: str) -> None:
+    for name in (part.signal, part.minus):
+        if name is not None and name not in variables:
+            raise ConfigError(f"{place}: no variable '{name}' is recorded{nearest(name, variables)}")
+    if isinstance(part.value, str):
+        names = [name for _, name in variables[part.signal].items]
+        if part.value not in names:
+            raise ConfigError(
+                f"{place}: '{part.signal}' has no state '{part.value}'{nearest(part.value, names)}; "
+                f"states: {', '.join(names) or 'none'}"
+            )
+
+
+def evaluate(results: Results, specs: Sequence[MetricSpec]) -> list[Metric]:
+    """The metrics of a run, in the order of the specs. Raises ConfigError as `check` does."""
+    variables = {v.name: v for v in results.variables}
+    check(specs, variables, "metrics")
+    return [_evaluate(results, spec, variables) for spec in specs]
+
+
+def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Metric:
+    def without(reason: str) -> Metric:
+        return Metric(spec.name, math.nan, spec.unit, reason)
+
+    if not len(results):
+        return without("the run has no communication point")
+    parts = (spec, spec.per) if spec.per else (spec,)
+    if results.time[-1] == results.time[0] and any(part.reduce in _NEEDS_DURATION for part in parts):
+        return without("the run has no duration")
+    try:
+        scale = _scale(spec, variables)
+        numbers = [_reduce(results, part) for part in parts]
+    except _NoValueError as error:
+        return without(str(error))
+    value = numbers[0]
+    if spec.per:
+        if numbers[1] == 0.0:
+            return without(f"the {spec.per.reduce} of {spec.per.signal} is 0")
+        value /= numbers[1]
+    value = scale(value)
+    return (
+        Metric(spec.name, value, spec.unit) if math.isfinite(value) else without("it is not a finite number")
+    )
+
+
+class _NoValueError(ConfigError):
+    """Why this run gives a metric no value, though the metric itself is in order."""
+
+
+def _unit(variable: ResultVariable) -> UnitOfMeasure:
+    if variable.unit:
+        return units.defined(variable.unit)
+    if variable.type == "Real":
+        raise _NoValueError(f"'{variable.name}' declares no unit of measure")
+    return units.defined("1")
+
+
+def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> units.Affine:
+    """From what the reductions give, in the signals' units, to the metric's unit."""
+    if spec.per is None and spec.reduce in _VALUES and _bare(spec, variables):
+        return units.Affine()
+    source, target = _outcome(spec, variables), units.defined(spec.unit)
+    if spec.per is not None:
+        source = _quotient(source, _outcome(spec.per, variables))
+    elif spec.minus is not None or spec.reduce == "range":
+        # a difference of temperatures: 0 of it is 0 in every unit
+        source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
+    convert = units.conversion(source, target)
+    if convert.offset and spec.reduce == "rms":
+        raise ConfigError(f"an rms in [{source.name}] cannot be given in [{target.name}]: their zeros differ")
+    return convert
+
+
+def _bare(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> bool:
+    """Whether the signal and the metric both have no unit, so that nothing is to convert."""
+    return spec.unit in ("", "1") and variables[spec.signal].unit == ""
+
+
+def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOfMeasure:
+    """The unit of measure of a reduction."""
+    _to_signal(part, variables)  # raises where they measure different quantities
+    if part.reduce in _SHARES or part.reduce == "changes":
+        return units.defined("1")
+    if part.reduce in _TIMES:
+        return units.defined("s")
+    unit = _unit(variables[part.signal])
+    if part.reduce in ("integral", "integral_above"):
+        if unit.offset:
+            raise ConfigError(f"an integral of [{unit.name}] has no meaning: its zero is arbitrary")
+        return _combined(f"{unit.name}.s", unit, units.defined("s"), 1)
+    return unit
+
+
+def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[units.Affine, float | None]:
+    """From the unit of `minus` to that of the signal, and the threshold in the signal's unit."""
+    signal = variables[part.signal]
+    other, threshold = units.Affine(), part.threshold
+    if part.minus is not None and variables[part.minus].unit != signal.unit:
+        other = units.conversion(_unit(variables[part.minus]), _unit(signal))
+    if threshold is not None and part.threshold_unit is not None and part.threshold_unit != signal.unit:
+        source, target = units.defined(part.threshold_unit), _unit(signal)
+        if part.minus is not None:  # a threshold of a difference has no zero of its own
+            source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
+        threshold = units.conversion(source, target)(threshold)
+    return other, threshold
+
+
+def _quotient(a: UnitOfMeasure, b: UnitOfMeasure) -> UnitOfMeasure:
+    if a.offset or b.offset:
+        raise ConfigError(f"[{a.name}] per [{b.name}] has no meaning: a zero of theirs is arbitrary")
+    return _combined(f"{a.name}/({b.name})", a, b, -1)
+
+
+def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitOfMeasure:
+    """The unit a * b (sign 1) or a / b (sign -1)."""
+    nothing = (0,) * len(BASE_UNITS)
+    pairs = zip(a.exponents or nothing, b.exponents or nothing, strict=True)
+    return UnitOfMeasure(
+        name,
+        exponents=tuple(x + sign * y for x, y in pairs),
+        factor=a.factor * b.factor**sign,
+        angle_known=a.angle_known and b.angle_known,
+    )
+
+
+def _reduce(results: Results, part: Reduction) -> float:
+    """The number of a reduction, in the unit of the signal and s."""
+    variables = {name: results.variable(name) for name in (part.signal, part.minus) if name is not None}
+    other, threshold = _to_signal(part, variables)
+    x = results.column(part.signal)
+    if part.minus is not None:
+        x = x - (other.scale * results.column(part.minus) + other.offset)
+    if not np.isfinite(x).all():
+        raise _NoValueError(f"{part.signal} is not finite at {results.time[~np.isfinite(x)][0]:g} s")
+    held = all(v.held for v in variables.values())
+    if part.reduce in _AT_POINTS:
+        return _AT_POINTS[part.reduce](x)
+    if part.reduce in (*_SHARES, *_TIMES):
+        inside = x > threshold if part.value is None else x == _state(part, variables[part.signal])
+        seconds = _integral(results.time, inside.astype(np.float64), held=True)
+        return seconds / _duration(results) if part.reduce in _SHARES else seconds
+    if part.reduce == "integral_above":
+        return _integral(results.time, np.maximum(x - threshold, 0.0), held)
+    if part.reduce == "rms":
+        return math.sqrt(_integral(results.time, x**2, held) / _duration(results))
+    integral = _integral(results.time, x, held)
+    return integral / _duration(results) if part.reduce == "mean" else integral
+
+
+_AT_POINTS: dict[str, Callable[[Array], float]] = {
+    "final": lambda x: float(x[-1]),
+    "max": lambda x: float(np.max(x)),
+    "min": lambda x: float(np.min(x)),
+    "range": lambda x: float(np.ptp(x)),
+    "changes": lambda x: float(np.count_nonzero(np.diff(x))),
+}
+
+
+def _state(part: Reduction, variable: ResultVariable) -> float:
+    if isinstance(part.value, str):
+        return float(next(value for value, name in variable.items if name == part.value))
+    return float(part.value or 0)
+
+
+def _integral(time: Array, x: Array, held: bool) -> float:
+    at = x[:-1] if held else 0.5 * (x[1:] + x[:-1])
+    return float(np.sum(at * np.diff(time)))
+
+
+def _duration(results: Results) -> float:
+    return float(results.time[-1] - results.time[0])
