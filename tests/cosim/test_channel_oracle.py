@@ -87,10 +87,8 @@ def sweep_text(signed: bool, little_endian: bool, limits: bool) -> str:
     for i, (length, (j, (scale, offset))) in enumerate(cases, start=1):
         signal = Signal("S", 0, length, signed=signed)
         ends = sorted(r * scale + offset for r in signal.raw_type_range)
-        if limits:  # the middle half, off the raw grid
-            ends = [ends[0] + (ends[1] - ends[0]) * part for part in (0.26, 0.74)]
-        else:
-            ends = [0, 0]
+        middle = [ends[0] + (ends[1] - ends[0]) * part for part in (0.26, 0.74)]  # off the raw grid
+        ends = middle if limits else [0, 0]
         start = 0 if little_endian else 7
         order, sign = int(little_endian), "-" if signed else "+"
         lines += [
