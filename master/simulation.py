@@ -25,6 +25,7 @@ import numpy as np
 
 from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
+from ..cosim.files import DATA
 from ..cosim.plan import Plan
 from ..cosim.resolve import Options, checked, participating, resolve
 from ..cosim.results import Results
@@ -96,6 +97,11 @@ class Simulation:
         """Whether the stop time is reached; stepping on beyond it is allowed."""
         return self._engine.k >= self.plan.steps
 
+    @property
+    def steps_left(self) -> int:
+        """How many communication steps there are to the stop time."""
+        return max(0, self.plan.steps - self._engine.k)
+
     def step(self, steps: int = 1) -> None:
         """Do `steps` communication steps.
 
@@ -107,7 +113,7 @@ class Simulation:
         """Step to the stop time. Raises as `step` does."""
         stop = self.plan.experiment.stop_time
         tell = None if progress is None else lambda k: progress(self._engine.time_at(k), stop)
-        self._advance(max(0, self.plan.steps - self._engine.k), tell)
+        self._advance(self.steps_left, tell)
 
     def _advance(self, steps: int, progress: Callable[[int], None] | None) -> None:
         if not self._engine.whole:
@@ -211,6 +217,7 @@ class Simulation:
             | {"python": platform.python_version(), "platform": sys.platform},
             "system": plan.system,
             "scenario": plan.scenario,
+            "files": _own_files(self.system, self.scenario),
             "experiment": experiment.model_dump() | {"algorithm": plan.algorithm},
             "ideal": plan.ideal,
             "order": [unit.name for unit in plan.units],
@@ -300,6 +307,16 @@ def simulate(
             error.results = simulation.results
             raise
         return simulation.results
+
+
+def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
+    """The paths of the user's own files: the built-in ones are named well enough by their names."""
+    paths = {"system": system.path, "scenario": scenario.path}
+    return {
+        kind: str(path.resolve())
+        for kind, path in paths.items()
+        if path is not None and DATA.resolve() not in path.resolve().parents
+    }
 
 
 def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path]) -> dict[str, Fmu]:
