@@ -85,8 +85,8 @@ def connect(
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
     """
     work = _Connector(system, interfaces, layout, Network({unit: [] for unit in interfaces}), every, ideal)
-    for name, bus in system.file.buses.items():
-        work.databases[name] = load_dbc(data_file(bus.dbc, system.path))
+    for name, entry in system.file.buses.items():
+        work.databases[name] = load_dbc(data_file(entry.dbc, system.path))
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)
@@ -158,7 +158,7 @@ def _over_bus(
     if signal.name in senders:
         raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
     senders[signal.name] = connection.source
-    wire = (connection.via or "", signal.unit, {})
+    wire: _End = (connection.via or "", signal.unit, {})
     sender = _variable(work, source)
     to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), wire, place)
     ends = []

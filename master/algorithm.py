@@ -26,16 +26,16 @@ from numpy.typing import NDArray
 from ..cosim.channel import ChannelError, MessageChannel
 from ..cosim.errors import RunError
 from ..cosim.plan import MessagePlan, Plan, Route, UnitPlan
-from .unit import Unit
+from .unit import Unit, floats
 
 _CHUNK = 256
 """Steps between two looks at progress and Ctrl-C; stimuli are evaluated for so many steps at once."""
 
 
-def compile_routes(routes: Sequence[Route]) -> Callable[[memoryview], None]:
+def compile_routes(routes: Sequence[Route]) -> Callable[[memoryview[float]], None]:
     """A function that writes all inputs of a unit from their routes: one assignment for each."""
     lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
-    scope: dict[str, Callable[[memoryview], None]] = {}
+    scope: dict[str, Callable[[memoryview[float]], None]] = {}
     exec("def take(m):\n" + "\n".join(lines), scope)
     return scope["take"]
 
@@ -62,7 +62,7 @@ class _Turn:
         self.has_feedthrough = any(b.feedthrough for b in outputs)
         self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
 
-    def apply_effects(self, memory: memoryview) -> None:
+    def apply_effects(self, memory: memoryview[float]) -> None:
         for slot, (action, value) in self.effects.items():
             memory[slot] = value if action == "override" else memory[slot] + value
 
@@ -84,7 +84,7 @@ class _Sender:
     plan: MessagePlan
     channel: MessageChannel
 
-    def send(self, memory: memoryview, k: int) -> None:
+    def send(self, memory: memoryview[float], k: int) -> None:
         if k < self.plan.first or (k - self.plan.first) % self.plan.every:
             return
         try:
@@ -107,7 +107,7 @@ class Engine:
         self.whole = True
         self.memory: NDArray[np.float64] = np.zeros(plan.memory_size)
         self.recorded = max(plan.column_slots, default=-1) + 1
-        self.view = memoryview(self.memory)  # its items are Python floats, three times faster than numpy's
+        self.view = floats(self.memory)
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
         self.turns = [_Turn(units[p.name], p, self) for p in plan.units]
@@ -157,9 +157,7 @@ class Engine:
                 progress(self.k)
 
     def _advance_chunk(self, count: int) -> None:
-        times = self.plan.experiment.start_time + self.plan.experiment.step_size * np.arange(
-            self.k, self.k + count
-        )
+        times = np.array([self.time_at(k) for k in range(self.k, self.k + count)])
         drives = [(d.sink, (d.map.scale * d.signal(times) + d.map.offset).tolist()) for d in self.plan.drives]
         rows = np.empty((count, self.recorded))
         first, view, row = self.k, self.view, self.memory[: self.recorded]

@@ -20,7 +20,7 @@ from ..cosim.interface import UnitInterface
 from ..cosim.plan import Block, UnitPlan
 from .fmu import Fmu, FmuError, check_runnable
 from .log import STATUS, UnitLog
-from .unit import UnitError, Value
+from .unit import UnitError, Value, floats
 
 _WARNING = 1
 _C_TYPES: dict[str, Any] = {"Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int}
@@ -138,7 +138,7 @@ class Fmi2Unit:
         if block.type == "Real":
             return call
 
-        whole = np.frombuffer(values, dtype=np.intc)  # type: ignore[call-overload] # ctypes arrays are buffers
+        whole = np.frombuffer(values, dtype=np.intc)
 
         def set_whole() -> None:
             whole[:] = part
@@ -250,7 +250,7 @@ class Fmi2Unit:
 
 
 def _copy(memory: NDArray[np.float64], source: int, target: int, count: int) -> Call:
-    view = memoryview(memory)
+    view = floats(memory)
     values, place = view[source : source + count], slice(target, target + count)
 
     def copy() -> None:
