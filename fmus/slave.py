@@ -45,6 +45,8 @@ from ..models.base import Model, Variable, violations
 from .interface import exposed
 
 _ERROR = 3  # fmi2Error
+_KINDS = ("Real", "Integer", "Boolean", "String")  # a model has no String, but an importer may ask
+_CAUSALITIES = ("parameter", "input", "independent", "output")
 _PACKAGE = __name__.partition(".")[0]
 _FOLDER = os.path.join(os.path.dirname(__file__), "..", "..")
 
@@ -81,18 +83,23 @@ class Layout:
         self.time = next((r for r, causality, _ in variables if causality == "independent"), None)
         self.variables = [v for _, _, v in variables]
 
-        self.readable = {
-            kind: frozenset(r for r, _, v in variables if _storage(v) == kind)
-            for kind in ("Real", "Integer", "Boolean")
-        }
-        self.settable = {r: causality for r, causality, _ in variables if causality in ("parameter", "input")}
+        self.causalities = [causality for _, causality, _ in variables]
+        self.readable = {kind: self._of(kind, *_CAUSALITIES) for kind in _KINDS}
+        self.settable_first = {kind: self._of(kind, "parameter", "input") for kind in _KINDS}
+        self.settable_later = {kind: self._of(kind, "input") for kind in _KINDS}
         self.enumerations = {r: v.enumeration for r, _, v in variables if v.enumeration is not None}
 
         outputs = [v for _, causality, v in variables if causality == "output"]
         self.take = _taker([v.name for v in outputs])
         self.converters = [_converter(v) for v in outputs]
+        self.all_real = all(v.type == "Real" for v in outputs)
         self.feeds_through = model.feeds_through()
         self.follows_inputs = self.feeds_through and not model.sampled
+
+    def _of(self, kind: str, *causalities: str) -> frozenset[int]:
+        """The value references that the FMI functions of a type and these causalities share."""
+        found = enumerate(zip(self.variables, self.causalities, strict=True))
+        return frozenset(r for r, (v, causality) in found if _storage(v) == kind and causality in causalities)
 
 
 def _span(references: Iterable[int]) -> slice:
@@ -178,7 +185,8 @@ class ModelSlave:
         try:
             if not self._started:
                 raise Refused("the initialization mode has not been left")
-            self._set_time(current_time)
+            if self._layout.time is not None:
+                self._set_time(current_time)
             u = self._inputs
             if u is None:
                 u = self._inputs = self.model.Inputs(*self._values[self._layout.inputs])
@@ -224,7 +232,10 @@ class ModelSlave:
             y = self._outputs(self._parameters, state)
         values = layout.take(y)
         try:
-            self._values[layout.outputs] = map(operator.call, layout.converters, values)
+            if layout.all_real:
+                self._values[layout.outputs] = map(float, values)
+            else:
+                self._values[layout.outputs] = map(operator.call, layout.converters, values)
         except (TypeError, ValueError, OverflowError):
             raise _misfit(layout, values) from None
         self._stale = False
@@ -298,7 +309,7 @@ class ModelSlave:
     def _get(self, kind: str, references: Sequence[int]) -> list[Any]:
         if self._stale:
             self._refresh()
-        readable = self._layout.readable.get(kind, frozenset())
+        readable = self._layout.readable[kind]
         if not readable.issuperset(references):
             raise _unknown(kind, set(references) - readable)
         values = self._values
@@ -306,13 +317,9 @@ class ModelSlave:
 
     def _set(self, kind: str, references: Sequence[int], values: Sequence[Any]) -> None:
         layout = self._layout
-        readable = layout.readable.get(kind, frozenset())
-        if not readable.issuperset(references):
-            raise _unknown(kind, set(references) - readable)
-        for r in references:
-            causality = layout.settable.get(r)
-            if causality is None or (self._started and causality == "parameter"):
-                raise self._not_settable(r)
+        settable = (layout.settable_later if self._started else layout.settable_first)[kind]
+        if not settable.issuperset(references):
+            raise self._not_settable(kind, set(references) - settable)
         stored = self._values
         for r, value in zip(references, values, strict=True):
             stored[r] = value
@@ -331,10 +338,13 @@ class ModelSlave:
             name = self._layout.variables[reference].name
             raise Refused(f"{name} = {value} is no item of its enumeration ({items})") from None
 
-    def _not_settable(self, reference: int) -> Refused:
-        name = self._layout.variables[reference].name
-        causality = self._layout.settable.get(reference)
-        if causality == "parameter":
+    def _not_settable(self, kind: str, references: set[int]) -> Refused:
+        layout = self._layout
+        if unknown := references - layout.readable[kind]:
+            return _unknown(kind, unknown)
+        reference = min(references)
+        name = layout.variables[reference].name
+        if layout.causalities[reference] == "parameter":
             return Refused(f"{name} is a fixed parameter: it cannot be set after the initialization")
         return Refused(f"{name} is neither parameter nor input: it cannot be set")
 
