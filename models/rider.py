@@ -1,0 +1,128 @@
+"""Rider: follows a speed reference with throttle and brake, and counts what it could not follow.
+
+The paper has a human rider; everything here is chosen. A PI law in km/h and %, e = v_r - v:
+
+    u = K_p e + I + K_v v_r                                     pedal demand [%]                    (R1)
+    I' = (K_p/T_i) e, except where that pushes u further past a pedal's end                         (R2)
+    u > 0:     throttle = min(u, 100), no brake                                                     (R3)
+    u < -u_c:  brake = min(K_b (-u - u_c), F_max), no throttle; between, it coasts                  (R4)
+    v_r = 0 and v < v_s:  stopped. Throttle 0, brake F_s, I = 0, until v_r > 0                      (R5)
+    d_r' = v_r/3.6                                              distance of the reference [m]       (R6)
+    d_m' = max(0, e - b)/3.6,  t_m' = 1 where e > b             distance and time missed            (R7)
+
+K_v is the throttle that a speed needs in steady state. (R4) leaves a band without either pedal, so that
+throttle and brake do not alternate. (R2) stops the integral in saturation, so that a reference out of reach
+leaves nothing to unwind. e > b means slower than the cycle's tolerance allows: 3.2 km/h are the 2 mph of the
+legal band of the UDDS. (R7) counts only what is missed; a vehicle that is too fast misses nothing.
+
+chosen: K_p = 20 % per km/h, T_i = 4 s, K_v = 0.8 % per km/h, u_c = 5 %, K_b = 8.5 N per % (braking then
+answers like the scooter's full drive force of 850 N), F_max = 1500 N, v_s = 0.5 km/h, F_s = 600 N (holds a
+200 kg vehicle on a slope of 30 %), b = 3.2 km/h.
+
+At the start no pedal is pressed and the integral is 0. A reference below 0 counts as 0.
+"""
+
+from __future__ import annotations
+
+from .base import Model, record, var
+
+KMH = 3.6  # km/h in 1 m/s
+
+
+class Rider(Model):
+    """Speed reference and speed in; throttle, brake and the shortfall out."""
+
+    sampled = True
+    initial_inputs = ("speed_reference", "speed")
+
+    @record
+    class Parameters:
+        """How the rider reacts; all chosen."""
+
+        proportional_gain: float = var(20.0, "%.h/km", "Pedal per speed error (K_p)", min=0.0)
+        integral_time: float = var(4.0, "s", "Integral time (T_i)", min=1e-3)
+        speed_feedforward: float = var(0.8, "%.h/km", "Throttle that a speed needs (K_v)", min=0.0)
+        coasting_band: float = var(5.0, "%", "Negative demand without brake (u_c)", min=0.0)
+        brake_gain: float = var(8.5, "N/%", "Brake force per demand (K_b)", min=1e-3)
+        maximum_brake_force: float = var(1500.0, "N", "Strongest braking (F_max)", min=0.0)
+        standstill_speed: float = var(0.5, "km/h", "Speed below which the rider stops (v_s)", min=0.0)
+        standstill_brake_force: float = var(600.0, "N", "Brake while stopped (F_s)", min=0.0)
+        tolerance: float = var(3.2, "km/h", "Speed error that counts as followed (b)", min=0.0)
+
+    @record
+    class Inputs:
+        """The cycle and the speedometer."""
+
+        speed_reference: float = var(0.0, "km/h", "Speed to follow (v_r)", nominal=10.0)
+        speed: float = var(0.0, "km/h", "Speed of the vehicle (v)", nominal=10.0)
+
+    @record
+    class State:
+        """Integrals and what this sample shows."""
+
+        integral: float = var(0.0, "%", "Integral of the PI law (I)")
+        distance_reference: float = var(0.0, "m", "Distance of the reference (d_r)", min=0.0)
+        distance_missed: float = var(0.0, "m", "Distance lost beyond the tolerance (d_m)", min=0.0)
+        time_missed: float = var(0.0, "s", "Time beyond the tolerance (t_m)", min=0.0)
+        throttle: float = var(0.0, "%", "Throttle", min=0.0, max=100.0)
+        brake_force: float = var(0.0, "N", "Force of the brakes", min=0.0)
+        speed_error: float = var(0.0, "km/h", "Reference minus speed (e)")
+
+    @record
+    class Outputs:
+        """The two pedals and how well the cycle is followed."""
+
+        throttle: float = var(0.0, "%", "Throttle", min=0.0, max=100.0, nominal=10.0, initially=())
+        brake_force: float = var(0.0, "N", "Force of the brakes", min=0.0, nominal=100.0, initially=())
+        speed_error: float = var(0.0, "km/h", "Reference minus speed")
+        distance_reference: float = var(
+            0.0, "m", "Distance of the reference", min=0.0, nominal=100.0, initially=()
+        )
+        distance_missed: float = var(
+            0.0, "m", "Distance lost while slower than the tolerance allows", min=0.0, initially=()
+        )
+        time_missed: float = var(
+            0.0, "s", "Time spent slower than the tolerance allows", min=0.0, initially=()
+        )
+
+    @staticmethod
+    def initial(p: Rider.Parameters, u: Rider.Inputs) -> Rider.State:
+        """No pedal pressed, nothing counted."""
+        return Rider.State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, max(0.0, u.speed_reference) - u.speed)
+
+    @staticmethod
+    def step(p: Rider.Parameters, x: Rider.State, u: Rider.Inputs, dt: float) -> Rider.State:
+        """The sample at t_k: press a pedal, count what `dt` [s] of this speed misses."""
+        v_r = max(0.0, u.speed_reference)
+        e = v_r - u.speed
+        if v_r <= 0.0 and u.speed < p.standstill_speed:  # (R5)
+            integral, throttle, brake = 0.0, 0.0, p.standstill_brake_force
+        else:
+            integral, throttle, brake = _pedals(p, x.integral, v_r, e, dt)
+        travelled = x.distance_reference + dt * v_r / KMH  # (R6)
+        missed, late = x.distance_missed, x.time_missed
+        if e > p.tolerance:  # (R7)
+            missed += dt * (e - p.tolerance) / KMH
+            late += dt
+        return Rider.State(integral, travelled, missed, late, throttle, brake, e)
+
+    @staticmethod
+    def outputs(p: Rider.Parameters, x: Rider.State) -> Rider.Outputs:
+        """What the last sample decided and counted."""
+        return Rider.Outputs(
+            x.throttle, x.brake_force, x.speed_error, x.distance_reference, x.distance_missed, x.time_missed
+        )
+
+
+def _pedals(
+    p: Rider.Parameters, integral: float, v_r: float, e: float, dt: float
+) -> tuple[float, float, float]:
+    """The next integral [%], throttle [%] and brake force [N]."""
+    demand = p.proportional_gain * e + integral + p.speed_feedforward * v_r  # (R1)
+    lowest = -p.coasting_band - p.maximum_brake_force / p.brake_gain
+    if not ((demand >= 100.0 and e > 0.0) or (demand <= lowest and e < 0.0)):
+        integral += dt * p.proportional_gain / p.integral_time * e  # (R2)
+    if demand > 0.0:
+        return integral, min(100.0, demand), 0.0  # (R3)
+    press = max(0.0, -demand - p.coasting_band)
+    return integral, 0.0, min(p.maximum_brake_force, p.brake_gain * press)  # (R4)
