@@ -17,6 +17,26 @@ def builtin_names() -> tuple[str, ...]:
     return build.names()
 
 
+def builtin_text(name: str) -> str:
+    """What a built-in FMU is, in one line."""
+    from ..fmus import catalog
+
+    return catalog.text(name)
+
+
+def build_fmu(name: str, folder: Path | None = None) -> Path:
+    """Build a built-in FMU into a folder (default: the cache) and return its file.
+
+    Raises ConfigError where the folder cannot be written.
+    """
+    from ..fmus import build
+
+    try:
+        return build.built(name) if folder is None else build.build(name, folder)
+    except OSError as error:
+        raise ConfigError(f"{folder}: {name}.fmu cannot be written: {error.strerror or error}") from error
+
+
 def fmu_file(name: str, beside: Path | None = None) -> Path:
     """The file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 

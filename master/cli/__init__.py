@@ -1,1 +1,28 @@
-"""placeholder docstring, replaced by the owner of this package."""
+"""The command line `evcosim`: a module per verb, and what the verbs share.
+
+    app         the verbs and global options
+    failures    every error as plain text on stderr, and the exit code
+    console     tables, JSON and the progress bar
+    arguments   what `--set` and `--fmu` say
+    interrupts  Ctrl-C while units are stepping
+    outputs     the folder of a run
+    summary     what a run says at its end
+
+Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C; 141 the
+reader of the output has gone. Verb modules import what is heavy inside their functions, so that
+`evcosim --help` answers at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line (default: that of the process) and return the exit code."""
+    import sys
+
+    from .app import command
+    from .failures import guarded
+
+    return guarded(command(), list(sys.argv[1:] if arguments is None else arguments))

@@ -1,0 +1,66 @@
+"""The application: its verbs, and the options before the verb."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import typer
+
+from .build import build
+from .compare import compare
+from .info import info
+from .listing import list_
+from .plot import plot
+from .run import run
+
+
+def command() -> Any:
+    """The click command of `evcosim` with all its verbs."""
+    # plain help: rich's boxes would cost a third of the time that --help may take
+    app = typer.Typer(
+        name="evcosim",
+        add_completion=False,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(_global_options)
+    verbs: dict[str, Callable[..., int | None]] = {
+        "run": run,
+        "list": list_,
+        "info": info,
+        "plot": plot,
+        "compare": compare,
+        "build": build,
+    }
+    for name, verb in verbs.items():
+        app.command(name)(verb)
+    return typer.main.get_command(app)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"evcosim {version('evcosim')}")
+        raise typer.Exit
+
+
+def _global_options(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", help="Show the traceback of an error (or set EVCOSIM_DEBUG=1).")
+    ] = False,
+) -> None:
+    """A co-simulation bench for electric-vehicle control: FMUs on a CAN bus.
+
+    Start with: evcosim run scooter
+    """
+    # --debug is declared here for --help; `failures.guarded` takes it wherever it stands
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+        raise typer.Exit(2)

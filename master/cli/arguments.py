@@ -1,0 +1,60 @@
+"""What the options `--set unit.parameter=value` and `--fmu unit=PATH` say."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+
+from ...cosim.errors import ConfigError
+
+Value = bool | int | float | str
+
+
+def parse_settings(options: Sequence[str]) -> dict[str, Value]:
+    """`--set` options as "unit.parameter" to value; the last of a name counts. Raises ConfigError."""
+    values = {}
+    for option in options:
+        name, equals, text = (part.strip() for part in option.partition("="))
+        unit, _, parameter = name.partition(".")
+        if not (equals and unit and parameter and text):
+            raise ConfigError(f"--set {option}: it is written unit.parameter=value, as in vehicle.mass=180")
+        values[name] = scalar(text)
+    return values
+
+
+def scalar(text: str) -> Value:
+    """A value as a TOML file would write it: true, false, a number, a quoted string; else the text itself."""
+    import tomllib
+
+    with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is plain text
+        value = tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+        if isinstance(value, bool | int | float | str):
+            return value
+    try:
+        return float(text)  # ".5", "1.", "1e3" in Python's spelling
+    except ValueError:
+        return text
+
+
+def parse_fmus(options: Sequence[str]) -> dict[str, str]:
+    """`--fmu` options as unit to path (or built-in name). Raises ConfigError."""
+    paths = {}
+    for option in options:
+        unit, _, path = (part.strip() for part in option.partition("="))
+        if not (unit and path):
+            raise ConfigError(f"--fmu {option}: it is written unit=PATH, as in vehicle=my/Vehicle.fmu")
+        paths[unit] = path
+    return paths
+
+
+@contextlib.contextmanager
+def as_typed(options: Sequence[str]) -> Iterator[None]:
+    """Let an error about a parameter name the `--set` option that the user typed."""
+    try:
+        yield
+    except ConfigError as error:
+        for option in options:
+            place = f"parameter {option.partition('=')[0].strip()}:"
+            if str(error).startswith(place):
+                raise ConfigError(f"--set {option}:{str(error).removeprefix(place)}") from error
+        raise

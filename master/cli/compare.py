@@ -1,0 +1,45 @@
+"""`evcosim compare`: whether two results are the same within a tolerance."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="Results folder or CSV file.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="What to compare with it.")],
+    tolerance: Annotated[
+        float, typer.Option(metavar="T", help="Difference allowed, in each variable's own unit.")
+    ] = 0.0,
+    relative: Annotated[
+        float, typer.Option(metavar="R", help="Difference allowed beside it, as a share of the range in A.")
+    ] = 0.0,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw what differs most (.png, .svg, .pdf).")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> int:
+    """Compare two results; exit code 1 when they differ."""
+    from ...cosim import compare as comparing
+    from ...cosim.results import Results
+    from .console import print_json, print_table
+
+    first, second = Results.read(a), Results.read(b)
+    found = comparing.compare(first, second, tolerance, relative)
+    if plot is not None:
+        from ...cosim import figures
+
+        figures.write(figures.draw_comparison(first, second, labels=(str(a), str(b))), plot)
+    if as_json:
+        print_json(dataclasses.asdict(found) | {"equal": found.equal})
+        return 0 if found.equal else 1
+    headers, rows = found.table(all_rows=False)
+    if rows:
+        print_table(headers, rows, right=headers[2:6])
+        print()
+    print(found.summary())
+    return 0 if found.equal else 1

@@ -1,0 +1,139 @@
+"""What the verbs print: tables and JSON on stdout, a progress bar on stderr."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import shutil
+import sys
+import textwrap
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import typer
+
+_UNBOUNDED = 10_000  # columns of what is no terminal: a line of a table is a line of the file
+_NARROW = 24  # a text is not wrapped to fewer columns
+_GAP, _BELOW = "  ", "    "
+_REFRESH = 0.1  # s
+
+Show = Callable[[float], None]
+"""Told the simulated time reached, in s."""
+
+
+def print_json(data: Any) -> None:
+    """Print JSON; a number that is not finite becomes null, since JSON has no name for it."""
+    print(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, Mapping):
+        return {str(key): _finite(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_finite(value) for value in data]
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    return str(data) if isinstance(data, os.PathLike) else data
+
+
+def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[str] = ()) -> None:
+    """Print rows below headers; the columns named in `right` are right-aligned, empty ones are left out.
+
+    The last column is wrapped; where the terminal is too narrow for it, it goes below the others. Nothing
+    is cut off: a line may be longer than the terminal is wide.
+    """
+    shown = [i for i in range(len(headers)) if any(row[i] for row in rows)]
+    *fixed, last = shown or [len(headers) - 1]
+    widths = {i: max(len(text) for text in (headers[i], *(row[i] for row in rows))) for i in shown}
+    left = sum(widths[i] + len(_GAP) for i in fixed)
+    below = fixed and left + min(_NARROW, widths[last]) > _width()
+
+    def line(cells: Sequence[str]) -> str:
+        return _GAP.join(
+            cells[i].rjust(widths[i]) if headers[i] in right else cells[i].ljust(widths[i]) for i in fixed
+        )
+
+    for cells in (headers, *rows):
+        show = _print_bold if cells is headers else print
+        if below:
+            show(line(cells).rstrip())
+            if cells[last]:
+                show(_wrapped(_BELOW, cells[last], len(_BELOW)))
+        else:
+            show(_wrapped(line(cells) + _GAP if fixed else "", cells[last], left))
+
+
+def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
+    """Print names and values side by side, the values wrapped."""
+    width = max((len(name) for name, _ in fields), default=0)
+    for name, value in fields:
+        head = " " * indent + name.ljust(width) + _GAP
+        print(_wrapped(head, value, len(head)))
+
+
+def print_title(text: str) -> None:
+    """Print a heading, after an empty line."""
+    print()
+    _print_bold(text)
+
+
+def _wrapped(head: str, text: str, indent: int) -> str:
+    """`head`, then `text` wrapped to the width with `indent` spaces before its other lines."""
+    lines = textwrap.wrap(
+        text, max(_width() - indent, _NARROW), break_on_hyphens=False, break_long_words=False
+    ) or [""]
+    return ("\n" + " " * indent).join([head + lines[0], *lines[1:]]).rstrip()
+
+
+def _width() -> int:
+    """The columns of the terminal; of what is none, as many as a line needs."""
+    bounded = sys.stdout.isatty() or "COLUMNS" in os.environ
+    return shutil.get_terminal_size().columns if bounded else _UNBOUNDED
+
+
+def _print_bold(text: str) -> None:
+    typer.secho(text, bold=True)  # plain where stdout is no terminal
+
+
+def number(value: float) -> str:
+    """A number for people: six digits."""
+    return f"{value:.6g}"
+
+
+def counted(count: int, thing: str) -> str:
+    """`1 value`, `2 values`."""
+    return f"{count} {thing}" + ("" if count == 1 else "s")
+
+
+@contextlib.contextmanager
+def progress_bar(text: str, start: float, stop: float, wanted: bool) -> Iterator[Show]:
+    """A bar over the simulated time [s] on stderr, where that is a terminal and a bar is wanted."""
+    if not (wanted and sys.stderr.isatty()):
+        yield lambda reached: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+    )
+    # refreshed from here: a thread of its own would take the interpreter away from the units
+    with Progress(*columns, console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
+        task = progress.add_task(text, total=stop - start)
+        last = time.perf_counter()
+
+        def show(reached: float) -> None:
+            nonlocal last
+            now = time.perf_counter()
+            if now - last >= _REFRESH:
+                last = now
+                progress.update(task, completed=reached - start)
+                progress.refresh()
+
+        yield show

@@ -1,0 +1,88 @@
+"""Every error becomes plain text on stderr and an exit code; a traceback is shown with --debug alone."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+_SCREEN = 20  # lines of a message at most
+
+FAILED, WRONG_USE, INTERRUPTED, BROKEN_PIPE = 1, 2, 130, 141
+
+
+def guarded(command: Any, arguments: Sequence[str]) -> int:
+    """Run a click command and return the exit code. Nothing but SystemExit is raised."""
+    debug = "--debug" in arguments or os.environ.get("EVCOSIM_DEBUG", "0") not in ("", "0")
+    arguments = [argument for argument in arguments if argument != "--debug"]
+    _print_what_the_terminal_can()
+    try:
+        with command.make_context("evcosim", arguments) as context:
+            code = command.invoke(context)
+        sys.stdout.flush()
+        return int(code or 0)
+    except typer.Exit as ending:
+        return ending.exit_code
+    except BrokenPipeError:
+        _forget_stdout()
+        return BROKEN_PIPE
+    except (KeyboardInterrupt, typer.Abort):
+        complain("interrupted")
+        return INTERRUPTED
+    except Exception as error:
+        if debug:
+            import traceback
+
+            traceback.print_exc()
+        code, message = _judged(error)
+        complain(message, whole=debug)
+        return code
+
+
+def complain(message: str, whole: bool = False) -> None:
+    """Say on stderr what is wrong: at most a screen, unless `whole`."""
+    lines = message.strip().splitlines() or ["no reason given"]
+    if len(lines) > _SCREEN and not whole:
+        lines[_SCREEN - 1 :] = [f"... and {len(lines) - _SCREEN + 1} more lines; --debug shows them"]
+    print("evcosim: " + "\n".join(lines), file=sys.stderr)
+
+
+def _judged(error: Exception) -> tuple[int, str]:
+    """Exit code and message of an error."""
+    from ...cosim.errors import ConfigError, RunError
+
+    if hasattr(error, "format_message"):  # a usage error: of click, or of typer's own copy of click
+        return WRONG_USE, _usage(error)
+    if isinstance(error, ConfigError):
+        return WRONG_USE, str(error)
+    if isinstance(error, RunError):
+        return FAILED, str(error)
+    if isinstance(error, OSError) and error.strerror:
+        place = f"{error.filename}: " if error.filename else ""
+        return FAILED, f"{place}{error.strerror}"
+    said = f": {error}" if str(error) else ""
+    return FAILED, f"unexpected error: {type(error).__name__}{said}\n--debug shows where it happened"
+
+
+def _usage(error: Any) -> str:
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context is not None else "evcosim"
+    return f"{error.format_message()}\n'{path} --help' shows how it is used"
+
+
+def _print_what_the_terminal_can() -> None:
+    """A character that the terminal's encoding lacks is printed as '?' and stops nothing."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _forget_stdout() -> None:
+    """Let Python's own flush at exit go nowhere: the reader has gone (`evcosim list | head -1`)."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError:
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - it stays open to the end of the process

@@ -1,0 +1,52 @@
+"""`evcosim info`: what an FMU offers, or how a system is connected."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def info(
+    what: Annotated[
+        str, typer.Argument(metavar="FILE|NAME", help="An FMU or a system: a file, or a built-in name.")
+    ],
+    causality: Annotated[
+        list[str] | None,
+        typer.Option(metavar="C", help="FMU: only variables of it, as in 'input'; can be given again."),
+    ] = None,
+    search: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="FMU: only variables with it in name or description.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Show what an FMU offers or how a system is connected."""
+    from ...cosim.system import system_names
+    from . import info_fmu, info_system
+    from .console import print_json
+
+    if what.endswith(".toml") or what in system_names():
+        about = info_system.described(what)
+        show = info_system.show
+    else:
+        about = info_fmu.described(fmu_path(what), causality or [], search)
+        show = info_fmu.show
+    if as_json:
+        print_json(about)
+    else:
+        show(about)
+
+
+def fmu_path(name: str) -> Path:
+    """The file of an FMU by path or built-in name. Raises ConfigError with the nearest system or FMU."""
+    from ...cosim.errors import ConfigError, nearest
+    from ...cosim.system import system_names
+    from ..builtin import builtin_names, fmu_file
+
+    known = (*system_names(), *builtin_names())
+    if name in known or Path(name).exists() or any(c in name for c in "/\\."):
+        return Path(name) if Path(name).exists() else fmu_file(name)
+    raise ConfigError(
+        f"there is no system or FMU '{name}'{nearest(name, known)}; built in: {', '.join(known)}"
+    )

@@ -1,0 +1,161 @@
+"""What `evcosim info` says of a system: units, connections with their conversions, messages, scenarios."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .console import number, print_fields, print_table, print_title
+
+if TYPE_CHECKING:
+    from ...cosim.plan import MessagePlan, Plan
+    from ...cosim.system import System
+    from ...cosim.units import Affine
+
+
+def described(name: str) -> dict[str, Any]:
+    """All that is shown of a system. Raises ConfigError for everything that is wrong in it."""
+    from ...cosim.scenario import load_scenario, scenario_names
+    from ...cosim.system import load_system
+
+    system = load_system(name)
+    plan = _whole_plan(system)
+    scenarios = {s: load_scenario(system, s).file.title for s in scenario_names(system)}
+    return {
+        "file": str(system.path),
+        "name": system.file.name,
+        "title": system.file.title,
+        "source": system.file.source,
+        "step_size": plan.experiment.step_size,
+        "stop_time": plan.experiment.stop_time,
+        "algorithm": plan.algorithm,
+        "units": [
+            {"name": u.name, "fmu": u.fmu, "period": u.every * plan.experiment.step_size,
+             "substeps": u.substeps, "parameters": u.parameters}
+            for u in plan.units
+        ],
+        "connections": _connections(system, plan),
+        "messages": [_message(m, plan) for m in plan.messages],
+        "default_scenario": system.file.scenario,
+        "scenarios": scenarios,
+        "warnings": list(plan.warnings),
+    }  # fmt: skip # one line for each key
+
+
+def _whole_plan(system: System) -> Plan:
+    """The plan with all units, none left out by a scenario."""
+    from ...cosim.resolve import Options, resolve
+    from ...cosim.scenario import Scenario, ScenarioFile
+    from ..builtin import fmu_file
+    from ..fmu import read_fmu
+
+    entries = system.file.units
+    interfaces = {
+        unit: read_fmu(fmu_file(entry.fmu, system.path)).interface for unit, entry in entries.items()
+    }
+    return resolve(system, Scenario("", None, ScenarioFile()), interfaces, Options())
+
+
+def _connections(system: System, plan: Plan) -> list[dict[str, str]]:
+    """One entry for each connection and receiver, in the order of the file."""
+    units = {f"{u.name}.{v.name}": v.unit for u in plan.units for v in u.interface.variables.values()}
+    direct = {(".".join(link.source), ".".join(link.sink)): link.map for link in plan.links}
+    over_bus = {f"{m.bus}.{m.message.name}.{r.signal.name}": r for m in plan.messages for r in m.routes}
+    found = []
+    for connection in system.file.connect:
+        source, via = connection.source, connection.via
+        base = {"from": source, "from_unit": units[source], "via": via or "", "bus_unit": "", "to_bus": ""}
+        if via is not None:
+            route = over_bus[via]
+            base |= {"bus_unit": route.signal.unit, "to_bus": in_words(route.to_bus)}
+            maps = [map_ for _, map_ in route.sinks]
+        else:
+            maps = [direct[source, sink] for sink in connection.to]
+        for sink, map_ in zip(connection.to, maps, strict=True):
+            found.append(base | {"to": sink, "to_unit": units[sink], "to_receiver": in_words(map_)})
+        if not connection.to:
+            found.append(base | {"to": "", "to_unit": "", "to_receiver": ""})
+    return found
+
+
+def in_words(map_: Affine) -> str:
+    """A unit conversion as it is computed: "x 3.6", "x 1.8 + 32"; "" where values stay what they are."""
+    words = f"x {map_.scale:.10g}" if map_.scale != 1.0 else ""
+    if map_.offset:
+        words += f" {'+' if map_.offset > 0 else '-'} {abs(map_.offset):.10g}"
+    return words.strip()
+
+
+def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
+    message = plan.message
+    return {
+        "bus": plan.bus,
+        "name": message.name,
+        "id": message.frame_id,
+        "cycle_time": plan.every * whole.experiment.step_size,
+        "signals": [
+            {"name": route.signal.name, "bits": route.signal.length, "scale": route.signal.scale,
+             "offset": route.signal.offset, "minimum": route.signal.minimum,
+             "maximum": route.signal.maximum, "unit": route.signal.unit,
+             "sender": plan.senders[route.signal.name]}
+            for route in plan.routes
+        ],
+    }  # fmt: skip # one line for each key
+
+
+def show(about: dict[str, Any]) -> None:
+    """Print what `described` gave."""
+    steps = f"steps of {about['step_size']:g} s to {about['stop_time']:g} s, {about['algorithm']}"
+    fields = [("system", about["name"]), ("title", about["title"]), ("source", about["source"])]
+    fields += [("file", about["file"]), ("experiment", steps)]
+    fields += [("warning", text) for text in about["warnings"]]
+    print_fields([(name, value) for name, value in fields if value])
+    print_title("Units, in the order in which they step")
+    print_table(("name", "FMU", "every [s]", "parameters"), [_unit_row(u) for u in about["units"]])
+    print_title("Connections")
+    print_table(("from", "to", "via"), [_connection_row(c) for c in about["connections"]])
+    if about["messages"]:
+        print_title("Messages")
+        headers = ("message", "id", "every [s]", "signal", "bits", "resolution", "range")
+        rows = [row for message in about["messages"] for row in _message_rows(message)]
+        print_table(headers, rows, right=("bits",))
+    if about["scenarios"]:
+        print_title("Scenarios (* the default)")
+        default = about["default_scenario"]
+        print_fields(
+            [(f"{name} *" if name == default else name, title) for name, title in about["scenarios"].items()]
+        )
+
+
+def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:
+    period = f"{unit['period']:g}" + (f" in {unit['substeps']} FMU steps" if unit["substeps"] > 1 else "")
+    parameters = ", ".join(f"{name} = {value}" for name, value in unit["parameters"].items())
+    return (unit["name"], unit["fmu"], period, parameters)
+
+
+def _connection_row(c: dict[str, str]) -> tuple[str, ...]:
+    """Each end with its unit of measure, and the conversion at the end of the arrow where there is one."""
+    source, bus, sink = (
+        " ".join([name, *([f"[{unit}]"] if unit else []), *([f"({map_})"] if map_ else [])]) if name else ""
+        for name, unit, map_ in (
+            (c["from"], c["from_unit"], ""),
+            (c["via"], c["bus_unit"], c["to_bus"]),
+            (c["to"], c["to_unit"], c["to_receiver"]),
+        )
+    )
+    return (source, sink or "(on the bus only)", bus)
+
+
+def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for i, signal in enumerate(message["signals"]):
+        head = (f"{message['bus']}.{message['name']}", f"0x{message['id']:X}", f"{message['cycle_time']:g}")
+        unit = f" {signal['unit']}" if signal["unit"] else ""
+        ends = [
+            ("-inf", "inf")[j] if signal[key] is None else number(signal[key])
+            for j, key in enumerate(("minimum", "maximum"))
+        ]
+        rows.append(
+            (*(head if i == 0 else ("", "", "")), signal["name"], str(signal["bits"]),
+             f"{number(signal['scale'])}{unit}", f"[{', '.join(ends)}]{unit}")
+        )  # fmt: skip # one line for each half of the row
+    return rows

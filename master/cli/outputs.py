@@ -1,0 +1,65 @@
+"""The folder of a run: found writable before the first step, then filled with all that the run leaves."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...cosim.figure_spec import FigureSpec
+    from ...cosim.results import Results
+    from ..simulation import Simulation
+
+FIGURES = ("figure.png", "figure.svg")
+CAN_LOGS = ("can.log", "can.blf", "can.asc")
+
+
+def prepared(folder: Path) -> Path:
+    """Make the folder if needed and try to write into it. Raises ConfigError naming it and the reason."""
+    from ...cosim.errors import ConfigError
+
+    trial = folder / f".trial.{os.getpid()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        trial.write_bytes(b"evcosim")
+        trial.unlink()
+    except OSError as error:
+        raise ConfigError(
+            f"output folder {folder}: cannot be written: {error.strerror or error}; "
+            "--output names another one"
+        ) from error
+    return folder
+
+
+def write_results(folder: Path, results: Results) -> list[str]:
+    """Write results.csv and run.json and return their names. Figures and logs of an earlier run are removed:
+    a folder holds one run. Raises ConfigError where something cannot be written.
+    """
+    from ...cosim.results import CSV_NAME, MANIFEST_NAME
+
+    for name in (*FIGURES, *CAN_LOGS):
+        with contextlib.suppress(OSError):  # if it stays, writing below says why
+            (folder / name).unlink(missing_ok=True)
+    results.write(folder)
+    return [CSV_NAME, MANIFEST_NAME]
+
+
+def write_figure(folder: Path, results: Results, spec: FigureSpec | None) -> list[str]:
+    """Draw and write the figure and return the names of its files. Raises ConfigError."""
+    from ...cosim import figures
+
+    return [path.name for path in figures.save(figures.draw(results, spec), folder)]
+
+
+def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:
+    """Write the frames of the run in each format and return the names of the files. Raises ConfigError."""
+    from ...cosim.errors import ConfigError
+
+    for name in CAN_LOGS:
+        try:
+            simulation.write_can_log(folder / name)
+        except OSError as error:
+            raise ConfigError(f"{folder / name}: cannot be written: {error.strerror or error}") from error
+    return list(CAN_LOGS)

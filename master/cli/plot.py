@@ -1,0 +1,89 @@
+"""`evcosim plot`: the figure of results, drawn again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from ...cosim.figure_spec import FigureSpec
+    from ...cosim.results import Results
+
+
+def plot(
+    result: Annotated[Path, typer.Argument(metavar="RESULT", help="Results folder or CSV file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Where to: .png, .svg or .pdf; default: beside the results.",
+        ),
+    ] = None,
+    signals: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATTERN", help="Only these variables, as in 'vehicle.*'; can be given again."),
+    ] = None,
+) -> None:
+    """Draw results again, or chosen signals of them."""
+    from ...cosim import figures
+    from ...cosim.results import Results
+
+    results = Results.read(result)
+    if signals:
+        results, spec = chosen(results, signals), None
+    else:
+        spec = spec_of(results)
+    path = output or (result / "figure.png" if result.is_dir() else result.with_suffix(".png"))
+    figures.write(figures.draw(results, spec), path)
+    print(path)
+
+
+def chosen(results: Results, patterns: list[str]) -> Results:
+    """The results of the variables that match a pattern. Raises ConfigError for one that matches none."""
+    from ...cosim.errors import ConfigError, nearest
+    from ...cosim.results import Results
+
+    for pattern in patterns:
+        if not any(_matches(name, pattern) for name in results.names):
+            raise ConfigError(
+                f"--signals {pattern}: the results have no such variable{nearest(pattern, results.names)}"
+            )
+    kept = [i for i, name in enumerate(results.names) if any(_matches(name, p) for p in patterns)]
+    variables = [results.variables[i] for i in kept]
+    return Results(results.time, results.data[:, kept], variables, results.manifest)
+
+
+def _matches(name: str, pattern: str) -> bool:
+    from fnmatch import fnmatchcase
+
+    return name == pattern or fnmatchcase(name, pattern)  # FMI names may hold brackets, as in x[1]
+
+
+def spec_of(results: Results) -> FigureSpec | None:
+    """The figure of the system and scenario that run.json names, if they are there and it fits."""
+    from ...cosim import figures
+    from ...cosim.errors import ConfigError
+    from ...cosim.scenario import load_scenario
+    from ...cosim.system import load_system
+    from .specs import figure_spec
+
+    names = [results.manifest.get(key) for key in ("system", "scenario")]
+    files = results.manifest.get("files", {})
+    system_name, scenario_name = (
+        files.get(k) or n for k, n in zip(("system", "scenario"), names, strict=True)
+    )
+    if not system_name:
+        return None
+    try:
+        system = load_system(str(system_name))
+        scenario = load_scenario(system, str(scenario_name) if scenario_name else None)
+        spec = figure_spec(system, scenario)
+        if spec is not None:
+            figures.check(spec, {v.name: v for v in results.variables}, "figure")
+    except ConfigError:
+        return None  # moved, renamed or changed since the run: the default figure shows what there is
+    return spec

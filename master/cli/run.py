@@ -1,0 +1,226 @@
+"""`evcosim run`: a system to its stop time, the results in a folder, and what happened in a few lines."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from ...cosim.results import Results
+    from ..simulation import Simulation
+    from .console import Show
+    from .interrupts import Interrupts
+
+_CHUNK_STEPS = 256
+_CHUNK_SECONDS = 0.05  # between two looks at Ctrl-C and the progress bar, however slow a unit is
+
+
+class Algorithm(enum.StrEnum):
+    """The master algorithms."""
+
+    gauss_seidel = "gauss_seidel"
+    jacobi = "jacobi"
+
+
+def run(
+    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")],
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
+    ] = None,
+    fmus: Annotated[
+        list[str] | None,
+        typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
+    ] = None,
+    ideal: Annotated[
+        bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")
+    ] = False,
+    algorithm: Annotated[
+        Algorithm | None,
+        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
+    ] = None,
+    stop_time: Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>."),
+    ] = None,
+    can_log: Annotated[
+        bool, typer.Option("--can-log", help="Write the CAN frames (.log .blf .asc).")
+    ] = False,
+    no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figure.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what happened as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
+) -> int:
+    """Run a system; write results.csv, run.json, a figure."""
+    order = Order(
+        system=system,
+        scenario=scenario,
+        settings=settings or [],
+        fmus=fmus or [],
+        ideal=ideal,
+        algorithm=algorithm,
+        stop_time=stop_time,
+        output=output,
+        can_log=can_log,
+        figure=not no_plot,
+        bar=not (as_json or quiet),
+    )
+    return _carry_out(order, as_json, quiet)
+
+
+@dataclasses.dataclass(frozen=True)
+class Order:
+    """What was asked for."""
+
+    system: str
+    scenario: str | None
+    settings: list[str]
+    fmus: list[str]
+    ideal: bool
+    algorithm: Algorithm | None
+    stop_time: float | None
+    output: Path | None
+    can_log: bool
+    figure: bool
+    bar: bool
+
+
+@dataclasses.dataclass
+class Outcome:
+    """What came of it: `error` is the failure (None: none), `files` the names of what was written."""
+
+    simulation: Simulation
+    folder: Path
+    results: Results
+    error: BaseException | None
+    files: list[str] = dataclasses.field(default_factory=list)
+    metrics: list[Any] = dataclasses.field(default_factory=list)
+    remarks: list[str] = dataclasses.field(default_factory=list)
+
+
+def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
+    from . import summary
+    from .console import print_json
+    from .failures import FAILED, INTERRUPTED, complain
+
+    outcome = _run(order)
+    _evaluate(outcome)
+    _write(outcome, order)
+    if as_json:
+        print_json(summary.as_data(outcome))
+    for remark in outcome.remarks if as_json or quiet else ():
+        complain(f"warning: {remark}")
+    if outcome.error is not None:
+        complain(summary.of_failure(outcome))
+        return INTERRUPTED if isinstance(outcome.error, KeyboardInterrupt) else FAILED
+    if not (as_json or quiet):
+        summary.show(outcome)
+    return 0
+
+
+def _run(order: Order) -> Outcome:
+    """Prepare everything, then step: what goes wrong in the steps is an outcome, before them it is raised."""
+    from ...cosim.errors import ConfigError, RunError
+    from .arguments import as_typed, parse_fmus, parse_settings
+    from .interrupts import Interrupts
+    from .outputs import prepared
+    from .specs import check_specs
+
+    parameters, fmus = parse_settings(order.settings), parse_fmus(order.fmus)
+    if order.can_log and order.ideal:
+        raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
+    error: BaseException | None = None
+    with Interrupts() as interrupts:
+        with as_typed(order.settings):
+            simulation = _load(order, parameters, fmus)
+        try:
+            with simulation:
+                interrupts.check()
+                check_specs(simulation.system, simulation.scenario, simulation.plan.columns)
+                folder = prepared(order.output or _default_folder(simulation))
+                _step(simulation, interrupts, order.bar)
+        except (RunError, KeyboardInterrupt) as failure:
+            if simulation.time <= simulation.plan.experiment.start_time and not isinstance(failure, RunError):
+                raise  # before the first step there is nothing to keep
+            error = failure
+    return Outcome(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
+
+
+def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Simulation:
+    from ..simulation import Simulation
+
+    return Simulation(
+        order.system,
+        order.scenario,
+        parameters=parameters,
+        fmus=fmus,
+        ideal=order.ideal,
+        algorithm=order.algorithm.value if order.algorithm else None,
+        stop_time=order.stop_time,
+        log_frames=order.can_log,
+    )
+
+
+def _default_folder(simulation: Simulation) -> Path:
+    names = (simulation.system.file.name, simulation.scenario.name)
+    return Path("results") / "-".join(name for name in names if name)
+
+
+def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
+    """Step to the stop time, in chunks that take about _CHUNK_SECONDS."""
+    from .console import progress_bar
+
+    experiment = simulation.plan.experiment
+    title = " ".join(name for name in (simulation.system.file.name, simulation.scenario.name) if name)
+    show: Show
+    with progress_bar(title, experiment.start_time, experiment.stop_time, bar) as show:
+        count = 1
+        while left := simulation.steps_left:
+            begin = time.perf_counter()
+            simulation.step(min(count, left))
+            show(simulation.time)
+            interrupts.check()
+            if time.perf_counter() - begin < _CHUNK_SECONDS:
+                count = min(2 * count, _CHUNK_STEPS)
+            else:
+                count = max(count // 2, 1)
+
+
+def _evaluate(outcome: Outcome) -> None:
+    """The metrics of a whole run, also for run.json; how a broken one ended."""
+    from ...cosim import metrics
+    from .specs import metric_specs
+
+    manifest = outcome.results.manifest
+    if outcome.error is None:
+        specs = metric_specs(outcome.simulation.system, outcome.simulation.scenario)
+        outcome.metrics = metrics.evaluate(outcome.results, specs)
+        manifest["status"] = "done"
+        manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in outcome.metrics}
+    elif isinstance(outcome.error, KeyboardInterrupt):
+        manifest["status"] = "interrupted"
+    else:
+        manifest["status"], manifest["error"] = "failed", str(outcome.error)
+
+
+def _write(outcome: Outcome, order: Order) -> None:
+    from .outputs import write_can_logs, write_figure, write_results
+    from .specs import figure_spec
+
+    simulation, folder, results = outcome.simulation, outcome.folder, outcome.results
+    outcome.files += write_results(folder, results)
+    if order.can_log and not simulation.plan.messages:
+        outcome.remarks.append("no CAN log: no connection of the system is over a bus")
+    elif order.can_log:
+        outcome.files += write_can_logs(folder, simulation)
+    if order.figure and len(results) > 1:
+        outcome.files += write_figure(folder, results, figure_spec(simulation.system, simulation.scenario))

@@ -1,0 +1,103 @@
+"""What a run says at its end, for people and as data."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .console import counted, number, print_fields
+
+if TYPE_CHECKING:
+    from .run import Outcome
+
+_FINAL_VALUES = 8
+
+
+def show(outcome: Outcome) -> None:
+    """Print it in a few lines."""
+    manifest = outcome.results.manifest
+    fields = [
+        ("run", _name(manifest)),
+        ("time", _time(outcome)),
+        ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
+    ]
+    for i, (signal, about) in enumerate(manifest["saturations"].items()):
+        times = counted(int(about["count"]), "time")
+        fields.append(
+            ("saturated" if i == 0 else "", f"{signal} {times}, first at {about['first_time']:g} s")
+        )
+    fields += [("warning", remark) for remark in outcome.remarks]
+    print_fields(fields)
+    print()
+    print_fields([(m.name, m.text) for m in outcome.metrics] or _final_values(outcome))
+    print(f"\nin {outcome.folder}: {', '.join(outcome.files)}")
+
+
+def as_data(outcome: Outcome) -> dict[str, Any]:
+    """The same as data; `final` holds the last value of every recorded variable."""
+    results, manifest = outcome.results, outcome.results.manifest
+    keys = ("system", "scenario", "status", "order", "ideal", "steps", "saturations", "loop_seconds")
+    return {key: manifest[key] for key in keys} | {
+        "algorithm": manifest["experiment"]["algorithm"],
+        "error": manifest.get("error"),
+        "simulated_seconds": _simulated(outcome),
+        "real_time_factor": _factor(outcome),
+        "warnings": outcome.remarks,
+        "metrics": manifest.get("metrics", {}),
+        "final": {name: results[name][-1].item() for name in results.names} if len(results) else {},
+        "folder": str(outcome.folder),
+        "files": outcome.files,
+    }
+
+
+def of_failure(outcome: Outcome) -> str:
+    """Why a run broke off, and where what it recorded is."""
+    results = outcome.results
+    if isinstance(outcome.error, KeyboardInterrupt):
+        why = f"interrupted at t = {number(outcome.simulation.time)} s"
+    else:
+        why = str(outcome.error)
+    kept = (
+        f"results up to t = {number(float(results.time[-1]))} s" if len(results) else "no step was recorded"
+    )
+    return f"{why}\n{kept}; in {outcome.folder}: {', '.join(outcome.files)}"
+
+
+def _name(manifest: dict[str, Any]) -> str:
+    return " ".join(name for name in (manifest["system"], manifest["scenario"]) if name) + (
+        ", ideal (no buses)" if manifest["ideal"] else ""
+    )
+
+
+def _algorithm(manifest: dict[str, Any]) -> str:
+    experiment = manifest["experiment"]
+    return f"{experiment['algorithm']}, {manifest['steps']} steps of {experiment['step_size']:g} s"
+
+
+def _simulated(outcome: Outcome) -> float:
+    return outcome.simulation.time - outcome.simulation.plan.experiment.start_time
+
+
+def _factor(outcome: Outcome) -> float:
+    seconds = outcome.simulation.loop_seconds
+    return _simulated(outcome) / seconds if seconds > 0.0 else 0.0
+
+
+def _time(outcome: Outcome) -> str:
+    seconds, factor = outcome.simulation.loop_seconds, _factor(outcome)
+    return f"{number(_simulated(outcome))} s simulated in {seconds:.3g} s: {factor:.3g} times real time"
+
+
+def _final_values(outcome: Outcome) -> list[tuple[str, str]]:
+    """The last values of a few outputs: those that other units receive first."""
+    results = outcome.results
+    sent = {connection.source for connection in outcome.simulation.system.file.connect}
+    outputs = [v for v in results.variables if v.causality == "output"]
+    outputs.sort(key=lambda v: v.name not in sent)
+    rows = []
+    for v in outputs[:_FINAL_VALUES]:
+        value = results[v.name][-1].item()
+        text = dict(v.items).get(value, str(value)) if v.items else number(value)
+        rows.append(
+            (v.name, f"{text} {v.unit}".rstrip(" 1") if v.unit == "1" else f"{text} {v.unit}".rstrip())
+        )
+    return rows
