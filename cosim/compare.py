@@ -213,6 +213,10 @@ def _range(values: Array) -> float:
 
 
 def worst(rows: Sequence[Row], count: int) -> list[str]:
-    """The names of the variables that differ most, by their share of the range; of all if none does."""
-    different = [row for row in rows if row.relative > 0.0] or rows
+    """The names of the variables that differ most, by their share of the range; of all if none does.
+
+    Those that could not be compared, as a speed with a force, are left out.
+    """
+    compared = [row for row in rows if not math.isnan(row.difference)]
+    different = [row for row in compared if row.relative > 0.0] or compared
     return [row.name for row in sorted(different, key=lambda row: -row.relative)[:count]]

@@ -121,7 +121,7 @@ def draw_comparison(
     if names is None:
         names = worst(compare(a, b).rows, MAX_PANELS)
     if not names:
-        raise ConfigError("the two results have no variable in common")
+        raise ConfigError("the two results have no variable in common that can be compared")
     with _style():
         figure, panels = _panels([1.0] * len(names), f"{labels[0]} and {labels[1]}")
         clock = _Clock.of(a, b)

@@ -171,9 +171,7 @@ def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, Result
             return without(f"the {spec.per.reduce} of {spec.per.signal} is 0")
         value /= numbers[1]
     value = scale(value)
-    return (
-        Metric(spec.name, value, spec.unit) if math.isfinite(value) else without("it is not a finite number")
-    )
+    return Metric(spec.name, value, spec.unit) if math.isfinite(value) else without("it is not finite")
 
 
 class _NoValueError(ConfigError):
@@ -190,8 +188,9 @@ def _unit(variable: ResultVariable) -> UnitOfMeasure:
 
 def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> units.Affine:
     """From what the reductions give, in the signals' units, to the metric's unit."""
-    if spec.per is None and spec.reduce in _VALUES and _bare(spec, variables):
-        return units.Affine()
+    if spec.per is None and spec.reduce in _VALUES and _same(spec.unit, variables[spec.signal].unit):
+        _to_signal(spec, variables)  # raises where they measure different quantities
+        return units.Affine()  # nothing to convert, so the unit may be one that nobody defines
     source, target = _outcome(spec, variables), units.defined(spec.unit)
     if spec.per is not None:
         source = _quotient(source, _outcome(spec.per, variables))
@@ -204,9 +203,8 @@ def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> units.A
     return convert
 
 
-def _bare(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> bool:
-    """Whether the signal and the metric both have no unit, so that nothing is to convert."""
-    return spec.unit in ("", "1") and variables[spec.signal].unit == ""
+def _same(a: str, b: str) -> bool:
+    return a == b or {a, b} == {"", "1"}
 
 
 def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOfMeasure:
@@ -224,13 +222,13 @@ def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOf
     return unit
 
 
-def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[units.Affine, float | None]:
-    """From the unit of `minus` to that of the signal, and the threshold in the signal's unit."""
+def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[units.Affine, float]:
+    """From the unit of `minus` to that of the signal, and the threshold (0 if none) in the signal's unit."""
     signal = variables[part.signal]
-    other, threshold = units.Affine(), part.threshold
+    other, threshold = units.Affine(), part.threshold or 0.0
     if part.minus is not None and variables[part.minus].unit != signal.unit:
         other = units.conversion(_unit(variables[part.minus]), _unit(signal))
-    if threshold is not None and part.threshold_unit is not None and part.threshold_unit != signal.unit:
+    if part.threshold_unit is not None and part.threshold_unit != signal.unit:
         source, target = units.defined(part.threshold_unit), _unit(signal)
         if part.minus is not None:  # a threshold of a difference has no zero of its own
             source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
