@@ -90,8 +90,8 @@ def test_times_count_from_the_run_s_start_not_from_the_first_frame(tmp_path: Pat
 
 
 def test_blf_times_are_whole_nanoseconds(tmp_path: Path) -> None:
-    write_can_log(tmp_path / "frames.blf", Run(60, ("EMD_Status",)).log(), STEP)
-    assert [m.timestamp for m in read(tmp_path / "frames.blf")] == [k / 100 for k in range(60)]
+    write_can_log(tmp_path / "frames.blf", Run(220, ("EMD_Status",)).log(), STEP)
+    assert [m.timestamp for m in read(tmp_path / "frames.blf")] == [k / 100 for k in range(220)]
 
 
 def test_frames_of_one_instant_stand_in_the_order_of_arbitration() -> None:

@@ -28,7 +28,7 @@ from evcosim.cosim.units import Affine
 
 EV = Path(dbc.__file__).parent / "can" / "ev.dbc"
 ROUNDINGS = ("nearest", "half_even", "truncate")
-SCALINGS = [(1, 0), (0.4, 0), (-0.5, 20), (3, -7), (0.001, -273.15), (1 / 3, 0.1)]
+SCALINGS = [(1, 0), (0.4, 0), (-0.5, 20), (3, -7), (0.001, -273.15), (1 / 3, 0.1), (1_000_003, 1)]
 
 
 class Line:
@@ -61,11 +61,18 @@ def decoded(codec: Any, name: str, raw: int) -> float:
     return float(codec.decode(data, decode_choices=False)[name])
 
 
+def type_range(signal: Signal) -> tuple[int, int]:
+    """By the definition of two's complement, said here once more."""
+    return (
+        (-(2**signal.length) // 2, 2**signal.length // 2 - 1) if signal.signed else (0, 2**signal.length - 1)
+    )
+
+
 def expected_raw(signal: Signal, rounding: str, value: float) -> int:
     """Saturate, divide, round by exact fractions, clip: independent of the implementation."""
     x = value if signal.minimum is None else max(value, signal.minimum)
     x = x if signal.maximum is None else min(x, signal.maximum)
-    low, high = (int(raw) for raw in signal.raw_type_range)
+    low, high = type_range(signal)
     q = (x - signal.offset) / signal.scale
     if math.isinf(q):
         return high if q > 0 else low
@@ -101,7 +108,7 @@ def sweep_text(signed: bool, little_endian: bool, limits: bool) -> str:
 
 def edge_values(signal: Signal) -> Iterator[float]:
     """Values around both ends of the raw range and both limits, on the grid, off it, and half way."""
-    ends = [*signal.raw_type_range]
+    ends = [*type_range(signal)]
     for limit in (signal.minimum, signal.maximum):
         if limit is not None:
             yield from (limit, math.nextafter(limit, -math.inf), math.nextafter(limit, math.inf))
