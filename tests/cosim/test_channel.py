@@ -380,7 +380,7 @@ def _yardstick(memory: memoryview) -> Callable[[], None]:
 
 @pytest.mark.parametrize("log_raw", [False, True])
 def test_sixteen_signals_take_less_than_six_microseconds(log_raw: bool) -> None:
-    """2.8 us (3.3 us with a log) on a machine where the yardstick takes 1.35 us, so the limit is 5.4 us there.
+    """2.8 us (3.3 us with a log) where the yardstick takes 1.35 us, so that the limit is 5.4 us.
 
     The limit is relative to the yardstick, since machines differ and are shared.
     """
