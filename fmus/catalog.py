@@ -28,6 +28,7 @@ CATALOG = {
     "Scooter": Entry("scooter", Experiment(stop_time=60.0)),
     "BoundController": Entry("bound_controller", Experiment(stop_time=60.0)),
     "BoundPlanner": Entry("bound_planner", Experiment(stop_time=60.0)),
+    "Rider": Entry("rider", Experiment(stop_time=60.0)),
     "Battery": Entry("battery", Experiment(stop_time=60.0)),
 }
 

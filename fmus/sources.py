@@ -109,10 +109,11 @@ def text_of_class(file: Path, name: str) -> str:
 
 def _edits(source: Source, package: str, embedded: set[str]) -> Iterator[tuple[int, int, int, str]]:
     """(line, first column, last column, replacement), columns in bytes."""
+    packages = {parent for name in embedded for parent in _parents(name)}
     tops = {name.partition(".")[0] for name in embedded}
     for node in _import_nodes(source):
         if isinstance(node, ast.ImportFrom):
-            if node.level == 0 and node.module in embedded:
+            if node.level == 0 and node.module in embedded | packages:
                 yield _edit_from(source, node, f"{package}.")
         else:
             for alias in node.names:

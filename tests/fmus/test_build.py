@@ -151,6 +151,12 @@ def test_a_second_run_builds_nothing(own_cache, monkeypatch):
     assert built("Battery") == first
 
 
+def test_another_builder_is_another_file_in_the_cache(own_cache, monkeypatch):
+    first = built("Battery")
+    monkeypatch.setattr(building, "_WRITERS", (*building._WRITERS, "cache.py"))
+    assert built("Battery") != first
+
+
 def test_another_source_is_another_file_in_the_cache(own_cache, monkeypatch):
     first = built("Battery")
     entry = CATALOG["Battery"]

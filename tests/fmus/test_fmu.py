@@ -266,12 +266,51 @@ def test_a_state_of_another_version_is_refused(mixed, toy, load):
     assert "this FMU is 'Mixed_" in unit.log[-1][2]
 
 
-def test_bytes_of_a_state_cannot_make_the_fmu_act(mixed, load):
+def test_a_state_brings_back_its_inputs(subject, load, bits, random_inputs):
+    unit = load(subject.path)
+    unit.initialize()
+    inputs = random_inputs(subject.model, 20, 6)
+    unit.run(inputs[:10])
+    state = unit.fmu.getFMUstate()
+    rest = unit.run([{}] * 3, start=10)  # with the inputs that are held
+    unit.run(inputs[10:])
+    unit.fmu.setFMUstate(state)
+    unit.fmu.freeFMUstate(state)
+    assert bits(unit.run([{}] * 3, start=10)) == bits(rest)
+
+
+def test_the_outputs_of_a_sample_hold(toy, load):
+    unit = load(toy("Sampled").path)
+    unit.initialize({"offset": 5.0})
+    assert unit.get() == {"shown": 5.0}
+    assert unit.run([{"offset": 10.0}]) == [{"shown": 11.0}]
+    unit.set({"offset": 20.0})
+    assert unit.get() == {"shown": 11.0}
+    (shown,) = unit.description.outputs
+    assert shown.dependencies == []
+    (shown,) = unit.description.initialUnknowns
+    assert [v.name for v in shown.dependencies] == ["by", "offset"]
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("os", "system"),
+        ("{package}.evcosim.models.base", "inspect.os.system"),
+        ("{package}.evcosim.models.base", "variables"),
+        ("{package}.evcosim.fmus.slave", "ModelSlave"),
+        ("numpy", "save"),
+    ],
+)
+def test_bytes_of_a_state_cannot_make_the_fmu_act(mixed, load, module, name):
     unit = load(mixed.path)
     state = unit.fmu.getFMUstate()
     data = unit.fmu.serializeFMUstate(state)
     unit.fmu.freeFMUstate(state)
-    evil = data.partition(b"\n")[0] + b"\ncos\nsystem\n(S'true'\ntR."
+    stamp = data.partition(b"\n")[0]
+    module = module.format(package=stamp.decode())
+    texts = b"".join(b"\x8c" + bytes([len(text)]) + text.encode() for text in (module, name))
+    evil = stamp + b"\n\x80\x04" + texts + b"\x93."  # push both texts, look the name up in the module
     with pytest.raises(FMICallException, match="fatal"):
         unit.fmu.deSerializeFMUstate(evil)
-    assert "a state of this FMU does not contain os.system" in unit.log[-1][2]
+    assert f"a state of this FMU does not contain {module}.{name}" in unit.log[-1][2]

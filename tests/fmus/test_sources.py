@@ -101,6 +101,15 @@ PACKAGE = {
     + "class Truck(Model):\n"
     + MODEL,
 }
+NAMESPACE = {  # no __init__.py
+    "garage/loads.py": "LOAD = 3\n",
+    "garage/truck.py": "from evcosim.models import base\nfrom evcosim import models\n"
+    + HEAD
+    + "from garage import loads\n"
+    + "VALUE = float(loads.LOAD) if models and base.Model is Model else 0.0\n"
+    + "class Truck(Model):\n"
+    + MODEL,
+}
 SINGLE = {
     "axle.py": "import math, load_of_axle\nAXLE = math.floor(2.5) + load_of_axle.LOAD\n",
     "load_of_axle.py": "LOAD = 7\n",
@@ -122,6 +131,7 @@ SINGLE = {
             {"yard", "yard.loads", "yard.parts", "yard.parts.wheels", "yard.truck"},
             84.0,
         ),
+        (NAMESPACE, "garage.truck", {"garage.loads", "garage.truck"}, 3.0),
         (SINGLE, "truck", {"axle", "load_of_axle", "truck"}, 18.0),
     ],
 )
@@ -136,7 +146,7 @@ def test_a_users_own_modules_go_with_the_model(project, files, module, own, valu
         "evcosim.models.base",
     }
     path = build_model(importlib.import_module(module).Truck, folder / "out")
-    assert runs(path, "/", ("evcosim", "yard", "truck", "axle", "load_of_axle")) == value
+    assert runs(path, "/", ("evcosim", "yard", "garage", "truck", "axle", "load_of_axle")) == value
 
 
 def test_a_script_builds_its_own_model(project):
