@@ -34,8 +34,8 @@ brake, grade and rolling resistance, and its acceleration is then 0. Negative br
 slip, so that the paper's v = (w_f r_f + w_r r_r)/2 holds exactly. No regeneration: the brake is a friction
 brake, and P is never below P_0. At the start the drive gives no force.
 
-Step: (S1) is solved exactly for a command that changes linearly over the step, (1) by Heun's rule (order 2
-in dt, whatever dt/tau_m is; a step of 10 ms is exact to about 1e-5 m/s away from the corners of the map).
+Step: (S1) is solved exactly for a command that changes linearly over the step, (1) by Heun's rule: order 2 in
+dt, stable for any dt/tau_m. A step of 10 ms is exact to about 1e-5 m/s away from the corners of the map.
 """
 
 from __future__ import annotations

@@ -1,0 +1,90 @@
+"""Battery: the current gives the power, charge and energy are conserved, the limits hold."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.models.battery import Battery
+
+P = Battery.Parameters()
+charges = st.floats(0.001, 1.0)
+
+
+def ocv(charge: float) -> float:
+    """Open-circuit voltage [V]."""
+    return P.empty_voltage + P.voltage_rise * charge
+
+
+@given(charges, st.floats(0.0, 8000.0))
+def test_current_times_voltage_is_the_power(charge: float, power: float) -> None:
+    y = Battery.outputs(P, Battery.State(charge, 0.0), Battery.Inputs(power))
+    assert y.voltage * y.current == pytest.approx(power, rel=1e-9, abs=1e-9)
+    assert y.voltage == pytest.approx(ocv(charge) - P.resistance * y.current)
+
+
+@given(charges, st.floats(0.0, 8000.0))
+def test_current_is_the_printed_root(charge: float, power: float) -> None:
+    u, r = ocv(charge), P.resistance
+    y = Battery.outputs(P, Battery.State(charge, 0.0), Battery.Inputs(power))
+    assert y.current == pytest.approx((u - math.sqrt(u * u - 4.0 * r * power)) / (2.0 * r), abs=1e-9)
+
+
+@given(charges, st.floats(0.0, 1e6))
+def test_more_than_the_terminals_carry_is_the_most_they_carry(charge: float, beyond: float) -> None:
+    x = Battery.State(charge, 0.0)
+    limit = ocv(charge) ** 2 / (4.0 * P.resistance)
+    assert Battery.outputs(P, x, Battery.Inputs(limit + beyond)) == Battery.outputs(
+        P, x, Battery.Inputs(limit)
+    )
+    energy = Battery.step(P, x, Battery.Inputs(limit + beyond), 0.01).energy
+    assert energy == pytest.approx(limit * 0.01 / 3600.0)
+
+
+@given(charges, st.floats(-1e6, 1e6))
+def test_charge_never_rises_and_never_leaves_its_range(charge: float, power: float) -> None:
+    x = Battery.State(charge, 0.0)
+    after = Battery.step(P, x, Battery.Inputs(power), 1.0)
+    assert 0.0 <= after.state_of_charge <= charge
+    if power <= 0.0:
+        assert after == x
+
+
+def discharge(x: Battery.State, power: float, seconds: float, steps: int) -> Battery.State:
+    """The state after `steps` equal steps of a constant power [W]."""
+    for _ in range(steps):
+        x = Battery.step(P, x, Battery.Inputs(power), seconds / steps)
+    return x
+
+
+def test_energy_and_losses_come_from_the_charge() -> None:
+    """Charge times open-circuit voltage = energy at the terminals + heat of the resistance."""
+    x, power, dt = Battery.State(0.9, 0.0), 3000.0, 1.0
+    given_up = heat = 0.0
+    for _ in range(600):
+        i = Battery.outputs(P, x, Battery.Inputs(power)).current
+        given_up += ocv(x.state_of_charge) * i * dt / 3600.0
+        heat += P.resistance * i * i * dt / 3600.0
+        x = Battery.step(P, x, Battery.Inputs(power), dt)
+    assert x.energy == pytest.approx(3000.0 * 600.0 / 3600.0)
+    assert given_up == pytest.approx(x.energy + heat, rel=1e-12)
+
+
+def test_halving_the_step_halves_the_error() -> None:
+    start = Battery.State(1.0, 0.0)
+    exact = discharge(start, 3000.0, 600.0, 6400).state_of_charge
+    errors = [discharge(start, 3000.0, 600.0, n).state_of_charge - exact for n in (50, 100, 200)]
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
+    assert errors[1] / errors[2] == pytest.approx(2.0, rel=0.05)
+    assert abs(errors[0]) < 2e-4  # at steps of 12 s
+
+
+def test_an_empty_battery_delivers_nothing() -> None:
+    x = discharge(Battery.State(0.01, 0.0), 5000.0, 60.0, 600)
+    assert x.state_of_charge == 0.0
+    y = Battery.outputs(P, x, Battery.Inputs(5000.0))
+    assert (y.current, y.voltage) == (0.0, P.empty_voltage)
+    assert Battery.step(P, x, Battery.Inputs(5000.0), 1.0) == x
