@@ -92,7 +92,7 @@ class _Sender:
         except ChannelError as error:
             name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
             sender = self.plan.senders.get(error.signal, "")
-            raise RunError(f"{sender} via {name}: {error}") from error
+            raise RunError(f"{sender} via {name}: {error.rule}") from error
 
 
 class Engine:
