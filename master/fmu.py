@@ -36,8 +36,11 @@ class Fmu:
 
     @functools.cached_property
     def interface(self) -> UnitInterface:
-        """What the FMU offers, as the plan needs it."""
-        return _interface(self)
+        """What the FMU offers, as the plan needs it. Raises FmuError for numbers that are none."""
+        try:
+            return _interface(self)
+        except ValueError as error:
+            raise FmuError(f"{self.path}: modelDescription.xml: {error}") from error
 
     @property
     def platforms(self) -> tuple[str, ...]:

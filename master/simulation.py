@@ -34,7 +34,7 @@ from ..cosim.system import Algorithm, System, Value, load_system
 from .algorithm import Engine
 from .builtin import fmu_file
 from .fmi2 import Fmi2Unit
-from .fmu import Fmu, read_fmu
+from .fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
 from .unit import Unit
 
@@ -330,4 +330,5 @@ def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path
     for unit, entry in entries.items():
         path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
         read[unit] = read_fmu(path)
+        check_runnable(read[unit])  # before its variables are read as those of an FMI version that we know
     return read
