@@ -74,9 +74,10 @@ def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
         print(_wrapped(head, value, len(head)))
 
 
-def print_title(text: str) -> None:
-    """Print a heading, after an empty line."""
-    print()
+def print_title(text: str, first: bool = False) -> None:
+    """Print a heading, after an empty line unless it is the first thing printed."""
+    if not first:
+        print()
     _print_bold(text)
 
 

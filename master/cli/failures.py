@@ -70,7 +70,8 @@ def _judged(error: Exception) -> tuple[int, str]:
 def _usage(error: Any) -> str:
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "evcosim"
-    return f"{error.format_message()}\n'{path} --help' shows how it is used"
+    message = error.format_message().replace("Value error, ", "")  # typer shows what pydantic says
+    return f"{message}\n'{path} --help' shows how it is used"
 
 
 def _print_what_the_terminal_can() -> None:

@@ -38,8 +38,8 @@ def _systems() -> list[dict[str, Any]]:
 def _print(systems: list[dict[str, Any]], fmus: dict[str, str]) -> None:
     from .console import print_fields, print_title
 
-    for system in systems:
-        print_title(f"System {system['name']}: {system['title']}")
+    for i, system in enumerate(systems):
+        print_title(f"System {system['name']}: {system['title']}", first=i == 0)
         marked = [
             (f"{name} *" if name == system["default"] else name, title)
             for name, title in system["scenarios"].items()

@@ -1,0 +1,97 @@
+"""The command line in this process and as a process of its own, and FMUs that misbehave."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import subprocess
+import sys
+
+import pytest
+
+from evcosim.fmus.build import build_model
+from evcosim.master.cli import main
+from support import cli_models
+
+COMMAND = [sys.executable, "-m", "evcosim.master.cli"]
+
+
+@dataclasses.dataclass
+class Answer:
+    """What a command answered."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self):
+        """The whole of stdout as JSON: --json prints nothing beside it."""
+        return json.loads(self.out)
+
+
+def in_a_screen(answer):
+    """Every error is plain text, a screen at most, and no traceback."""
+    assert "Traceback" not in answer.out + answer.err
+    assert len(answer.err.splitlines()) <= 24
+    assert not answer.err or answer.err.startswith("evcosim: ")
+    return answer
+
+
+@pytest.fixture
+def evcosim(capsys, monkeypatch, tmp_path):
+    """Run a command line in this process, in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.delenv("EVCOSIM_DEBUG", raising=False)
+
+    def run(*arguments):
+        capsys.readouterr()
+        code = main([str(a) for a in arguments])
+        captured = capsys.readouterr()
+        return in_a_screen(Answer(code, captured.out, captured.err))
+
+    return run
+
+
+@pytest.fixture
+def process(tmp_path):
+    """Start a command line as a process, in an empty folder."""
+    started = []
+
+    def start(*arguments, **options):
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options
+        started.append(subprocess.Popen([*COMMAND, *map(str, arguments)], cwd=tmp_path, **options))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.kill()
+        each.wait()
+        for pipe in (each.stdout, each.stderr):
+            if pipe is not None:
+                pipe.close()
+
+
+@pytest.fixture(scope="session")
+def broken_fmus(tmp_path_factory):
+    """A folder with an FMU of each model in `support.cli_models`."""
+    folder = tmp_path_factory.mktemp("fmus")
+    for model in (cli_models.Fragile, cli_models.Through, cli_models.Poison, cli_models.Stuck):
+        build_model(model, folder)
+    return folder
+
+
+@pytest.fixture
+def system(tmp_path, broken_fmus):
+    """Write a system file of units, with FMUs of `broken_fmus`, and the rest as text; return its path."""
+
+    def write(units, rest="", stop_time=10.0):
+        lines = ['name = "bench"', "[experiment]", f"stop_time = {stop_time}"]
+        for name, fmu in units.items():
+            lines += [f"[units.{name}]", f"fmu = '{broken_fmus / fmu}.fmu'"]
+        path = tmp_path / "bench.toml"
+        path.write_text("\n".join(lines) + "\n" + rest)
+        return path
+
+    return write
