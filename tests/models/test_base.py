@@ -1,0 +1,128 @@
+"""Declarations: what a record says of its variables, and which contradictions are refused."""
+
+from __future__ import annotations
+
+import enum
+import math
+from typing import Any
+
+import pytest
+
+from evcosim.models.base import Model, record, time, var, variables, violations
+
+
+class Mode(enum.IntEnum):
+    """Two modes."""
+
+    OFF = 0
+    ON = 1
+
+
+@record
+class Everything:
+    """One variable of each kind."""
+
+    now: float = time()
+    real: float = var(1.0, "m", "A length", min=0.0, max=2.0)
+    whole: int = var(3, "", "A count", min=1)
+    flag: bool = var(True, "", "A choice")
+    mode: Mode = var(Mode.ON, "", "A mode")
+
+
+@record
+class Nothing:
+    """No variable."""
+
+
+@record
+class In:
+    """One input."""
+
+    force: float = var(0.0, "N", "A force")
+
+
+@record
+class Position:
+    """One output that feeds nothing through."""
+
+    position: float = var(0.0, "m", "A position")
+
+
+@record
+class Direct:
+    """One output that feeds the force through."""
+
+    position: float = var(0.0, "m", "A position", depends=("force",))
+
+
+def held(p: Any, x: Any) -> Any:
+    """Outputs without inputs."""
+    return Position()
+
+
+def direct(p: Any, x: Any, u: Any) -> Any:
+    """Outputs of inputs."""
+    return Direct()
+
+
+def declare(**changed: Any) -> type[Model]:
+    """A model of the records above, with some of its parts changed."""
+    parts = {
+        "Parameters": Nothing,
+        "Inputs": In,
+        "State": Nothing,
+        "Outputs": Position,
+        "outputs": staticmethod(held),
+    }
+    return type("Toy", (Model,), {**parts, **changed})
+
+
+def test_the_start_gives_the_type() -> None:
+    found = {v.name: v for v in variables(Everything)}
+    assert [v.type for v in found.values()] == ["Real", "Real", "Integer", "Boolean", "Enumeration"]
+    assert found["mode"].enumeration is Mode
+    assert found["real"].enumeration is None
+    assert [v.name for v in found.values() if v.independent] == ["now"]
+    assert (found["real"].unit, found["real"].min, found["real"].max) == ("m", 0.0, 2.0)
+
+
+def test_a_start_of_no_fmi_type_is_refused() -> None:
+    @record
+    class Text:
+        name: str = var("text", "", "No FMI type of ours")  # type: ignore[arg-type]  # the mistake under test
+
+    with pytest.raises(TypeError, match="'text'"):
+        variables(Text)
+
+
+def test_violations_name_variable_rule_and_values() -> None:
+    assert violations(Everything()) == []
+    assert violations(Everything(real=-1.0)) == ["real = -1.0 m is below its minimum 0.0 m"]
+    assert violations(Everything(real=3.0, whole=0)) == [
+        "real = 3.0 m is above its maximum 2.0 m",
+        "whole = 0 is below its minimum 1",
+    ]
+    assert violations(Everything(real=math.nan)) == ["real = nan is not a finite number"]
+
+
+def test_feedthrough_is_read_from_outputs() -> None:
+    assert not declare().feeds_through()
+    assert declare(Outputs=Direct, outputs=staticmethod(direct)).feeds_through()
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"Outputs": In}, "force is declared twice"),
+        (
+            {"Outputs": Direct, "outputs": staticmethod(direct), "Inputs": Nothing},
+            "depends on force, which is no input",
+        ),
+        ({"initial_inputs": ("speed",)}, r"initial_inputs names \['speed'\]"),
+        ({"Outputs": Direct}, "if, and only if"),
+        ({"outputs": staticmethod(direct)}, "if, and only if"),
+    ],
+)
+def test_contradictions_are_refused(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        declare(**changed)
