@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.units import Affine, UnitOfMeasure, conversion, defined
+from evcosim.cosim.units import _USUAL, Affine, UnitOfMeasure, by_pint, conversion, defined
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
 MS = UnitOfMeasure("m/s", SPEED)
@@ -71,3 +71,13 @@ def test_names_that_only_a_dbc_uses(name, si, factor):
 def test_an_unknown_name_is_named():
     with pytest.raises(ConfigError, match="'furlongs/fortnite' is not known"):
         defined("furlongs/fortnite")
+
+
+@pytest.mark.parametrize("name", sorted(_USUAL))
+def test_the_table_of_usual_units_is_pints(name):
+    ours, pints = _USUAL[name], by_pint(name)
+    assert ours.exponents is not None and pints.exponents is not None
+    assert ours.factor == pytest.approx(pints.factor, rel=1e-12)
+    assert ours.offset == pints.offset == 0.0
+    assert ours.exponents[:-1] == pints.exponents[:-1]  # pint does not always keep rad
+    assert conversion(ours, pints).scale == pytest.approx(1.0, rel=1e-12)
