@@ -22,11 +22,14 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show what an FMU offers or how a system is connected."""
+    from ...cosim.errors import ConfigError
     from ...cosim.system import system_names
     from . import info_fmu, info_system
     from .console import print_json
 
     if what.endswith(".toml") or what in system_names():
+        if causality or search:
+            raise ConfigError(f"--causality and --search choose variables of an FMU; {what} is a system")
         about = info_system.described(what)
         show = info_system.show
     else:

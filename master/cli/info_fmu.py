@@ -32,7 +32,7 @@ _LIMITS = {
     "needsCompletedIntegratorStep": "must be told of completed integrator steps",
     "canBeInstantiatedOnlyOncePerProcess": "one instance in a process",
     "canNotUseMemoryManagementFunctions": "allocates memory by itself",
-    "needsExecutionTool": "needs the tool that made it, or what that needs",
+    "needsExecutionTool": "needs an execution tool",
 }
 _KINDS = {
     "coSimulation": "Co-Simulation",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import subprocess
 import sys
 
@@ -61,6 +62,7 @@ def process(tmp_path):
 
     def start(*arguments, **options):
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options
+        options["env"] = os.environ | {"TMPDIR": str(tmp_path)}  # a killed process leaves its FMUs there
         started.append(subprocess.Popen([*COMMAND, *map(str, arguments)], cwd=tmp_path, **options))
         return started[-1]
 

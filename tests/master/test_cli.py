@@ -43,7 +43,6 @@ def test_help_imports_nothing_heavy():
         "cantools",
         "can",
         "pint",
-        "rich",
     }
     assert not heavy & set(loaded.split())
 

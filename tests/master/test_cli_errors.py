@@ -57,6 +57,7 @@ def refused(answer, *texts):
         (["info", "Scoter"], ["'Scoter' (did you mean 'Scooter'?)"]),
         (["info", "no.fmu"], ["no.fmu: there is no such FMU file"]),
         (["info", "Scooter", "--causality", "inptu"], ["--causality inptu", "(did you mean 'input'?)"]),
+        (["info", "scooter", "--search", "x"], ["--search", "scooter is a system"]),
         (["plot", "nowhere"], ["nowhere", "No such file"]),
         (["compare", "a", "b"], ["a", "No such file"]),
     ],
