@@ -150,7 +150,7 @@ class Scooter(Model):
         if v1 < 0.0:  # it stops within the step and stays
             moving = v / (v - v1)
             v1 = 0.0
-        # The exact f1 is not negative; in a fade steeper than the step resolves, the ramp may make it so.
+        # f1 lags commands that are not negative, so it is not either, but for rounding.
         return Scooter.State(v1, max(0.0, f1), x.distance + 0.5 * moving * dt * (v + v1))
 
     @staticmethod

@@ -228,13 +228,32 @@ def test_the_dwell_time_keeps_the_driver() -> None:
     assert BoundController.initial(p, Inputs()).dwell_left == 0.0
 
 
-def test_the_dwell_time_is_counted_to_the_sample() -> None:
-    p = dataclasses.replace(P, dwell_time=0.5)
+@pytest.mark.parametrize("samples", [1, 7, 30, 50, 110])
+def test_the_dwell_time_is_counted_to_the_sample(samples: int) -> None:
+    p = dataclasses.replace(P, dwell_time=samples * DT)
     over = Inputs(100.0, 40.0)
     settled = dataclasses.replace(
         BoundController.initial(p, over), state=VELOCITY, speed_integral=1e6, entry_reference=30.0
     )
     left = BoundController.step(p, settled, over, DT)  # the candidate is above the request
     assert left.state == DRIVER
-    states = [x.state for x in sample(left, [over] * 60, p)]
-    assert states.index(VELOCITY) == 50
+    states = [x.state for x in sample(left, [over] * (samples + 5), p)]
+    assert states.index(VELOCITY) == samples
+
+
+def test_a_moving_speed_bound_is_fed_forward() -> None:
+    """(C1): a step of the bound moves the throttle by K_p and by the vehicle's own gain."""
+    at_bound = BoundController.initial(P, Inputs(50.0, 30.0))
+    x = dataclasses.replace(at_bound, state=VELOCITY, entry_reference=30.0)
+    held = BoundController.step(P, x, Inputs(100.0, 30.0, 30.0), DT).throttle
+    moved = BoundController.step(P, x, Inputs(100.0, 30.0, 30.2), DT).throttle
+    assert 0.0 < held < moved < 100.0
+    assert moved - held == pytest.approx((P.speed_gain + 1.0 / P.gain) * 0.2)
+
+
+def test_the_last_bit_of_an_integral_does_not_keep_the_driver() -> None:
+    above = math.nextafter(70.0, 100.0)
+    x = dataclasses.replace(
+        State(), observer_speed=31.0, speed_estimate=31.0, speed_integral=above, acceleration_integral=above
+    )
+    assert BoundController.step(P, x, Inputs(70.0, 31.0), DT).state == VELOCITY

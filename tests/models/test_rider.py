@@ -119,6 +119,12 @@ def test_saturated_pedals_stop_the_integral(integral: float) -> None:
     assert Rider.step(P, braked, Rider.Inputs(10.0, 50.0), DT).integral == braked.integral
 
 
+def test_a_saturated_pedal_still_lets_the_integral_come_back() -> None:
+    full, braked = Rider.State(integral=1000.0), Rider.State(integral=-1000.0)
+    assert Rider.step(P, full, Rider.Inputs(10.0, 11.0), DT).integral < full.integral
+    assert Rider.step(P, braked, Rider.Inputs(11.0, 10.0), DT).integral > braked.integral
+
+
 @given(st.floats(0.0, 50.0), st.floats(0.0, 3.0))
 def test_inside_the_tolerance_nothing_is_missed(v: float, below: float) -> None:
     x = Rider.step(P, Rider.State(), Rider.Inputs(v + below, v), DT)
