@@ -25,7 +25,8 @@ from .writing import replacing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from .figures import FigureSpec
+    from .figure_spec import FigureSpec
+    from .metrics import Metric, MetricSpec
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,8 @@ class Results:
 
     `time` [s], shape (n,), and `data`, shape (n, m), hold row k of communication point k; `variables`
     describes the m columns. `results["vehicle.speed"]` is one column, `len(results)` is n.
-    `manifest` is what run.json says of the run.
+    `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
+    scenario (None and none for results that were read from a file).
 
     A time k * step_size that misses its decimal by rounding (7 * 0.01 = 0.07000000000000001) becomes the
     double nearest to that decimal: times within 1e-12 s (and 4 units in the last place) of a whole
@@ -77,11 +79,15 @@ class Results:
         data: ArrayLike,
         variables: Sequence[ResultVariable],
         manifest: Mapping[str, Any] | None = None,
+        figure: FigureSpec | None = None,
+        metrics: Sequence[MetricSpec] = (),
     ) -> None:
         self.time: Array = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
         self.data: Array = np.asarray(data, dtype=np.float64)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
+        self.figure = figure
+        self.metric_specs = tuple(metrics)
         if self.data.shape != (len(self.time), len(self.variables)):
             raise ValueError(
                 f"data is {self.data.shape}, {len(self.time)} times and {len(self.variables)} variables need "
@@ -183,16 +189,25 @@ class Results:
         variables = [known.get(name, ResultVariable(name)) for name in names]
         return cls(table[:, 0], table[:, 1:], variables, manifest)
 
+    def metrics(self) -> list[Metric]:
+        """The numbers that the run's system and scenario name."""
+        from . import metrics  # knows units of measure; reading and writing results does without
+
+        return metrics.evaluate(self, self.metric_specs)
+
     def plot(
         self,
         path: str | os.PathLike[str] | None = None,
         title: str | None = None,
         spec: FigureSpec | None = None,
     ) -> Figure:
-        """Draw the results (see `figures.draw`), and save the figure where a path (.png, .svg) is given."""
+        """Draw the figure of the run's system, another `spec`, or else signals grouped by unit of measure.
+
+        Saved where a path (.png, .svg, .pdf) is given. Raises ConfigError for a spec that does not fit.
+        """
         from . import figures  # matplotlib: 0.5 s that only figures need
 
-        figure = figures.draw(self, spec, title=title)
+        figure = figures.draw(self, spec or self.figure, title=title)
         if path is not None:
             figures.write(figure, Path(path))
         return figure

@@ -105,7 +105,7 @@ class ScenarioFile(FileModel):
     events: list[EventEntry] = Field(default=[], alias="event")
     record: list[str] | None = None
     figure: FigureSpec | None = None
-    metrics: list[MetricSpec] | None = None
+    metrics: list[MetricSpec] = []
 
 
 @dataclasses.dataclass(frozen=True)

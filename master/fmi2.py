@@ -95,6 +95,11 @@ class Fmi2Unit:
         function.restype = ctypes.c_int
         return function
 
+    @property
+    def warnings(self) -> int:
+        """See `unit.Unit`."""
+        return self.log.warnings
+
     # ---- before the steps
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
@@ -242,6 +247,8 @@ class Fmi2Unit:
         self.log.warnings += 1
 
     def _fail(self, what: str, status: int) -> NoReturn:
+        if self.fmu.holds_python and "KeyboardInterrupt" in self.log.last(1):
+            raise KeyboardInterrupt  # Ctrl-C reached the interpreter while it was inside the model
         word = STATUS[status] if 0 <= status < len(STATUS) else "no FMI status"
         said = self.log.last()
         raise UnitError(

@@ -27,6 +27,7 @@ from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.files import DATA
 from ..cosim.plan import Plan
+from ..cosim.presentation import check_specs, figure_spec, metric_specs
 from ..cosim.resolve import Options, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
@@ -69,11 +70,12 @@ class Simulation:
         interfaces = {unit: fmu.interface for unit, fmu in self._fmus.items()}
         options = Options(parameters or {}, algorithm, stop_time, ideal)
         self.plan: Plan = resolve(self.system, self.scenario, interfaces, options)
+        check_specs(self.system, self.scenario, self.plan.columns)
         self.log_frames = log_frames
-        self.warnings: list[str] = list(self.plan.warnings)
         self.loop_seconds = 0.0
         ordered_links(self.plan)  # an algebraic loop is refused before anything is instantiated
         self._units: dict[str, Unit] = {}
+        self._last_warnings: dict[str, int] = {}
         self._slots = {c.name: s for c, s in zip(self.plan.columns, self.plan.column_slots, strict=True)}
         try:
             for unit, fmu in self._fmus.items():
@@ -177,6 +179,15 @@ class Simulation:
             raise ConfigError(f"{name}: unit '{unit}' has no variable '{variable}'{nearest(variable, known)}")
         return unit, variable
 
+    @property
+    def warnings(self) -> list[str]:
+        """What is not as it should be, one sentence each: missing units of measure, warnings of units."""
+        from_units = [f"unit '{name}' gave {n} warnings" for name, n in self._unit_warnings().items() if n]
+        return [*self.plan.warnings, *from_units]
+
+    def _unit_warnings(self) -> dict[str, int]:
+        return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}
+
     # ---- results
 
     @property
@@ -191,6 +202,8 @@ class Simulation:
             variables=self.plan.columns,
             data=rows[:, columns],
             manifest=self.manifest(),
+            figure=figure_spec(self.system, self.scenario),
+            metrics=metric_specs(self.system, self.scenario),
         )
 
     def write_can_log(self, path: str | Path) -> int:
@@ -271,6 +284,7 @@ class Simulation:
             self._free()
 
     def _free(self) -> None:
+        self._last_warnings = self._unit_warnings()
         for unit in self._units.values():
             unit.free()
         self._units = {}

@@ -37,6 +37,10 @@ class Unit(Protocol):
     name: str
     interface: UnitInterface
 
+    @property
+    def warnings(self) -> int:
+        """How often a call ended with a warning or a message of status Warning came."""
+
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Keep the run's memory, shape (size,), and the slots of this unit's blocks in it."""
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...cosim.figure_spec import FigureSpec
     from ...cosim.results import Results
     from ..simulation import Simulation
 
@@ -46,11 +45,11 @@ def write_results(folder: Path, results: Results) -> list[str]:
     return [CSV_NAME, MANIFEST_NAME]
 
 
-def write_figure(folder: Path, results: Results, spec: FigureSpec | None) -> list[str]:
+def write_figure(folder: Path, results: Results) -> list[str]:
     """Draw and write the figure and return the names of its files. Raises ConfigError."""
     from ...cosim import figures
 
-    return [path.name for path in figures.save(figures.draw(results, spec), folder)]
+    return [path.name for path in figures.save(results.plot(), folder)]
 
 
 def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:

@@ -67,9 +67,9 @@ def spec_of(results: Results) -> FigureSpec | None:
     """The figure of the system and scenario that run.json names, if they are there and it fits."""
     from ...cosim import figures
     from ...cosim.errors import ConfigError
+    from ...cosim.presentation import figure_spec
     from ...cosim.scenario import load_scenario
     from ...cosim.system import load_system
-    from .specs import figure_spec
 
     names = [results.manifest.get(key) for key in ("system", "scenario")]
     files = results.manifest.get("files", {})

@@ -133,7 +133,6 @@ def _run(order: Order) -> Outcome:
     from .arguments import as_typed, parse_fmus, parse_settings
     from .interrupts import Interrupts
     from .outputs import prepared
-    from .specs import check_specs
 
     parameters, fmus = parse_settings(order.settings), parse_fmus(order.fmus)
     if order.can_log and order.ideal:
@@ -145,7 +144,6 @@ def _run(order: Order) -> Outcome:
         try:
             with simulation:
                 interrupts.check()
-                check_specs(simulation.system, simulation.scenario, simulation.plan.columns)
                 folder = prepared(order.output or _default_folder(simulation))
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
@@ -197,13 +195,9 @@ def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
 
 def _evaluate(outcome: Outcome) -> None:
     """The metrics of a whole run, also for run.json; how a broken one ended."""
-    from ...cosim import metrics
-    from .specs import metric_specs
-
     manifest = outcome.results.manifest
     if outcome.error is None:
-        specs = metric_specs(outcome.simulation.system, outcome.simulation.scenario)
-        outcome.metrics = metrics.evaluate(outcome.results, specs)
+        outcome.metrics = outcome.results.metrics()
         manifest["status"] = "done"
         manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in outcome.metrics}
     elif isinstance(outcome.error, KeyboardInterrupt):
@@ -214,7 +208,6 @@ def _evaluate(outcome: Outcome) -> None:
 
 def _write(outcome: Outcome, order: Order) -> None:
     from .outputs import write_can_logs, write_figure, write_results
-    from .specs import figure_spec
 
     simulation, folder, results = outcome.simulation, outcome.folder, outcome.results
     outcome.files += write_results(folder, results)
@@ -223,4 +216,4 @@ def _write(outcome: Outcome, order: Order) -> None:
     elif order.can_log:
         outcome.files += write_can_logs(folder, simulation)
     if order.figure and len(results) > 1:
-        outcome.files += write_figure(folder, results, figure_spec(simulation.system, simulation.scenario))
+        outcome.files += write_figure(folder, results)

@@ -223,7 +223,7 @@ def test_full_disk_before_the_run(evcosim, monkeypatch):
 
 
 def test_full_disk_after_the_run(evcosim, monkeypatch):
-    def full(folder, results, spec):
+    def full(folder, results):
         raise OSError(errno.ENOSPC, "No space left on device", "out/figure.png")
 
     monkeypatch.setattr(outputs, "write_figure", full)

@@ -49,6 +49,7 @@ class MockUnit:
         self._step, self._through = step, through
         self.steps: list[tuple[float, float]] = []
         self.log: list[str] = []
+        self.warnings = 0
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         self.memory, self.blocks = memory, plan.blocks
@@ -120,7 +121,9 @@ def plan_of(
     described = System(Path("mocks.toml"), file)
     driven = Scenario("test", Path("test.toml"), ScenarioFile.model_validate(scenario or {}))
     taking_part = participating(described, driven)
-    return resolve(described, driven, {u.name: u.interface for u in units if u.name in taking_part}, Options(**options))
+    return resolve(
+        described, driven, {u.name: u.interface for u in units if u.name in taking_part}, Options(**options)
+    )
 
 
 def started(units: list[MockUnit], plan: Plan) -> Engine:

@@ -1,23 +1,25 @@
-"""Which figure and metrics a run has: the scenario's, or else the system's without what was left out."""
+"""Which figure and metrics a run has: the scenario's own, and the system's without what was left out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from ...cosim.figure_spec import FigureSpec
-    from ...cosim.metrics import MetricSpec
-    from ...cosim.results import ResultVariable
-    from ...cosim.scenario import Scenario
-    from ...cosim.system import System
+from . import figures, metrics
+from .figure_spec import FigureSpec
+from .metrics import MetricSpec
+from .results import ResultVariable
+from .scenario import Scenario
+from .system import System
 
 
 def metric_specs(system: System, scenario: Scenario) -> list[MetricSpec]:
-    """The metrics of the scenario, or those of the system that need no unit that the scenario leaves out."""
-    if scenario.file.metrics is not None:
-        return scenario.file.metrics
-    return [spec for spec in system.file.metrics if not _needs(_signals(spec), scenario)]
+    """The metrics of the system that need no unit that the scenario leaves out, then the scenario's.
+
+    A metric of the scenario takes the place of the system's of the same name.
+    """
+    own = {spec.name for spec in scenario.file.metrics}
+    kept = [s for s in system.file.metrics if s.name not in own and not _needs(_signals(s), scenario)]
+    return [*kept, *scenario.file.metrics]
 
 
 def figure_spec(system: System, scenario: Scenario) -> FigureSpec | None:
@@ -40,16 +42,14 @@ def figure_spec(system: System, scenario: Scenario) -> FigureSpec | None:
 def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:
     """Find before the run what would be wrong after it: a figure or metric of what is not recorded.
 
-    Raises ConfigError naming the file.
+    Raises ConfigError naming the files.
     """
-    from ...cosim import figures, metrics
-
     recorded = {v.name: v for v in variables}
-    place = str(system.path if scenario.file.metrics is None else scenario.path)
-    metrics.check(metric_specs(system, scenario), recorded, place)
+    places = [str(path) for path in (system.path, scenario.path) if path is not None]
+    metrics.check(metric_specs(system, scenario), recorded, " with ".join(places))
     spec = figure_spec(system, scenario)
     if spec is not None:
-        place = str(system.path if scenario.file.figure is None else scenario.path)
+        place = system.path if scenario.file.figure is None else scenario.path
         figures.check(spec, recorded, f"{place}: figure")
 
 
