@@ -15,13 +15,10 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
   would call the importer's logger while a Python exception is set, which breaks an importer in Python.
 - a step whose result is NaN or infinite is no error here: the importer checks what it receives.
 
-What pythonfmu's library does and this module makes good:
-- On a failed call it gives up its references to class, instance and message list, and in fmi2FreeInstance
-  once more. `_hold` takes them in advance, so a failing FMU never kills its importer.
-- Messages are printf formats (FMI 2.0, fmi2CallbackLogger), and it passes no arguments: "%" is doubled.
-- It leaves the resources folder at the front of sys.path; the slave takes it off.
-What it does and nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line is
-a failed call without `_hold`; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
+What pythonfmu's library does wrong stands in `native`, which makes it good: a failing FMU never kills its
+importer. Messages are printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments:
+"%" is doubled. What nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line is a failed
+call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
 fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
 
 Relative imports only: this file also runs inside FMUs, in a package of another name.
@@ -29,13 +26,11 @@ Relative imports only: this file also runs inside FMUs, in a package of another 
 
 from __future__ import annotations
 
-import ctypes
 import enum
 import io
 import operator
 import os
 import pickle
-import sys
 import traceback
 import weakref
 from collections.abc import Callable, Iterable, Sequence
@@ -43,6 +38,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from ..models.base import Model, Variable, violations
 from .interface import exposed
+from .native import hold, leave_search_path, settle_at_exit
 
 _ERROR = 3  # fmi2Error
 _KINDS = ("Real", "Integer", "Boolean", "String")  # a model has no String, but an importer may ask
@@ -144,6 +140,7 @@ class ModelSlave:
     _living: ClassVar[weakref.WeakSet[ModelSlave]]
 
     instance_name: str
+    resources: str
     log_queue: list[Any]
     log: Callable[[str, int, str], None]
 
@@ -154,8 +151,8 @@ class ModelSlave:
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        if sys.path and sys.path[0] == kwargs.get("resources"):
-            del sys.path[0]
+        leave_search_path(self.resources)
+        settle_at_exit(self.resources, type(self).__name__)
         self._values: list[Any] = list(self._layout.starts)
         self._parameters: Any = None
         self._inputs: Any = None
@@ -391,22 +388,16 @@ class ModelSlave:
     # -- failures ------------------------------------------------------------------------------------------
 
     def _failure(self, call: str, error: BaseException) -> SlaveError:
-        _hold(type(self), self, self.log_queue)
+        hold(type(self), self, self.log_queue)
         return SlaveError(_message(call, error))
 
     @classmethod
     def _class_failure(cls, call: str, error: BaseException) -> SlaveError:
         """Which instance made the call is unknown here: hold all. The others leak, the lesser evil."""
-        _hold(cls)
+        hold(cls)
         for instance in list(cls._living):
-            _hold(instance, instance.log_queue)
+            hold(instance, instance.log_queue)
         return SlaveError(_message(call, error))
-
-
-def _hold(*objects: object) -> None:
-    """Take the references that the native library will give up twice (module docstring)."""
-    for item in objects:
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(item))
 
 
 def _unknown(kind: str, references: set[int]) -> Refused:

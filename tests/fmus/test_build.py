@@ -108,6 +108,7 @@ def test_the_archive_holds_what_is_needed_and_nothing_else(tmp_path):
         "__init__.py",
         "fmus/__init__.py",
         "fmus/interface.py",
+        "fmus/native.py",
         "fmus/slave.py",
         "models/__init__.py",
         "models/base.py",

@@ -58,6 +58,30 @@ def test_the_importer_lives_and_knows_why(toy, tmp_path, way, expected):
     assert done.stderr == ""
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems destroy in the right order")
+def test_the_library_is_settled_before_the_process_ends(toy, tmp_path):
+    script = f"""
+import atexit, ctypes, fmpy
+from fmpy.fmi2 import FMU2Slave
+called = []
+class Recording(ctypes.CDLL):
+    def __getattr__(self, name):
+        called.append((self._name, name))
+        return super().__getattr__(name)
+atexit.register(lambda: print(called))
+folder = {str(tmp_path / "unpacked")!r}
+fmpy.extract({str(toy("Failing").path)!r}, folder)
+for _ in range(2):
+    unit = FMU2Slave(guid="", unzipDirectory=folder, modelIdentifier="Failing", instanceName="it")
+    unit.instantiate()
+ctypes.CDLL = Recording
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    library = str(tmp_path / "unpacked" / "binaries" / "linux64" / "Failing.so")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{[(library, 'finalizePythonInterpreter')]}\n"
+
+
 def test_a_thousand_instances_in_one_process(toy, tmp_path):
     script = f"""
 import fmpy, gc, sys
