@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,14 +35,20 @@ def prepared(folder: Path) -> Path:
 
 def write_results(folder: Path, results: Results) -> list[str]:
     """Write results.csv and run.json and return their names. Figures and logs of an earlier run are removed:
-    a folder holds one run. Raises ConfigError where something cannot be written.
+    a folder holds one run. Where they cannot be written they go to a temporary folder, and RunError says so.
     """
+    from ...cosim.errors import ConfigError, RunError
     from ...cosim.results import CSV_NAME, MANIFEST_NAME
 
     for name in (*FIGURES, *CAN_LOGS):
         with contextlib.suppress(OSError):  # if it stays, writing below says why
             (folder / name).unlink(missing_ok=True)
-    results.write(folder)
+    try:
+        results.write(folder)
+    except ConfigError as error:
+        rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
+        results.write(rescue)
+        raise RunError(f"{error}\nthe results are kept in {rescue}") from error
     return [CSV_NAME, MANIFEST_NAME]
 
 

@@ -207,10 +207,21 @@ def _evaluate(outcome: Outcome) -> None:
 
 
 def _write(outcome: Outcome, order: Order) -> None:
-    from .outputs import write_can_logs, write_figure, write_results
+    from ...cosim.errors import ConfigError, RunError
+    from .outputs import write_results
+
+    folder = outcome.folder
+    outcome.files += write_results(folder, outcome.results)
+    try:
+        _write_the_rest(outcome, order)
+    except ConfigError as error:
+        raise RunError(f"{error}\nin {folder}: {', '.join(outcome.files)}") from error
+
+
+def _write_the_rest(outcome: Outcome, order: Order) -> None:
+    from .outputs import write_can_logs, write_figure
 
     simulation, folder, results = outcome.simulation, outcome.folder, outcome.results
-    outcome.files += write_results(folder, results)
     if order.can_log and not simulation.plan.messages:
         outcome.remarks.append("no CAN log: no connection of the system is over a bus")
     elif order.can_log:

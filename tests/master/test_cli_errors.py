@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import shutil
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import fmpy
 import numpy as np
 import pytest
 
+from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.files import DATA
 from evcosim.cosim.results import Results
 from evcosim.master.builtin import fmu_file
@@ -229,6 +231,25 @@ def test_full_disk_after_the_run(evcosim, monkeypatch):
     monkeypatch.setattr(outputs, "write_figure", full)
     answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
     assert (answer.code, answer.err) == (1, "evcosim: out/figure.png: No space left on device\n")
+
+
+def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch, tmp_path):
+    write = Results.write
+
+    def full(self, folder):
+        if str(folder) == "out":
+            raise ConfigError("out/results.csv: cannot be written: No space left on device")
+        return write(self, folder)
+
+    monkeypatch.setattr(Results, "write", full)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    (tmp_path / "elsewhere").mkdir()
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    assert answer.code == 1
+    (kept,) = (tmp_path / "elsewhere").iterdir()
+    assert "No space left on device" in answer.err
+    assert f"the results are kept in {kept}" in answer.err
+    assert len(Results.read(kept)) == 11
 
 
 # ---- what nobody foresaw
