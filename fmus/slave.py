@@ -17,116 +17,27 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
 
 What pythonfmu's library does wrong stands in `native`, which makes it good: a failing FMU never kills its
 importer. Messages are printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments:
-"%" is doubled. What nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line is a failed
-call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
-fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
+"%" is doubled. What nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line
+is a failed call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not
+clear fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
 
 Relative imports only: this file also runs inside FMUs, in a package of another name.
 """
 
 from __future__ import annotations
 
-import enum
-import io
 import operator
-import os
-import pickle
-import traceback
 import weakref
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, ClassVar, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
-from ..models.base import Model, Variable, violations
-from .interface import exposed
+from ..models.base import Model, violations
+from .layout import Layout, misfit
+from .messages import Refused, SlaveError, message
 from .native import hold, leave_search_path, settle_at_exit
+from .snapshot import Snapshot, from_bytes, to_bytes
 
 _ERROR = 3  # fmi2Error
-_KINDS = ("Real", "Integer", "Boolean", "String")  # a model has no String, but an importer may ask
-_CAUSALITIES = ("parameter", "input", "independent", "output")
-_PACKAGE = __name__.partition(".")[0]
-_FOLDER = os.path.join(os.path.dirname(__file__), "..", "..")
-
-
-class Refused(Exception):
-    """The importer asked for what FMI or the model's declaration does not allow; the text says all."""
-
-
-class SlaveError(Exception):
-    """A failed call. pythonfmu logs the repr, so the repr is the message."""
-
-    def __repr__(self) -> str:
-        return str(self)
-
-
-class Snapshot(NamedTuple):
-    """All that distinguishes two instances of one FMU. Parameters are rebuilt from `values`."""
-
-    values: tuple[Any, ...]
-    state: Any
-    started: bool
-    stale: bool
-
-
-class Layout:
-    """What the slave of one model looks up instead of reflecting on each call."""
-
-    def __init__(self, model: type[Model]) -> None:
-        variables = exposed(model)
-        self.starts = [v.start for _, _, v in variables]
-        self.parameters = _span(r for r, causality, _ in variables if causality == "parameter")
-        self.inputs = _span(r for r, causality, _ in variables if causality in ("input", "independent"))
-        self.outputs = _span(r for r, causality, _ in variables if causality == "output")
-        self.time = next((r for r, causality, _ in variables if causality == "independent"), None)
-        self.variables = [v for _, _, v in variables]
-
-        self.causalities = [causality for _, causality, _ in variables]
-        self.readable = {kind: self._of(kind, *_CAUSALITIES) for kind in _KINDS}
-        self.settable_first = {kind: self._of(kind, "parameter", "input") for kind in _KINDS}
-        self.settable_later = {kind: self._of(kind, "input") for kind in _KINDS}
-        self.enumerations = {r: v.enumeration for r, _, v in variables if v.enumeration is not None}
-
-        outputs = [v for _, causality, v in variables if causality == "output"]
-        self.take = _taker([v.name for v in outputs])
-        self.converters = [_converter(v) for v in outputs]
-        self.all_real = all(v.type == "Real" for v in outputs)
-        self.feeds_through = model.feeds_through()
-        self.follows_inputs = self.feeds_through and not model.sampled
-
-    def _of(self, kind: str, *causalities: str) -> frozenset[int]:
-        """The value references that the FMI functions of a type and these causalities share."""
-        found = enumerate(zip(self.variables, self.causalities, strict=True))
-        return frozenset(r for r, (v, causality) in found if _storage(v) == kind and causality in causalities)
-
-
-def _span(references: Iterable[int]) -> slice:
-    numbers = list(references)
-    return slice(numbers[0], numbers[-1] + 1) if numbers else slice(0, 0)
-
-
-def _storage(v: Variable) -> str:
-    """The FMI functions that read and write a variable: enumerations are accessed as Integer."""
-    return "Integer" if v.type == "Enumeration" else v.type
-
-
-def _taker(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
-    if len(names) > 1:
-        take: Callable[[Any], tuple[Any, ...]] = operator.attrgetter(*names)
-        return take
-    return lambda record: tuple(getattr(record, name) for name in names)
-
-
-def _converter(v: Variable) -> Callable[[Any], Any]:
-    """The native library reads plain Python numbers, and does not check that it got one."""
-    converters: dict[str, Callable[[Any], Any]]
-    converters = {"Real": float, "Boolean": bool, "Integer": _int32, "Enumeration": _int32}
-    return converters[v.type]
-
-
-def _int32(value: Any) -> int:
-    number = operator.index(value)
-    if not -(2**31) <= number < 2**31:
-        raise OverflowError(f"{number} does not fit an FMI Integer")
-    return number
 
 
 class ModelSlave:
@@ -195,7 +106,7 @@ class ModelSlave:
             self._state = state
             return True
         except BaseException as error:
-            self.log(_message(f"fmi2DoStep at t = {current_time} s", error), _ERROR, "logStatusError")
+            self.log(message(f"fmi2DoStep at t = {current_time} s", error), _ERROR, "logStatusError")
             return False
 
     def _set_time(self, time: float) -> None:
@@ -234,7 +145,7 @@ class ModelSlave:
             else:
                 self._values[layout.outputs] = map(operator.call, layout.converters, values)
         except (TypeError, ValueError, OverflowError):
-            raise _misfit(layout, values) from None
+            raise misfit(layout, values) from None
         self._stale = False
 
     def _refresh(self) -> None:
@@ -366,30 +277,22 @@ class ModelSlave:
     @classmethod
     def _fmu_state_to_bytes(cls, snapshot: Snapshot) -> bytes:
         try:
-            return cls._stamp() + pickle.dumps(tuple(snapshot), protocol=4)
+            return to_bytes(snapshot, cls.identity)
         except BaseException as error:
             raise cls._class_failure("fmi2SerializeFMUstate", error) from None
 
     @classmethod
     def _fmu_state_from_bytes(cls, data: bytes) -> Snapshot:
         try:
-            stamp = cls._stamp()
-            if not data.startswith(stamp):
-                found = data[: len(stamp)].partition(b"\n")[0].decode("ascii", "replace")
-                raise Refused(f"these bytes are a state of {found!r}, this FMU is {cls.identity!r}")
-            return Snapshot(*_Unpickler(io.BytesIO(data[len(stamp) :])).load())
+            return from_bytes(data, cls.identity)
         except BaseException as error:
             raise cls._class_failure("fmi2DeSerializeFMUstate", error) from None
-
-    @classmethod
-    def _stamp(cls) -> bytes:
-        return f"{cls.identity}\n".encode("ascii")
 
     # -- failures ------------------------------------------------------------------------------------------
 
     def _failure(self, call: str, error: BaseException) -> SlaveError:
         hold(type(self), self, self.log_queue)
-        return SlaveError(_message(call, error))
+        return SlaveError(message(call, error))
 
     @classmethod
     def _class_failure(cls, call: str, error: BaseException) -> SlaveError:
@@ -397,61 +300,10 @@ class ModelSlave:
         hold(cls)
         for instance in list(cls._living):
             hold(instance, instance.log_queue)
-        return SlaveError(_message(call, error))
+        return SlaveError(message(call, error))
 
 
 def _unknown(kind: str, references: set[int]) -> Refused:
     return Refused(
         f"there is no {kind} variable with value reference {', '.join(map(str, sorted(references)))}"
     )
-
-
-def _misfit(layout: Layout, values: tuple[Any, ...]) -> Refused:
-    """Which of the outputs has a value that its FMI type cannot hold."""
-    outputs = layout.variables[layout.outputs]
-    for v, convert, value in zip(outputs, layout.converters, values, strict=True):
-        try:
-            convert(value)
-        except (TypeError, ValueError, OverflowError):
-            return Refused(f"output {v.name} is {value!r}, which is no {v.type}")
-    return Refused(f"the model gave {len(values)} outputs instead of {len(outputs)}")
-
-
-def _message(call: str, error: BaseException) -> str:
-    """One line for the importer's log: call, exception and place; safe for printf and UTF-8."""
-    try:
-        text = str(error)
-    except Exception:
-        text = "(its text cannot be shown: str() of it fails)"
-    if not isinstance(error, Refused):
-        text = f"{type(error).__name__}: {text}{_place(error)}"
-    line = f"{call}: {text}".replace("%", "%%").replace("\0", "\\0")
-    return line.encode("utf-8", "backslashreplace").decode("utf-8")
-
-
-def _place(error: BaseException) -> str:
-    frames = traceback.extract_tb(error.__traceback__)
-    if not frames:
-        return ""
-    file = os.path.abspath(frames[-1].filename)
-    folder = os.path.abspath(_FOLDER) + os.sep
-    return f" ({file.removeprefix(folder)}:{frames[-1].lineno})"
-
-
-class _Unpickler(pickle.Unpickler):
-    """Loads records and enumerations of this FMU's own package and numpy arrays, nothing that could act."""
-
-    _NUMPY: ClassVar = {"_reconstruct", "_frombuffer", "scalar", "ndarray", "dtype"}
-
-    def find_class(self, module: str, name: str) -> Any:
-        if module.split(".")[0] == "numpy" and name in self._NUMPY:
-            return super().find_class(module, name)
-        if module.split(".")[0] == _PACKAGE:
-            found = super().find_class(module, name)
-            if isinstance(found, type) and found.__module__ == module and _is_data(found):
-                return found
-        raise Refused(f"a state of this FMU does not contain {module}.{name}")
-
-
-def _is_data(cls: type) -> bool:
-    return hasattr(cls, "__dataclass_fields__") or issubclass(cls, enum.Enum)

@@ -141,8 +141,11 @@ def test_a_users_own_modules_go_with_the_model(project, files, module, own, valu
     assert {s.module for s in collect(module, file)} == own | {
         "evcosim.fmus",
         "evcosim.fmus.interface",
+        "evcosim.fmus.layout",
+        "evcosim.fmus.messages",
         "evcosim.fmus.native",
         "evcosim.fmus.slave",
+        "evcosim.fmus.snapshot",
         "evcosim.models",
         "evcosim.models.base",
     }

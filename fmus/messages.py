@@ -1,0 +1,40 @@
+"""What a failed call says in the importer's log."""
+
+from __future__ import annotations
+
+import os
+import traceback
+
+_FOLDER = os.path.join(os.path.dirname(__file__), "..", "..")
+
+
+class Refused(Exception):
+    """The importer asked for what FMI or the model's declaration does not allow; the text says all."""
+
+
+class SlaveError(Exception):
+    """A failed call. pythonfmu logs the repr, so the repr is the message."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def message(call: str, error: BaseException) -> str:
+    """One line for the importer's log: call, exception and place; safe for printf and UTF-8."""
+    try:
+        text = str(error)
+    except Exception:
+        text = "(its text cannot be shown: str() of it fails)"
+    if not isinstance(error, Refused):
+        text = f"{type(error).__name__}: {text}{_place(error)}"
+    line = f"{call}: {text}".replace("%", "%%").replace("\0", "\\0")
+    return line.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def _place(error: BaseException) -> str:
+    frames = traceback.extract_tb(error.__traceback__)
+    if not frames:
+        return ""
+    file = os.path.abspath(frames[-1].filename)
+    folder = os.path.abspath(_FOLDER) + os.sep
+    return f" ({file.removeprefix(folder)}:{frames[-1].lineno})"
