@@ -11,8 +11,9 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
 - do_step that fails logs a message of status Error (category `logStatusError`) with type and text of the
   exception and the place it was raised, leaves state and outputs as they were, and returns Discard; the
   native library then also answers fmi2Terminated = true.
-- any other call that fails ends Fatal. The native library writes the message: if ours waited in the queue, it
-  would call the importer's logger while a Python exception is set, which breaks an importer in Python.
+- any other call that fails ends Fatal, and the native library writes the message. One of ours in the queue
+  would reach the importer's logger while the exception is still set: in an importer in Python it gets lost
+  ("unknown error", measured), and any call of the logger may trip over it.
 - a step whose result is NaN or infinite is no error here: the importer checks what it receives.
 
 What pythonfmu's library does wrong stands in `native`, which makes it good: a failing FMU never kills its
