@@ -8,9 +8,11 @@ model: everything here is chosen.
     i  = (U - sqrt(U^2 - 4 R_0 P'))/(2 R_0)            current that gives P' = (U - R_0 i) i [A]     (B3)
     xi' = -i/(3600 Q)                                  state of charge [1], Q in A.h                 (B4)
     E' = P'/3600                                       energy delivered at the terminals [Wh]        (B5)
+    L' = R_0 i^2/3600                                  energy lost in the resistance [Wh]            (B6)
 
 U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h (chosen). There is no regeneration: a negative power draws
-nothing. An empty battery (xi = 0) delivers nothing either: i = 0 and E rests.
+nothing. An empty battery (xi = 0) delivers nothing either: i = 0 and E rests. What a vehicle consumes is
+E + L, the energy that has left the cells: its consumption per distance is counted with it.
 
 The code computes (B3) as i = 2 P'/(U + sqrt(...)), the same root without the difference of two near numbers.
 Current and voltage follow the power at the same instant (direct feedthrough). The step is explicit Euler: in
@@ -49,6 +51,7 @@ class Battery(Model):
 
         state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
         energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0)
+        loss: float = var(0.0, "Wh", "Energy lost in the internal resistance", min=0.0)
 
     @record
     class Outputs:
@@ -58,24 +61,27 @@ class Battery(Model):
         current: float = var(0.0, "A", "Discharge current", min=0.0, nominal=50.0, depends=("power",))
         voltage: float = var(54.0, "V", "Voltage at the terminals", min=0.0, nominal=50.0, depends=("power",))
         energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0, nominal=100.0)
+        energy_drawn: float = var(0.0, "Wh", "Energy drawn from the cells", min=0.0, nominal=100.0)
 
     @staticmethod
     def initial(p: Battery.Parameters, u: Battery.Inputs) -> Battery.State:
         """Charged to `initial_state_of_charge`, nothing delivered yet."""
-        return Battery.State(p.initial_state_of_charge, 0.0)
+        return Battery.State(p.initial_state_of_charge, 0.0, 0.0)
 
     @staticmethod
     def step(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs, dt: float) -> Battery.State:
         """The state after `dt` [s] of the held power."""
         _, i, power = _draw(p, x, u)
         xi = max(0.0, x.state_of_charge - dt * i / (3600.0 * p.capacity))  # (B4)
-        return Battery.State(xi, x.energy + dt * power / 3600.0)  # (B5)
+        energy = x.energy + dt * power / 3600.0  # (B5)
+        return Battery.State(xi, energy, x.loss + dt * p.resistance * i * i / 3600.0)  # (B6)
 
     @staticmethod
     def outputs(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> Battery.Outputs:
         """Current and voltage of the power at this instant."""
         ocv, i, _ = _draw(p, x, u)
-        return Battery.Outputs(x.state_of_charge, i, ocv - p.resistance * i, x.energy)
+        voltage = ocv - p.resistance * i
+        return Battery.Outputs(x.state_of_charge, i, voltage, x.energy, x.energy + x.loss)
 
 
 def _draw(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> tuple[float, float, float]:
