@@ -30,6 +30,8 @@ CATALOG = {
     "BoundPlanner": Entry("bound_planner", Experiment(stop_time=60.0)),
     "Rider": Entry("rider", Experiment(stop_time=60.0)),
     "Battery": Entry("battery", Experiment(stop_time=60.0)),
+    "LateralVehicle": Entry("lateral_vehicle", Experiment(stop_time=6.0)),
+    "LaneKeepingController": Entry("lane_keeping_controller", Experiment(stop_time=6.0)),
 }
 
 

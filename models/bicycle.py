@@ -1,0 +1,94 @@
+"""Bicycle: the linear single-track model of a four-wheel-steered vehicle at a constant speed.
+
+Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4 (2-DOF bicycle model); the paper's
+equations are numbered here. The left and the right wheel of an axle are one; C_f and C_r are the cornering
+stiffness of one tire, so an axle has twice as much. State x = (y', theta, w_z, beta), input u = (delta_f,
+delta_r):
+
+    x' = A x + B u                                                                                   (B1)
+
+    y''    = a11 y' + a13 w_z + b11 delta_f + b12 delta_r       lateral velocity y'
+    theta' = w_z                                                heading angle theta, yaw rate w_z
+    w_z'   = a31 y' + a33 w_z + b31 delta_f + b32 delta_r
+    beta'  = -y' - v_x theta                                    displacement beta
+
+    a11 = -(2 C_f + 2 C_r)/(m v_x)               a13 = -v_x - (2 C_f l_1 - 2 C_r l_2)/(m v_x)        (B2)
+    a31 = (-2 l_1 C_f + 2 l_2 C_r)/(J_z v_x)     a33 = -(2 l_1^2 C_f + 2 l_2^2 C_r)/(J_z v_x)        (B3)
+    b11 = 2 C_f/m,  b12 = 2 C_r/m,  b31 = 2 l_1 C_f/J_z,  b32 = -2 l_2 C_r/J_z                       (B4)
+
+published: C_f = C_r = 30000 N/rad, J_z = 2200 kg.m2, l_1 = 1.25 m, l_2 = 1.27 m, v_x = 21.3 m/s.
+Deviations, both misprints of the paper: a13 is printed without its leading minus; the mass is printed as 1280
+kg, but the printed A and B are those of m = 1380 kg, the default here.
+
+Axes. The paper's are SAE (y right, z down); the equations are the same in ISO 8855 (y left, z up), which the
+bus uses. beta counts against y: to the right in ISO, to the left in SAE.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property, lru_cache, partial
+
+from .base import record, var
+
+Matrix = tuple[tuple[float, ...], ...]
+"""Rows of a matrix."""
+
+
+@record
+class Bicycle:
+    """The vehicle's numbers, common to the plant and to the model that a controller has of it."""
+
+    mass: float = var(1380.0, "kg", "Mass of the vehicle (m)", min=1.0)
+    yaw_inertia: float = var(2200.0, "kg.m2", "Moment of inertia about the vertical axis (J_z)", min=1.0)
+    front_cornering_stiffness: float = var(30e3, "N/rad", "Of one front tire (C_f)", min=0.0)
+    rear_cornering_stiffness: float = var(30e3, "N/rad", "Of one rear tire (C_r)", min=0.0)
+    front_axle_distance: float = var(1.25, "m", "Center of gravity to front axle (l_1)", min=0.0)
+    rear_axle_distance: float = var(1.27, "m", "Center of gravity to rear axle (l_2)", min=0.0)
+    speed: float = var(21.3, "m/s", "Longitudinal speed (v_x)", min=0.1)
+
+    @cached_property
+    def a(self) -> Matrix:
+        """A of (B1), 4 x 4."""
+        m, jz, vx = self.mass, self.yaw_inertia, self.speed
+        cf, cr = 2.0 * self.front_cornering_stiffness, 2.0 * self.rear_cornering_stiffness
+        l1, l2 = self.front_axle_distance, self.rear_axle_distance
+        a11, a13 = -(cf + cr) / (m * vx), -vx - (cf * l1 - cr * l2) / (m * vx)  # (B2)
+        a31, a33 = (l2 * cr - l1 * cf) / (jz * vx), -(l1 * l1 * cf + l2 * l2 * cr) / (jz * vx)  # (B3)
+        return (
+            (a11, 0.0, a13, 0.0),
+            (0.0, 0.0, 1.0, 0.0),
+            (a31, 0.0, a33, 0.0),
+            (-1.0, -vx, 0.0, 0.0),
+        )
+
+    @cached_property
+    def b(self) -> Matrix:
+        """B of (B1), 4 x 2."""
+        cf, cr = 2.0 * self.front_cornering_stiffness, 2.0 * self.rear_cornering_stiffness
+        b31, b32 = (
+            self.front_axle_distance * cf / self.yaw_inertia,
+            -self.rear_axle_distance * cr / self.yaw_inertia,
+        )
+        return ((cf / self.mass, cr / self.mass), (0.0, 0.0), (b31, b32), (0.0, 0.0))  # (B4)
+
+    @cached_property
+    def transition(self) -> Callable[[float], Matrix]:
+        """dt [s] -> (A_d, B_d) of `discretized`; the last few step sizes are remembered."""
+        return lru_cache(maxsize=8)(partial(discretized, self.a, self.b))
+
+
+def discretized(a: Matrix, b: Matrix, dt: float) -> Matrix:
+    """The rows of (A_d, B_d), n x (n + m): x(t + dt) = A_d x + B_d u, exact for inputs held over dt [s].
+
+    They are the first rows of exp([[A, B], [0, 0]] dt).
+    """
+    import numpy as np
+    from scipy.linalg import expm
+
+    n, m = len(b), len(b[0])
+    augmented = np.zeros((n + m, n + m))
+    augmented[:n, :n] = a
+    augmented[:n, n:] = b
+    rows: list[list[float]] = expm(augmented * dt)[:n].tolist()
+    return tuple(tuple(row) for row in rows)
