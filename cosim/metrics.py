@@ -11,7 +11,10 @@ A metric reduces a signal x(t), or the difference of two, over the run from t_0 
     share_equal              the share of T in which x = value
     time_above, time_equal   the same as a time
     changes                  how often x changes its value
+    settling                 the time from the first to the last instant at which |x| > threshold; none if
+                             it is so at t_n
 
+`after` [s] reduces only what lies at and behind that time: t_0 is then the first communication point there.
 Integrals are trapezoidal for continuous signals; what is held from one communication point to the next (an
 input, a sampled output) is integrated as it is held. `per` divides by a second reduction. The unit of
 measure of the outcome follows from those of the signals and is converted to the metric's `unit`: no factor
@@ -26,6 +29,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from . import units
@@ -35,11 +39,11 @@ from .results import Array, Results, ResultVariable
 from .units import BASE_UNITS, UnitOfMeasure
 
 _TAKES = {
-    "threshold": ("share_above", "time_above", "integral_above"),
+    "threshold": ("share_above", "time_above", "integral_above", "settling"),
     "value": ("share_equal", "time_equal"),
 }
 _SHARES = ("share_above", "share_equal")
-_TIMES = ("time_above", "time_equal")
+_TIMES = ("time_above", "time_equal", "settling")
 _VALUES = ("final", "mean", "max", "min", "rms", "range")  # these are in the unit of the signal
 _NEEDS_DURATION = ("mean", "rms", *_SHARES)
 
@@ -67,10 +71,12 @@ class Reduction(FileModel):
         "time_above",
         "time_equal",
         "changes",
+        "settling",
     ] = "final"
     threshold: float | None = Field(default=None, allow_inf_nan=False)
     threshold_unit: str | None = None
     value: bool | int | float | str | None = None
+    after: float | None = Field(default=None, allow_inf_nan=False)
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Reduction:
@@ -158,11 +164,9 @@ def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, Result
     if not len(results):
         return without("the run has no communication point")
     parts = (spec, spec.per) if spec.per else (spec,)
-    if results.time[-1] == results.time[0] and any(part.reduce in _NEEDS_DURATION for part in parts):
-        return without("the run has no duration")
     try:
         scale = _scale(spec, variables)
-        numbers = [_reduce(results, part) for part in parts]
+        numbers = [_reduce(_window(results, part), part) for part in parts]
     except _NoValueError as error:
         return without(str(error))
     value = numbers[0]
@@ -254,6 +258,18 @@ def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitO
     )
 
 
+def _window(results: Results, part: Reduction) -> Results:
+    """The part of a run that a reduction is of."""
+    if part.after is not None:
+        kept = results.time >= part.after
+        if not kept.any():
+            raise _NoValueError(f"the run ends before {part.after:g} s")
+        results = Results(results.time[kept], results.data[kept], results.variables)
+    if part.reduce in _NEEDS_DURATION and _duration(results) == 0.0:
+        raise _NoValueError("the run has no duration")
+    return results
+
+
 def _reduce(results: Results, part: Reduction) -> float:
     """The number of a reduction, in the unit of the signal and s."""
     variables = {name: results.variable(name) for name in (part.signal, part.minus) if name is not None}
@@ -266,6 +282,8 @@ def _reduce(results: Results, part: Reduction) -> float:
     held = all(v.held for v in variables.values())
     if part.reduce in _AT_POINTS:
         return _AT_POINTS[part.reduce](x)
+    if part.reduce == "settling":
+        return _settling(results.time, np.abs(x) > threshold)
     if part.reduce in (*_SHARES, *_TIMES):
         inside = x > threshold if part.value is None else x == _state(part, variables[part.signal])
         seconds = _integral(results.time, inside.astype(np.float64), held=True)
@@ -291,6 +309,15 @@ def _state(part: Reduction, variable: ResultVariable) -> float:
     if isinstance(part.value, str):
         return float(next(value for value, name in variable.items if name == part.value))
     return float(part.value or 0)
+
+
+def _settling(time: Array, outside: NDArray[np.bool_]) -> float:
+    at = np.flatnonzero(outside)
+    if not len(at):
+        return 0.0
+    if at[-1] + 1 == len(time):
+        raise _NoValueError("it is beyond the threshold at the end")
+    return float(time[at[-1] + 1] - time[at[0]])
 
 
 def _integral(time: Array, x: Array, held: bool) -> float:

@@ -237,3 +237,36 @@ def test_a_name_stands_once() -> None:
 def test_keys_that_do_not_go_together_are_named(keys: dict, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         validate({"name": "it", "signal": "ecu.state", **keys}, MetricSpec, "scooter.toml")
+
+
+def settling(x, **spec):
+    """The settling time of a signal x [m/s], 1 s from point to point, into 0.5 m/s."""
+    results = Results(
+        np.arange(float(len(x))), np.array(x)[:, None], (ResultVariable("vehicle.speed", "m/s"),)
+    )
+    spec = {"reduce": "settling", "threshold": 0.5, "unit": "s"} | spec
+    return metric(results, signal="vehicle.speed", **spec)
+
+
+def test_settling_is_from_leaving_a_band_to_coming_back_for_good():
+    assert settling([0.0, 0.0, 1.0, 0.2, -0.9, 0.1, 0.0]).value == 3.0
+    assert settling([0.0, 0.5, -0.5]).value == 0.0
+    assert settling([1.0, 1.0, 0.0], threshold=1.8, threshold_unit="km/h").value == 2.0
+    unsettled = settling([0.0, 1.0, 1.0])
+    assert math.isnan(unsettled.value)
+    assert "at the end" in unsettled.reason
+
+
+def test_after_reduces_the_rest_of_the_run():
+    late = {"signal": "vehicle.speed", "unit": "m/s", "after": 4.0}  # 2 m/s2, 10 s
+    assert metric(**late, reduce="range").value == pytest.approx(12.0)
+    assert metric(**late, reduce="mean").value == pytest.approx(14.0)
+    assert metric(**late, reduce="min").value == pytest.approx(8.0)
+    assert metric(signal="ecu.state", reduce="changes", after=4.0).value == 1.0  # of two
+
+
+@pytest.mark.parametrize(("after", "reason"), [(10.0, "no duration"), (10.5, "ends before 10.5 s")])
+def test_after_the_end_there_is_no_value(after, reason):
+    nothing = metric(signal="vehicle.speed", unit="m/s", reduce="mean", after=after)
+    assert math.isnan(nothing.value)
+    assert reason in nothing.reason
