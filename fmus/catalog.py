@@ -32,6 +32,10 @@ CATALOG = {
     "Battery": Entry("battery", Experiment(stop_time=60.0)),
     "LateralVehicle": Entry("lateral_vehicle", Experiment(stop_time=6.0)),
     "LaneKeepingController": Entry("lane_keeping_controller", Experiment(stop_time=6.0)),
+    "TwoMotorVehicle": Entry("two_motor_vehicle", Experiment(stop_time=10.0)),
+    "InductionMotorDrive": Entry("induction_motor_drive", Experiment(stop_time=1.0)),
+    "ElectronicDifferential": Entry("electronic_differential", Experiment(stop_time=10.0)),
+    "WheelSpeedController": Entry("wheel_speed_controller", Experiment(stop_time=10.0)),
 }
 
 
