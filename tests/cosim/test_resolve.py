@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from support.mocks import MockUnit, plan_of, real
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.files import read_toml, validate
@@ -11,6 +10,7 @@ from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.scenario import ScenarioFile, load_scenario
 from evcosim.cosim.system import SystemFile, load_system
 from evcosim.cosim.units import Affine, UnitOfMeasure
+from support.mocks import MockUnit, plan_of, real
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
 DEFINED = {
@@ -61,7 +61,9 @@ SENT = {"from": "car.speed", "to": ["ecu.speed"], "via": "can0.EMD_Status.EMD_Ve
 
 
 def test_a_direct_connection_converts_units():
-    (route,) = [r for r in plan([{"from": "car.speed", "to": ["ecu.speed"]}]).units[0].routes if not r.map.identity]
+    (route,) = [
+        r for r in plan([{"from": "car.speed", "to": ["ecu.speed"]}]).units[0].routes if not r.map.identity
+    ]
     assert route.map == Affine(3.6)
 
 
@@ -80,9 +82,15 @@ def test_ideal_leaves_the_bus_out():
 @pytest.mark.parametrize(
     ("connect", "said"),
     [
-        ([{"from": "car.spede", "to": ["ecu.speed"]}], r"'car' has no variable 'spede' \(did you mean 'speed'\?\)"),
+        (
+            [{"from": "car.spede", "to": ["ecu.speed"]}],
+            r"'car' has no variable 'spede' \(did you mean 'speed'\?\)",
+        ),
         ([{"from": "caar.speed", "to": ["ecu.speed"]}], r"no unit 'caar' \(did you mean 'car'\?\)"),
-        ([{"from": "car.speed", "to": ["ecu.sped"]}], r"'ecu' has no variable 'sped' \(did you mean 'speed'\?\)"),
+        (
+            [{"from": "car.speed", "to": ["ecu.sped"]}],
+            r"'ecu' has no variable 'sped' \(did you mean 'speed'\?\)",
+        ),
         ([{"from": "ecu.speed", "to": ["car.throttle"]}], "causality input, not output or local"),
         ([{"from": "car.speed", "to": ["ecu.throttle"]}], "causality output, not input"),
         (
@@ -96,7 +104,10 @@ def test_ideal_leaves_the_bus_out():
             "ecu.speed is driven already, by car.speed",
         ),
         ([SENT | {"via": "can1.EMD_Status.EMD_VehicleSpeed"}], r"no bus 'can1' \(did you mean 'can0'\?\)"),
-        ([SENT | {"via": "can0.EMD_Stats.EMD_VehicleSpeed"}], r"no message 'EMD_Stats' \(did you mean 'EMD_Status'"),
+        (
+            [SENT | {"via": "can0.EMD_Stats.EMD_VehicleSpeed"}],
+            r"no message 'EMD_Stats' \(did you mean 'EMD_Status'",
+        ),
         ([SENT | {"via": "can0.EMD_Status.EMD_Speed"}], "no signal 'EMD_Speed'"),
         ([SENT | {"from": "car.force"}], r"car.force \[N\] cannot feed .* \[km/h\]"),
         ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed"),
@@ -156,10 +167,16 @@ def test_a_unit_left_out_frees_its_receivers():
         ({"stimulus": [{"to": "car.grad", "constant": 1}]}, r"no variable 'grad' \(did you mean 'grade'\?\)"),
         ({"stimulus": [{"to": "car.throttle", "constant": 1, "unit": "N"}]}, "different quantities"),
         ({"stimulus": [{"to": "ecu.speed", "constant": 1}]}, "ecu.speed is driven already, by car.speed"),
-        ({"event": [{"time": 1, "action": "override", "variable": "car.speed", "value": 1}]}, "no input 'car.speed'"),
+        (
+            {"event": [{"time": 1, "action": "override", "variable": "car.speed", "value": 1}]},
+            "no input 'car.speed'",
+        ),
         ({"leave_out": ["caar"]}, r"no unit 'caar' in mocks.toml \(did you mean 'car'\?\)"),
         ({"experiment": {"stop_time": -1.0}}, "stop_time -1.0 s is not after start_time 0.0 s"),
-        ({"experiment": {"stop_time": 1.0, "step_size": 0.03}}, "is not a multiple of the communication step 0.03 s"),
+        (
+            {"experiment": {"stop_time": 1.0, "step_size": 0.03}},
+            "is not a multiple of the communication step 0.03 s",
+        ),
         ({"parameters": {"car": {"mass": 0}}}, "test.toml: parameters.car.mass: 0 kg is below the minimum"),
         ({"record": ["car.spee"]}, r"'car.spee' fits no variable \(did you mean 'car.speed'\?\)"),
     ],
@@ -205,7 +222,9 @@ def test_a_wrong_system_file_names_file_key_and_value(tmp_path, text, said):
 
 
 def test_unknown_names_say_what_there_is(tmp_path):
-    with pytest.raises(ConfigError, match=r"unknown system 'scoter' \(did you mean 'scooter'\?\); known: .*scooter"):
+    with pytest.raises(
+        ConfigError, match=r"unknown system 'scoter' \(did you mean 'scooter'\?\); known: .*scooter"
+    ):
         load_system("scoter")
     with pytest.raises(ConfigError, match="there is no such system file"):
         load_system(str(tmp_path / "none.toml"))

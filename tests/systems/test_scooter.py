@@ -8,12 +8,24 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evcosim.master import Simulation, simulate
+from evcosim.master import simulate
 from support.closed_loop import fig8_rider
 from support.closed_loop import run as plain_python
-
-VARIANTS = {"bus": {}, "ideal": {"ideal": True}, "jacobi": {"algorithm": "jacobi"}}
-KMH = 3.6
+from support.scooter_numbers import (
+    CONSTANT_SPEEDS,
+    KMH,
+    VARIANTS,
+    energy_and_speed,
+    estimate_error,
+    largest_jump,
+    over_bound,
+    ripple,
+    settled_error,
+    since_switch,
+    stop_and_go,
+    switches,
+    time_in_states,
+)
 
 
 @pytest.fixture(scope="module", params=list(VARIANTS))
@@ -21,33 +33,20 @@ def fig8(request):
     return request.param, simulate("scooter", "fig8", **VARIANTS[request.param])
 
 
-def switches(results):
-    state = results["ecu.state"]
-    at = np.flatnonzero(np.diff(state)) + 1
-    return results.time[at], [int(state[0]), *(int(s) for s in state[at])]
-
-
 def test_fig8_goes_driver_acceleration_velocity_driver(fig8):
     _, results = fig8
-    times, states = switches(results)
-    assert states == [0, 1, 2, 0]
-    spent = np.diff([0.0, *times, 40.0])
-    assert spent[0] + spent[3] == pytest.approx(10.9, abs=0.1)
-    assert spent[1] == pytest.approx(8.1, abs=0.1)
-    assert spent[2] == pytest.approx(21.1, abs=0.1)
+    assert switches(results)[1] == [0, 1, 2, 0]
+    assert time_in_states(results) == pytest.approx([10.9, 8.1, 21.1], abs=0.1)
 
 
 def test_fig8_overshoots_the_bound_by_less_than_one_and_a_half(fig8):
     _, results = fig8
-    over = (results["vehicle.speed"] * KMH - results["ecu.speed_bound"]).max()
-    assert 0.0 < over <= 1.5
+    assert 0.0 < over_bound(results).max() <= 1.5
 
 
 def test_fig8_settles_within_the_resolution_of_the_speed(fig8):
     _, results = fig8
-    settled = (results.time > 20.0) & (results["ecu.state"] == 2)
-    error = np.abs(results["vehicle.speed"] * KMH - results["ecu.speed_bound"])[settled]
-    assert error.max() <= 0.55
+    assert settled_error(results) <= 0.55
 
 
 def test_fig8_keeps_the_acceleration_bound(fig8):
@@ -59,19 +58,8 @@ def test_fig8_keeps_the_acceleration_bound(fig8):
 
 
 def test_switching_is_bumpless(fig8):
-    """Beyond the rider's own step, and besides what the controller does in every other sample."""
     _, results = fig8
-    throttle, request = results["ecu.throttle"], results["ecu.throttle_request"]
-    at = np.flatnonzero(np.diff(results["ecu.state"])) + 1
-    jumps = np.abs(np.diff(throttle))[at - 1] - np.abs(np.diff(request))[at - 1]
-    assert jumps.max() <= 1.0
-
-
-def ripple(results):
-    """rms of dg_e/dt [%/s] while a bound acts, without the samples in which the state changes."""
-    state, rate = results["ecu.state"], np.diff(results["ecu.throttle"]) / 0.01
-    inside = (state[1:] == state[:-1]) & (state[1:] != 0)
-    return float(np.sqrt(np.mean(rate[inside] ** 2)))
+    assert largest_jump(results) <= 1.0
 
 
 def test_the_observer_keeps_the_throttle_calm():
@@ -83,11 +71,8 @@ def test_the_observer_keeps_the_throttle_calm():
 @pytest.mark.parametrize("variant", list(VARIANTS))
 def test_fig9_respects_every_bound_after_transients(variant):
     results = simulate("scooter", "fig9", **VARIANTS[variant])
-    times, states = switches(results)
-    assert states == [0, 1, 2] * 3 + [0]
-    began = times[np.searchsorted(times, results.time, side="right") - 1]
-    since = np.where(results.time >= times[0], results.time - began, 0.0)  # s in the present state
-    over = results["vehicle.speed"] * KMH - results["ecu.speed_bound"]
+    assert switches(results)[1] == [0, 1, 2] * 3 + [0]
+    over, since = over_bound(results), since_switch(results)
     velocity, acceleration = results["ecu.state"] == 2, results["ecu.state"] == 1
     assert over[velocity].max() <= 2.0  # entered at up to 0.9 m/s2 while the bound falls by 0.6 km/h a second
     assert over[velocity & (since > 8.0)].max() <= 0.55
@@ -95,28 +80,10 @@ def test_fig9_respects_every_bound_after_transients(variant):
     assert excess[acceleration & (since > 1.5)].max() <= 0.1
 
 
-@pytest.mark.parametrize("speed", [24.0, 27.3, 30.5, 34.49, 40.5, 45.25, 49.0])
-def test_estimate_of_a_constant_speed(speed, tmp_path):
+@pytest.mark.parametrize("speed", CONSTANT_SPEEDS)
+def test_estimate_of_a_constant_speed(speed):
     """|v_e - v| <= 0.5 km/h in the limit (published)."""
-    throttle = (speed - 17.03) / 0.46
-    (tmp_path / "constant.toml").write_text(
-        f"""
-        leave_out = ["rider", "planner", "battery"]
-        [experiment]
-        stop_time = 90.0
-        [parameters.ecu]
-        enabled = false
-        [parameters.vehicle]
-        initial_speed = {speed / KMH}
-        [[stimulus]]
-        to = "ecu.throttle_request"
-        constant = {throttle}
-        """
-    )
-    results = simulate("scooter", tmp_path / "constant.toml")
-    late = results.time > 60.0
-    error = np.abs(results["ecu.speed_estimate"] - results["vehicle.speed"] * KMH)[late]
-    assert error.max() <= 0.5
+    assert estimate_error(speed) <= 0.5
 
 
 def test_a_run_is_plain_python_with_a_bus_between():
@@ -164,16 +131,3 @@ def test_bounds_save_energy_and_cost_speed():
     bounded, free = energy_and_speed(stop_and_go(True)), energy_and_speed(stop_and_go(False))
     assert bounded == pytest.approx((43.0, 24.1), rel=0.02)
     assert free == pytest.approx((73.7, 39.7), rel=0.005)
-
-
-def energy_and_speed(results):
-    kilometers = results["vehicle.distance"][-1] / 1000.0
-    return results["battery.energy_drawn"][-1] / kilometers, kilometers / (results.time[-1] / 3600.0)
-
-
-def stop_and_go(bounded):
-    with Simulation("scooter", "fig8", parameters={"ecu.enabled": bounded}) as sim:
-        for k in range(300):
-            sim.override("ecu.throttle_request", 100.0 if k % 30 < 18 else 0.0)
-            sim.step(100)
-        return sim.results

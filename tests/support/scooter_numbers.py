@@ -1,0 +1,141 @@
+"""The numbers of the scooter system, each a function of results; run this file to print them as a table."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evcosim.cosim.results import Results
+from evcosim.master import Simulation, simulate
+
+KMH = 3.6  # km/h in 1 m/s
+VARIANTS = {"bus": {}, "ideal": {"ideal": True}, "jacobi": {"algorithm": "jacobi"}}
+CONSTANT_SPEEDS = (24.0, 27.3, 30.5, 34.49, 40.5, 45.25, 49.0)  # km/h
+
+
+def switches(results: Results) -> tuple[NDArray[np.float64], list[int]]:
+    """When the supervisor changes its state [s], and the states from the start on."""
+    state = results["ecu.state"]
+    at = np.flatnonzero(np.diff(state)) + 1
+    return results.time[at], [int(state[0]), *(int(s) for s in state[at])]
+
+
+def time_in_states(results: Results) -> list[float]:
+    """Time in driver, acceleration and velocity [s]."""
+    step = results.time[1] - results.time[0]
+    return [float(step * np.count_nonzero(results["ecu.state"][:-1] == s)) for s in (0, 1, 2)]
+
+
+def over_bound(results: Results) -> NDArray[np.float64]:
+    """True speed minus speed bound [km/h]."""
+    return results["vehicle.speed"] * KMH - results["ecu.speed_bound"]
+
+
+def settled_error(results: Results) -> float:
+    """Largest |v - v_b| [km/h] in velocity after 20 s."""
+    settled = (results.time > 20.0) & (results["ecu.state"] == 2)
+    return float(np.abs(over_bound(results)[settled]).max())
+
+
+def ripple(results: Results) -> float:
+    """rms of dg_e/dt [%/s] while a bound acts, without the samples in which the state changes."""
+    state, rate = results["ecu.state"], np.diff(results["ecu.throttle"]) / 0.01
+    inside = (state[1:] == state[:-1]) & (state[1:] != 0)
+    return float(np.sqrt(np.mean(rate[inside] ** 2)))
+
+
+def largest_jump(results: Results) -> float:
+    """Largest |change of g_e| [%] at a switch, beyond the rider's own change."""
+    throttle, request = results["ecu.throttle"], results["ecu.throttle_request"]
+    at = np.flatnonzero(np.diff(results["ecu.state"]))
+    return float((np.abs(np.diff(throttle))[at] - np.abs(np.diff(request))[at]).max())
+
+
+def since_switch(results: Results) -> NDArray[np.float64]:
+    """Time in the present state [s]; 0 before the first switch."""
+    times, _ = switches(results)
+    last = times[np.searchsorted(times, results.time, side="right") - 1]
+    return np.where(results.time >= times[0], results.time - last, 0.0)
+
+
+def estimate_error(speed: float, **options: object) -> float:
+    """Largest |v_e - v| [km/h] from 60 to 90 s at a constant speed [km/h], without bounds."""
+    text = f"""
+        leave_out = ["rider", "planner", "battery"]
+        [experiment]
+        stop_time = 90.0
+        [parameters.ecu]
+        enabled = false
+        [parameters.vehicle]
+        initial_speed = {speed / KMH}
+        [[stimulus]]
+        to = "ecu.throttle_request"
+        constant = {(speed - 17.03) / 0.46}
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "constant.toml"
+        path.write_text(text)
+        results = simulate("scooter", path, **options)  # type: ignore[arg-type] # options of simulate
+    error = np.abs(results["ecu.speed_estimate"] - results["vehicle.speed"] * KMH)
+    return float(error[results.time > 60.0].max())
+
+
+def stop_and_go(bounded: bool) -> Results:
+    """300 s of full throttle for 18 s and coasting for 12 s in turn."""
+    with Simulation("scooter", "fig8", parameters={"ecu.enabled": bounded}) as sim:
+        for second in range(300):
+            sim.override("ecu.throttle_request", 100.0 if second % 30 < 18 else 0.0)
+            sim.step(100)
+        return sim.results
+
+
+def energy_and_speed(results: Results) -> tuple[float, float]:
+    """Consumption from the cells [Wh/km] and mean speed [km/h]."""
+    kilometers = results["vehicle.distance"][-1] / 1000.0
+    return results["battery.energy_drawn"][-1] / kilometers, kilometers / (results.time[-1] / 3600.0)
+
+
+def table() -> str:
+    """All numbers as a Markdown table: a row each, a column for each variant."""
+    columns = []
+    for options in VARIANTS.values():
+        fig8, fig9 = simulate("scooter", "fig8", **options), simulate("scooter", "fig9", **options)  # type: ignore[arg-type] # options of simulate
+        raw = simulate("scooter", "fig8", parameters={"ecu.use_observer": False}, **options)  # type: ignore[arg-type] # options of simulate
+        late = (fig9["ecu.state"] == 2) & (since_switch(fig9) > 8.0)
+        columns.append(
+            [
+                " ".join("DAV"[s] for s in switches(fig8)[1]),
+                " / ".join(f"{t:.2f}" for t in time_in_states(fig8)),
+                f"{over_bound(fig8).max():.3f}",
+                f"{settled_error(fig8):.3f}",
+                f"{ripple(raw):.1f} / {ripple(fig8):.1f} = {ripple(raw) / ripple(fig8):.1f}",
+                f"{largest_jump(fig8):.2f}",
+                str(len(switches(fig9)[0])),
+                f"{over_bound(fig9)[late].max():.3f}",
+                f"{max(estimate_error(v, **options) for v in CONSTANT_SPEEDS):.3f}",
+            ]
+        )
+    names = [
+        "Fig. 8: states",
+        "Fig. 8: time in D / A / V [s]",
+        "Fig. 8: overshoot over v_b [km/h]",
+        "Fig. 8: settled abs(v - v_b) [km/h]",
+        "Fig. 8: rms of dg_e/dt, raw v_m / observer [%/s]",
+        "Fig. 8: largest jump of g_e at a switch [%]",
+        "Fig. 9: switches",
+        "Fig. 9: highest v - v_b, 8 s after a switch [km/h]",
+        "abs(v_e - v) at constant v, 24-49 km/h, after 60 s [km/h]",
+    ]
+    rows = [f"| {' | '.join([name, *values])} |" for name, *values in zip(names, *columns, strict=True)]
+    head = f"| | {' | '.join(VARIANTS)} |\n|---|{'---|' * len(VARIANTS)}"
+    return "\n".join([head, *rows])
+
+
+if __name__ == "__main__":
+    print(table())
+    for bounded in (True, False):
+        consumption, speed = energy_and_speed(stop_and_go(bounded))
+        print(f"stop and go, bounds {'on' if bounded else 'off'}: {consumption:.1f} Wh/km, {speed:.1f} km/h")
