@@ -1,6 +1,6 @@
 """The scooter's published and expected numbers, from real FMUs over the real bus.
 
-Each limit is that of the paper (published) or of the design (chosen); the values seen are in docs/scooter.md.
+Each limit is that of the paper (published) or of the design (chosen); the values seen are in docs/systems/scooter.md.
 """
 
 from __future__ import annotations
