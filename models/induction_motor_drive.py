@@ -2,8 +2,8 @@
 
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012, which prints the motor's
-data and no controller. Complex numbers are vectors in the frame of the rotor, real along its flux at the start
-of each step; amplitudes are peak values; w is the electrical speed of the rotor, p_p times that of the shaft W.
+data and no controller. Complex numbers are vectors in the frame of the rotor, real along its flux at the
+start of each step; amplitudes are peak values; w = p_p W is the electrical speed of the rotor.
 
     sigma L_s di/dt = u - R_e i - j w sigma L_s i + k_r (1/T_r - j w) psi       stator current        (M1)
     dpsi/dt = L_m/T_r i - psi/T_r                                               rotor flux            (M2)
@@ -31,13 +31,13 @@ published: 247 N.m, R_r = 0.003, R_s = 0.0044 ohm, L_ls = 16.1, L_m = 482, L_lr 
 efficiency 93 %, gear and efficiency being part of the drive here.
 chosen: everything of the control: i_d* = 419 A (247 N.m then need i_q = 419 A), I_max = 650 A, U_max = 400 V
 (not reached below 120 km/h; there is no field weakening), tau = 3 ms. f_c = 0.0014 N.m.s is published and 0
-here: it is 0.65 N.m at 60 km/h, a quarter of a percent of the torque, and an equilibrium of the car would have
-to count it. The flux is known to the control as (M2) gives it, from the current and the true parameters.
+here: it is 0.65 N.m at 60 km/h, a quarter of a percent of the torque, and an equilibrium of the car would
+have to count it. The flux is known to the control as (M2) gives it, from the current and the true parameters.
 
-Step. The wheel speed is held, so (M1)-(M2) are linear with constant coefficients in the rotor's frame and each
-inner step of 0.1 ms (or less, a whole number of them in a step) is their exact solution for the held voltage.
-The exponential is computed once a step. Torque, currents and flux are those at the end of the step; `power` is
-the mean over the step.
+Step. The wheel speed is held, so (M1)-(M2) are linear with constant coefficients in the rotor's frame, and
+each inner step of 0.1 ms (or less, a whole number of them in a step) is their exact solution for the held
+voltage. The exponential is computed once a step. Torque, currents and flux are those at the end of the step;
+`power` is the mean over the step.
 
 At the start the motor is magnetized and without torque, or gives what `torque_request` then asks.
 Phase currents are not shown: at 60 km/h they have 147 Hz, which no record of 100 Hz can show.

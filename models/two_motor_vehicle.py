@@ -29,9 +29,9 @@ At the edges: below 0.1 m/s rolling resistance is in proportion to the speed, so
 does not push it backward; on a slope the car rolls back. Angles of the steering beyond its stop count as the
 stop. Beyond a slip of 100 % the tyre gives what it gives there.
 
-Numerics: at speed v a wheel's slip follows its torque with the rate lambda = R^2 F_z mu'(0)/(J_e v), 320 1/s
-at 60 km/h and 10 800 1/s at a standstill. A step is divided into inner steps of Heun's rule with
-h lambda <= 0.6 (the rule is stable below 2): 6 of them for 10 ms at 60 km/h, 181 at a standstill. Torques are
+Numerics: at speed v a wheel's slip follows its torque with the rate lambda = R^2 F_z mu'(0)/(J_e v), 318 1/s
+at 60 km/h and 10 600 1/s at a standstill. A step is divided into inner steps of Heun's rule with
+h lambda <= 0.6 (the rule is stable below 2): 6 of them for 10 ms at 60 km/h, 177 at a standstill. Torques are
 held over the step.
 """
 
@@ -82,7 +82,7 @@ class TwoMotorVehicle(Model):
         def stiffness(self) -> float:
             """R^2 F_z mu'(0)/J_e on a level road [m/s2]: by |v|, the rate at which slip settles."""
             load = 0.25 * self.mass * GRAVITY
-            slope = self.friction_peak * self.friction_rise
+            slope = self.friction_peak * self.friction_rise - self.friction_fall
             return self.wheel_radius**2 * load * slope / self.wheel_inertia
 
     @record
