@@ -1,6 +1,6 @@
 """The scooter's published and expected numbers, from real FMUs over the real bus.
 
-Each limit is that of the paper (published) or of the design (chosen); the values seen are in docs/systems/scooter.md.
+Each limit is the paper's (published) or the design's (chosen); docs/systems/scooter.md shows the values seen.
 """
 
 from __future__ import annotations
