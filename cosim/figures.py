@@ -36,10 +36,12 @@ __all__ = [
     "FigureSpec",
     "PanelSpec",
     "SignalSpec",
+    "canvas",
     "check",
     "default_spec",
     "draw",
     "draw_comparison",
+    "look",
     "pretty",
     "save",
     "thinned",
@@ -161,6 +163,30 @@ def write(figure: Figure, path: Path) -> None:
     metadata = {dated[kind]: None} if kind in dated else None
     with _style(), replacing(path) as file:
         figure.savefig(file, format=kind, metadata=metadata)
+
+
+@contextlib.contextmanager
+def canvas(
+    rows: int = 1, columns: int = 1, *, height: float = 3.0, title: str = "", share_x: bool = False
+) -> Iterator[tuple[Figure, NDArray[Any]]]:
+    """An empty figure in the style of all others, for charts that are not over time.
+
+    Gives the figure and its axes, shape (rows, columns); draw inside the `with` block. `height` is that of
+    a row in inches, the width is always the same.
+    """
+    from matplotlib.figure import Figure
+
+    with _style():
+        figure = Figure(figsize=(_WIDTH, height * rows + (0.5 if title else 0.2)), layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False, sharex=share_x)
+        if title:
+            figure.suptitle(title, fontweight="bold", fontsize=12.0)
+        yield figure, axes
+
+
+def look(i: int) -> dict[str, Any]:
+    """Color and dashes of the i-th line of a chart: told apart in black and white too."""
+    return {"color": _COLORS[i % len(_COLORS)], "linestyle": _DASHES[i % len(_DASHES)], "linewidth": 1.7}
 
 
 @contextlib.contextmanager

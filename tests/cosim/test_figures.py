@@ -320,3 +320,14 @@ def test_a_signal_without_a_unit_says_so_in_the_legend() -> None:
 )
 def test_units_are_printed_as_in_print(unit: str, shown: str) -> None:
     assert pretty(unit) == shown
+
+
+def test_a_chart_that_is_not_over_time_looks_like_the_others(tmp_path):
+    with figures.canvas(2, 2, height=2.0, title="chart") as (figure, axes):
+        assert axes.shape == (2, 2)
+        for i, one in enumerate(axes.flat):
+            one.plot([0.0, 1.0], [0.0, i], **figures.look(i))
+    png, _ = figures.save(figure, tmp_path)
+    assert png.stat().st_size > 1000
+    looks = [(figures.look(i)["color"], str(figures.look(i)["linestyle"])) for i in range(8)]
+    assert len(set(looks)) == 8
