@@ -187,6 +187,8 @@ class Machine:
         self.coupling = l_m * self.rotor_rate  # L_m/T_r [ohm]
         self.torque_factor = 1.5 * p.pole_pairs * self.ratio  # [1]: torque by flux and i_q
         self.current_q_limit = sqrt(p.current_limit**2 - p.magnetizing_current**2)
+        by_current = self.torque_factor * l_m * p.magnetizing_current * self.current_q_limit
+        self.torque_limit = min(p.maximum_torque, by_current)  # [N.m]
 
     def advance(self, w: float, h: float) -> tuple[complex, complex, complex, complex, complex, complex]:
         """Exact solution of (M1)-(M2) over h [s] at the speed w [rad/s]: exp(A h) row by row, then the
@@ -209,9 +211,9 @@ class Machine:
 
 
 def _motor_request(p: InductionMotorDrive.Parameters, u: InductionMotorDrive.Inputs) -> float:
-    """T* [N.m]: the request at the wheel through the gear, within the motor's limit."""
+    """T* [N.m]: the request at the wheel through the gear, within the limits of torque and current."""
     wanted = u.torque_request / _gear(p, u.torque_request, u.wheel_speed)
-    limit = p.maximum_torque
+    limit = p.machine.torque_limit
     return limit if wanted > limit else -limit if wanted < -limit else wanted
 
 

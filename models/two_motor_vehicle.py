@@ -38,7 +38,7 @@ held over the step.
 from __future__ import annotations
 
 from functools import cached_property
-from math import ceil, cos, exp, pi, sin
+from math import ceil, cos, exp, expm1, pi, sin
 
 from .base import Model, record, var
 from .turn_geometry import check_steering, wheel_ratios
@@ -203,7 +203,7 @@ def slip(rim: float, ground: float) -> float:
 def friction(p: TwoMotorVehicle.Parameters, s: float) -> float:
     """(V3): friction coefficient at a slip."""
     size = min(1.0, abs(s))
-    mu = p.friction_peak * (1.0 - exp(-p.friction_rise * size)) - p.friction_fall * size
+    mu = -p.friction_peak * expm1(-p.friction_rise * size) - p.friction_fall * size
     return mu if s >= 0.0 else -mu
 
 
@@ -230,10 +230,10 @@ def _advance(
         s = (rim - ground) / size  # (V4)
         if s < 0.0:
             s = 1.0 if s < -1.0 else -s
-            return load * (th_3 * s - th_1 * (1.0 - exp(-th_2 * s)))  # (V2), (V3)
+            return load * (th_3 * s + th_1 * expm1(-th_2 * s))  # (V2), (V3)
         if s > 1.0:
             s = 1.0
-        return load * (th_1 * (1.0 - exp(-th_2 * s)) - th_3 * s)
+        return load * (-th_1 * expm1(-th_2 * s) - th_3 * s)
 
     def resistance(v: float) -> float:
         share = v / ROLLING_SPEED
