@@ -12,6 +12,7 @@ from .compare import compare
 from .info import info
 from .listing import list_
 from .plot import plot
+from .reproduce import reproduce
 from .run import run
 
 
@@ -32,6 +33,7 @@ def command() -> Any:
         "info": info,
         "plot": plot,
         "compare": compare,
+        "reproduce": reproduce,
         "build": build,
     }
     for name, verb in verbs.items():

@@ -1,0 +1,70 @@
+"""`evcosim reproduce`: the papers' tables and figures beside what comes out."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from ..reproduce.page import Page
+
+
+def reproduce(
+    papers: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[PAPER]...", help="By the name of its system, as 'evcosim list' shows; default: all."
+        ),
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Where the pages go.")] = Path(
+        "results/reproduce"
+    ),
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
+) -> int:
+    """Reproduce papers: a page of published and obtained numbers, and figures.
+
+    Exit code 1 when a number that should be reached is not.
+    """
+    from ..reproduce import papers as library
+    from .console import print_json, progress_bar
+    from .outputs import prepared
+
+    names = list(dict.fromkeys(papers or library.NAMES))
+    for name in names:
+        library.load(name)  # a wrong name is said before anything runs
+    folder = prepared(output)
+    begin = time.perf_counter()
+    with progress_bar("reproducing", 0.0, 1.0, not as_json) as show:
+        pages = library.reproduce(names, folder, workers, lambda done, total, _: show(done / total))
+    seconds = time.perf_counter() - begin
+    if as_json:
+        print_json({page.name: _as_data(page) for page in pages})
+    else:
+        _show(pages, folder, seconds)
+    return 1 if any(page.missed for page in pages) else 0
+
+
+def _as_data(page: Page) -> dict[str, Any]:
+    import dataclasses
+
+    rows = [dataclasses.asdict(row) for row in page.rows]
+    return {"title": page.title, "source": page.source, "rows": rows, "missed": len(page.missed)}
+
+
+def _show(pages: list[Page], folder: Path, seconds: float) -> None:
+    from .console import print_table, print_title
+
+    for i, page in enumerate(pages):
+        print_title(f"{page.name}: {page.title}", first=i == 0)
+        rows = [[r.what, r.published, r.reach, r.obtained, r.verdict] for r in page.rows]
+        print_table(["what", "published", "to reach", "obtained", "verdict"], rows)
+    missed = [f"{page.name}: {row.what}" for page in pages for row in page.missed]
+    total = sum(len(page.rows) for page in pages)
+    print(f"\n{total} numbers in {seconds:.0f} s; missed: {'; '.join(missed) if missed else 'none'}")
+    print(f"in {folder}: README.md, {', '.join(f'{page.name}.md and .html' for page in pages)}, figures/")

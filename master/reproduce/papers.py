@@ -1,0 +1,47 @@
+"""The papers, and how they are reproduced: all their runs at once on all cores, then a page for each."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ...cosim.errors import ConfigError, nearest
+from ..parallel import Task, run_all
+from .page import Page, Paper
+from .render import write_index, write_page
+
+NAMES = ("scooter", "lane_keeping", "braking", "multi_drive")
+"""The papers by the name of their system; each is the module of that name in this package."""
+
+Progress = Callable[[int, int, str], None]
+"""Called with the number of pieces of work done, their number, and the name of the last one."""
+
+
+def load(name: str) -> Paper:
+    """The paper of a system. Raises ConfigError with the nearest name there is."""
+    if name not in NAMES:
+        raise ConfigError(f"there is no paper '{name}'{nearest(name, NAMES)}; papers: {', '.join(NAMES)}")
+    paper: Paper = importlib.import_module(f".{name}", __package__).PAPER
+    return paper
+
+
+def reproduce(
+    names: Sequence[str], folder: Path, workers: int | None = None, progress: Progress | None = None
+) -> list[Page]:
+    """Reproduce papers and write their pages and an index into `folder`; return the pages.
+
+    Raises ConfigError for an unknown name or a folder that cannot be written, RunError naming the run that
+    failed.
+    """
+    papers = {name: load(name) for name in names}
+    runs = {name: paper.runs() for name, paper in papers.items()}
+    tasks = [Task(f"{name}: {run}", piece) for name, some in runs.items() for run, piece in some.items()]
+    outcomes = iter(run_all(tasks, workers=workers, progress=progress))
+    pages = []
+    for name, paper in papers.items():
+        page = paper.page({run: next(outcomes) for run in runs[name]})
+        write_page(page, folder)
+        pages.append(page)
+    write_index(pages, folder)
+    return pages

@@ -1,0 +1,119 @@
+"""Writing pages: Markdown with the pictures beside it, and HTML that holds everything in one file."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...cosim import figures
+from ...cosim.writing import replacing
+from .page import Page, Row
+
+_HEAD = ("what", "published", "to reach", "obtained", "verdict", "reason")
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 1240px; margin: 2rem auto; padding: 0 1rem;
+  color: #1a1a1a; }
+table { border-collapse: collapse; width: 100%; font-size: 14px; }
+th, td { border-bottom: 1px solid #d0d0d0; padding: .35rem .6rem; text-align: left; vertical-align: top; }
+th { background: #f3f3f3; position: sticky; top: 0; }
+td.reproduced { color: #005a32; } td.calibrated { color: #08519c; }
+td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
+figure { margin: 2rem 0; } figure img { max-width: 100%; height: auto; } figcaption { color: #444; }
+pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; }
+"""
+
+
+def write_page(page: Page, folder: Path) -> list[Path]:
+    """Write NAME.md, NAME.html and figures/NAME-*.png and .svg; return the paths.
+
+    Raises ConfigError naming the file that cannot be written.
+    """
+    written = []
+    for picture in page.pictures:
+        written += figures.save(picture.figure, folder / "figures", f"{page.name}-{picture.stem}")
+    images = {p.stem: written[2 * i] for i, p in enumerate(page.pictures)}
+    for suffix, text in ((".md", _markdown(page)), (".html", _html(page, images))):
+        path = folder / f"{page.name}{suffix}"
+        with replacing(path) as file:
+            file.write(text.encode())
+        written.append(path)
+    return written
+
+
+def write_index(pages: Sequence[Page], folder: Path) -> Path:
+    """Write README.md: the papers and how many of their numbers came out."""
+    lines = [
+        "# Reproduced papers",
+        "",
+        "| system | paper | reproduced | calibrated | not reproducible | missed |",
+    ]
+    lines.append("|---|---|---|---|---|---|")
+    for page in pages:
+        counts = [sum(r.verdict == v for r in page.rows) for v in verdicts()]
+        lines.append(f"| [{page.name}]({page.name}.md) | {page.source} | {' | '.join(map(str, counts))} |")
+    path = folder / "README.md"
+    with replacing(path) as file:
+        file.write(("\n".join(lines) + "\n").encode())
+    return path
+
+
+def verdicts() -> tuple[str, ...]:
+    """The verdicts, best first."""
+    return ("reproduced", "calibrated", "not reproducible", "missed")
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    return (row.what, row.published, row.reach, row.obtained, row.verdict, row.reason)
+
+
+def _markdown(page: Page) -> str:
+    lines = [f"# {page.title}", "", page.source, "", page.about, ""]
+    lines += ["```sh", *page.commands, "```", ""]
+    lines += [f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD)]
+    for row in page.rows:
+        cells = [cell.replace("|", "\\|").replace("\n", " ") for cell in _cells(row)]
+        cells[4] = f"**{cells[4]}**"
+        lines.append(f"| {' | '.join(cells)} |")
+    for picture in page.pictures:
+        lines += [
+            "",
+            f"![{picture.caption}](figures/{page.name}-{picture.stem}.png)",
+            "",
+            f"*{picture.caption}*",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _html(page: Page, images: dict[str, Path]) -> str:
+    e = html.escape
+    rows = "\n".join(
+        "<tr>"
+        + "".join(
+            f'<td class="{row.verdict.split()[0]}">{e(c)}</td>' if i == 4 else f"<td>{e(c)}</td>"
+            for i, c in enumerate(_cells(row))
+        )
+        + "</tr>"
+        for row in page.rows
+    )
+    pictures = "\n".join(
+        f'<figure><img alt="{e(p.caption)}" src="data:image/png;base64,'
+        f'{base64.b64encode(images[p.stem].read_bytes()).decode()}"><figcaption>{e(p.caption)}</figcaption></figure>'
+        for p in page.pictures
+    )
+    head = "".join(f"<th>{name}</th>" for name in _HEAD)
+    return f"""<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{e(page.title)}</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head><body>
+<h1>{e(page.title)}</h1>
+<p><em>{e(page.source)}</em></p>
+<p>{e(page.about)}</p>
+<pre>{e(chr(10).join(page.commands))}</pre>
+<table><thead><tr>{head}</tr></thead><tbody>
+{rows}
+</tbody></table>
+{pictures}
+</body></html>
+"""
