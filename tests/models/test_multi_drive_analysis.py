@@ -1,0 +1,57 @@
+"""The analysis of the two-motor car: numbers of made-up runs, and why printed ones are not reproducible."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from evcosim.models import multi_drive_analysis as analysis
+from evcosim.models.two_motor_vehicle import TwoMotorVehicle, resistance_torques
+from evcosim.models.wheel_speed_controller import TORQUE_LIMIT
+
+P = TwoMotorVehicle.Parameters()
+V = 60.0 / 3.6
+TIME = np.arange(1001) * 0.01
+
+
+def test_dip_overshoot_error_and_distance_of_a_made_up_run() -> None:
+    speed = V + np.where(TIME < 5.0, -0.25, 0.5) * (TIME > 3.0)
+    error = np.where(TIME < 2.0, 9.0, 0.3)  # before the first curve it does not count
+    found = analysis.maneuver(TIME, speed, V, error, 10.0 + V * TIME)
+    assert found == pytest.approx((0.9, 1.8, 0.3, 10.0 * V))
+
+
+def test_a_run_that_ends_before_the_first_curve_is_refused() -> None:
+    short = TIME[:100]
+    with pytest.raises(ValueError, match=r"ends at 0.99 s, before the first curve at 2 s"):
+        analysis.maneuver(short, 0.0 * short, V, 0.0 * short, 0.0 * short)
+
+
+def test_the_time_to_a_speed_is_between_samples() -> None:
+    assert analysis.time_to_speed(TIME, 3.0 * TIME, 10.0, 0.99) == pytest.approx(3.3)
+    assert analysis.time_to_speed(TIME, 3.0 * TIME, 10.0, 0.0) == 0.0
+    assert math.isnan(analysis.time_to_speed(TIME, 0.0 * TIME, 10.0))
+
+
+def test_the_printed_torque_of_the_air_needs_another_density() -> None:
+    density = analysis.density_for(93.2, P, V)
+    assert density == pytest.approx(1.164, abs=5e-4)
+    other = TwoMotorVehicle.Parameters(air_density=density)
+    assert resistance_torques(other, V, 0.0)[0] == pytest.approx(93.2, rel=1e-9)
+
+
+def test_the_printed_rise_needs_2_7_g_and_the_motors_give_a_third_of_one() -> None:
+    assert analysis.acceleration_of_rise(V, 0.5) == pytest.approx(2.72, abs=0.01)
+    assert analysis.grip_limit(P, TORQUE_LIMIT) == pytest.approx(0.324, abs=1e-3)
+
+
+def test_every_claim_has_its_reason_with_numbers_from_the_parameters() -> None:
+    claims = {claim.what: claim for claim in analysis.claims(P, V, TORQUE_LIMIT)}
+    assert len(claims) == 6
+    distance = claims["distance in 10 s, for the two controllers"]
+    assert "166.7 m" in distance.reason
+    assert "27.6 and 21.3 s" in distance.reason
+    assert "96.05 N.m" in claims["torque of the air"].reason
+    assert "2.7 and 2.5 g" in claims["rise time, for the two controllers"].reason
