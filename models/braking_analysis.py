@@ -1,0 +1,263 @@
+"""The braking two-wheeler in reduced form: Psi, the critical gains, and what the two propositions claim.
+
+Source: Tanelli, Prandini, Codecà, Moia, Savaresi, "Analysing the interaction between braking control and
+speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. With the slips as states and no air drag,
+(1)-(5) of `two_wheeler_braking` become
+
+    lambda_i' = r/(J v) (T_i - Psi_i(lambda_f, lambda_r)),   i = f, r                                 (6)
+    Psi_f = r F_xf - (J/r) (1 - lambda_f) v',   F_xf = (m/l) (g l_r - h v') mu_f                       (7)
+    Psi_r = r F_xr - (J/r) (1 - lambda_r) v',   F_xr = (m/l) (g l_f + h v') mu_r                       (8)
+    v' = -g (l_r mu_f + l_f mu_r)/(l - h (mu_f - mu_r))
+
+Psi_i is the torque that keeps wheel i at its slip. Measured by s, ds = r/(J v) dt, (6) knows no speed:
+d lambda_i/ds = T_i - Psi_i. That is what is integrated here. Proportional control:
+
+    T_i = k_i (lambda* - lambda_i), not below 0                                                       (9)
+
+    Proposition 3.1   k_i > k-bar_i = max over slips and roads of -d Psi_i/d lambda_i, true speed:
+                      one equilibrium, and every start ends there.
+    Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock.
+                      The fastest wheel believes in no slip and so is braked with k_i lambda*.
+
+k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip, everywhere. It gives 324.5 and
+135.2 N.m (expected 324.5 and 135.1); the first is set by the dry road, the second by cobble.
+
+Slips and torques are arrays of one shape unless said otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .road_friction import FRICTION, Road
+from .two_wheeler_braking import GRAVITY, TwoWheelerBraking
+
+Array = NDArray[np.float64]
+Parameters = TwoWheelerBraking.Parameters
+Torques = Callable[[Array, Array], tuple[Array, Array]]
+
+TARGET_SLIP = 0.22  # lambda*, published
+
+
+class Reduced(NamedTuple):
+    """v' [m/s2], Psi_f and Psi_r [N.m] at some slips, and how each Psi changes with its own slip [N.m]."""
+
+    acceleration: Array
+    psi_front: Array
+    psi_rear: Array
+    slope_front: Array
+    slope_rear: Array
+
+
+class Gains(NamedTuple):
+    """A gain [N.m per unit slip] for each wheel."""
+
+    front: float
+    rear: float
+
+
+class Equilibrium(NamedTuple):
+    """Slips at which both torques of (9) equal Psi."""
+
+    front: float
+    rear: float
+
+
+def reduced(p: Parameters, front_slip: Array, rear_slip: Array) -> Reduced:
+    """(6)-(8) and the partial derivatives d Psi_i/d lambda_i, on the road of p."""
+    mu_f, mu_r = _friction(p.road, front_slip), _friction(p.road, rear_slip)
+    dmu_f, dmu_r = _slope(p.road, front_slip), _slope(p.road, rear_slip)
+    g, h, lever = GRAVITY, p.center_height, p.wheel_inertia / p.wheel_radius
+    force = p.wheel_radius * p.mass / p.wheelbase
+    weight_f, weight_r = g * p.rear_distance, g * p.front_distance
+    n, d = weight_f * mu_f + weight_r * mu_r, p.wheelbase - h * (mu_f - mu_r)
+    a = -n / d
+    a_f, a_r = -dmu_f * (weight_f * d + h * n) / d**2, -dmu_r * (weight_r * d - h * n) / d**2
+    load_f, load_r = weight_f - h * a, weight_r + h * a
+    roll_f, roll_r = 1.0 - front_slip, 1.0 - rear_slip
+    return Reduced(
+        a,
+        force * load_f * mu_f - lever * roll_f * a,  # (7)
+        force * load_r * mu_r - lever * roll_r * a,  # (8)
+        force * (load_f * dmu_f - h * a_f * mu_f) + lever * (a - roll_f * a_f),
+        force * (load_r * dmu_r + h * a_r * mu_r) + lever * (a - roll_r * a_r),
+    )
+
+
+def psi_front(p: Parameters, front_slip: Array, rear_slip: Array) -> Array:
+    """Psi_f [N.m], (7)."""
+    return reduced(p, front_slip, rear_slip).psi_front
+
+
+def psi_rear(p: Parameters, front_slip: Array, rear_slip: Array) -> Array:
+    """Psi_r [N.m], (8)."""
+    return reduced(p, front_slip, rear_slip).psi_rear
+
+
+def highest_psi(p: Parameters) -> Gains:
+    """max Psi_f and max Psi_r [N.m] over all slips in [0, 1], on the road of p."""
+    return Gains(
+        _maximum(lambda f, r: reduced(p, f, r).psi_front), _maximum(lambda f, r: reduced(p, f, r).psi_rear)
+    )
+
+
+def k_bar(p: Parameters, roads: Iterable[Road] = Road) -> Gains:
+    """The critical gains of Proposition 3.1 over all slips in [0, 1] and the given roads."""
+    falls = [_steepest_falls(replace(p, road=road)) for road in roads]
+    return Gains(max(fall.front for fall in falls), max(fall.rear for fall in falls))
+
+
+def proportional(gains: Gains, target: float = TARGET_SLIP) -> Torques:
+    """(9) with the true slips."""
+
+    def torques(front_slip: Array, rear_slip: Array) -> tuple[Array, Array]:
+        return (
+            np.maximum(0.0, gains.front * (target - front_slip)),
+            np.maximum(0.0, gains.rear * (target - rear_slip)),
+        )
+
+    return torques
+
+
+def proportional_by_fastest_wheel(gains: Gains, target: float = TARGET_SLIP) -> Torques:
+    """(9) with slips from v_hat = r max(w_f, w_r), (16); both wheels locked: 0/0, which counts as no slip."""
+    true = proportional(gains, target)
+
+    def torques(front_slip: Array, rear_slip: Array) -> tuple[Array, Array]:
+        roll_f, roll_r = 1.0 - front_slip, 1.0 - rear_slip
+        v_hat = np.maximum(roll_f, roll_r)  # as a share of v
+        v_hat = np.where(v_hat > 0.0, v_hat, 1.0)
+        locked = (roll_f <= 0.0) & (roll_r <= 0.0)
+        return true(np.where(locked, 0.0, 1.0 - roll_f / v_hat), np.where(locked, 0.0, 1.0 - roll_r / v_hat))
+
+    return torques
+
+
+def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list[Equilibrium]:
+    """The equilibria of (6) with (9) and the true speed, all that Newton's method finds from 49 starts."""
+    from scipy.optimize import root  # slow to import
+
+    torques = proportional(gains, target)
+
+    def rates(x: Array) -> Array:
+        return _rates(p, torques, x)
+
+    found: list[Equilibrium] = []
+    for start in np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, 7)]), axis=-1).reshape(-1, 2):
+        solution = root(rates, start, tol=1e-12)
+        at = Equilibrium(*(float(x) for x in solution.x))
+        balanced = float(np.abs(rates(solution.x)).max()) < 1e-6
+        inside = all(0.0 <= x <= 1.0 for x in at)
+        if balanced and inside and all(np.abs(np.subtract(at, other)).max() > 1e-6 for other in found):
+            found.append(at)
+    return found
+
+
+def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> Array:
+    """Proposition 3.1: where (6) with (9) and the true speed ends from `starts`; both of shape (n, 2).
+
+    Raises RuntimeError where it has not come to rest, which the proposition excludes.
+    """
+    from scipy.integrate import solve_ivp  # slow to import
+
+    torques = proportional(gains, target)
+
+    def rates(_: float, x: Array) -> Array:
+        return _rates(p, torques, x.reshape(-1, 2).T).T.reshape(-1)
+
+    # Each start couples its own two slips alone: the Jacobian is banded.
+    solution = solve_ivp(
+        rates, (0.0, REST), starts.reshape(-1), method="LSODA", rtol=1e-9, atol=1e-12, lband=1, uband=1
+    )
+    ends: Array = solution.y[:, -1].reshape(-1, 2)
+    left = float(np.abs(rates(REST, ends.reshape(-1))).max())
+    if not solution.success or left > AT_REST:
+        raise RuntimeError(
+            f"braking on {p.road.name.lower()}: not at rest after s = {REST}, rates {left:.3g}"
+        )
+    return ends
+
+
+def spread(points: Array) -> float:
+    """The largest difference in a slip between any two of n points, shape (n, 2)."""
+    return float(np.ptp(points, axis=0).max())
+
+
+def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> NDArray[np.bool_]:
+    """Proposition 3.2: which of the `starts`, shape (n, 2), end with both wheels locked; shape (n,).
+
+    (6) with the fastest wheel's speed, by Euler's rule with a step for each start. Near the lock a change of
+    slip seems to the controller 1/(1 - lambda) times as large, so the steps get as short; they end at LOCKED.
+    """
+    torques = proportional_by_fastest_wheel(gains, target)
+    free = reduced(p, np.zeros(1), np.zeros(1))
+    stiffest = float(max(free.slope_front[0], free.slope_rear[0]))
+    x: Array = starts.T
+    for _ in range(LONGEST):
+        roll = 1.0 - x.min(axis=0)  # of the fastest wheel
+        moving = roll > 1.0 - LOCKED
+        if not moving.any():
+            break
+        ds = np.where(moving, 0.5 / (stiffest + max(gains) / np.where(moving, roll, 1.0)), 0.0)
+        x = np.clip(x + ds * _rates(p, torques, x), 0.0, 1.0)
+    lock = np.ones(1)
+    torque_f, torque_r = torques(lock, lock)
+    at = reduced(p, lock, lock)
+    stays = torque_f[0] > at.psi_front[0] and torque_r[0] > at.psi_rear[0]
+    return np.asarray((x >= LOCKED).all(axis=0) & bool(stays))
+
+
+def random_starts(count: int, seed: int = 0) -> Array:
+    """Slips in [0, 1], shape (count, 2); the same for the same seed."""
+    return np.random.default_rng(seed).random((count, 2))
+
+
+REST = 4.0  # in s of the reduced form; the slowest gains of Proposition 3.1 need 1
+AT_REST = 1e-6  # N.m
+LOCKED = 1.0 - 1e-6  # slip
+LONGEST = 20_000  # steps to a lock; those above need below 2000
+
+
+def _rates(p: Parameters, torques: Torques, x: Array) -> Array:
+    """d lambda/ds of (6); x and the outcome of shape (2,) or (2, n)."""
+    at = reduced(p, x[0], x[1])
+    torque_f, torque_r = torques(x[0], x[1])
+    return np.array([torque_f - at.psi_front, torque_r - at.psi_rear])
+
+
+def _friction(road: Road, slip: Array) -> Array:
+    th_1, th_2, th_3 = FRICTION[road]
+    x = np.abs(slip)
+    return np.asarray(np.copysign(th_1 * (1.0 - np.exp(-th_2 * x)) - th_3 * x, slip))
+
+
+def _slope(road: Road, slip: Array) -> Array:
+    th_1, th_2, th_3 = FRICTION[road]
+    return np.asarray(th_1 * th_2 * np.exp(-th_2 * np.abs(slip)) - th_3)
+
+
+def _steepest_falls(p: Parameters) -> Gains:
+    return Gains(
+        _maximum(lambda f, r: -reduced(p, f, r).slope_front),
+        _maximum(lambda f, r: -reduced(p, f, r).slope_rear),
+    )
+
+
+def _maximum(value: Callable[[Array, Array], Array]) -> float:
+    """The maximum over [0, 1] x [0, 1]: a grid, then finer ones around its best point."""
+    low, high = np.zeros(2), np.ones(2)
+    best = -np.inf
+    for _ in range(4):
+        f, r = np.meshgrid(np.linspace(low[0], high[0], 81), np.linspace(low[1], high[1], 81), indexing="ij")
+        values = value(f, r)
+        at = np.unravel_index(int(values.argmax()), values.shape)
+        best = max(best, float(values[at]))
+        reach = 2.0 * (high - low) / 80.0
+        center = np.array([f[at], r[at]])
+        low, high = np.maximum(0.0, center - reach), np.minimum(1.0, center + reach)
+    return best
