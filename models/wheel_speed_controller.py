@@ -15,7 +15,8 @@ Deviations
 - K_d is 0, where the paper prints 2500 N.m.s2/rad. Differenced over 10 ms that is K_d/dt = 250 000 N.m per
   rad/s. A wheel on the road gives way by 1 rad/s for R^2 F_z mu'(0)/v = 2250 N.m (at 60 km/h), within 3 ms:
   the sampled loop multiplies a change of the error by about -110 each sample, and the torque jumps from limit
-  to limit. K_p (1 + kappa) = 1800 N.m.s/rad is all that 100 Hz carry: from 130 km/h on that loop rings too.
+  to limit. It begins to at K_d = 2: the proportional part, K_p (1 + kappa) = 1800 N.m.s/rad against those
+  2250, takes nearly all that a loop of 100 Hz can carry.
 
 The sample at t_k (backward difference for dE/dt; `dt` is the time since the last sample)
 
