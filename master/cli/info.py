@@ -19,6 +19,9 @@ def info(
     search: Annotated[
         str | None, typer.Option(metavar="TEXT", help="FMU: only variables with it in name or description.")
     ] = None,
+    diagram: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="System: draw its units and connections (.png, .svg).")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show what an FMU offers or how a system is connected."""
@@ -32,13 +35,27 @@ def info(
             raise ConfigError(f"--causality and --search choose variables of an FMU; {what} is a system")
         about = info_system.described(what)
         show = info_system.show
+        if diagram is not None:
+            _draw(what, diagram)
+            return
     else:
+        if diagram is not None:
+            raise ConfigError(f"--diagram draws a system; {what} is none")
         about = info_fmu.described(fmu_path(what), causality or [], search)
         show = info_fmu.show
     if as_json:
         print_json(about)
     else:
         show(about)
+
+
+def _draw(system: str, path: Path) -> None:
+    from ...cosim import figures
+    from ...cosim.diagram import draw_diagram
+    from ...cosim.system import load_system
+
+    figures.write(draw_diagram(load_system(system).file), path)
+    print(path)
 
 
 def fmu_path(name: str) -> Path:

@@ -10,8 +10,9 @@ from ...cosim import figures
 from ...cosim.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models import lane_keeping_analysis as analysis
 from ...models.lane_keeping_controller import LaneKeepingController
+from ..parallel import Task
 from ..simulation import simulate
-from .page import Page, Paper, Picture, Row, Run, at_most, holds, near, not_reproducible
+from .page import Page, Paper, Picture, Row, at_most, holds, near, not_reproducible
 
 _P = LaneKeepingController.Parameters()
 _TARGET = 0.3  # m
@@ -19,14 +20,14 @@ _STEP = 200  # the reference steps at 2 s
 _SOURCE = "Optimal lane keeping control of a 4WS electric vehicle (2-DOF bicycle model, LQ controller)"
 
 
-def _runs() -> dict[str, Run]:
+def _runs() -> tuple[Task[Any], ...]:
     one_late = {"parameters": {"controller.delay_steps": 1}}
-    return {
-        "bus": Run(simulate, ("lane_keeping", "step"), {"stop_time": 26.0}),
-        "ideal": Run(simulate, ("lane_keeping", "step"), {"ideal": True}),
-        "one": Run(simulate, ("lane_keeping", "step"), {"ideal": True} | one_late),
-        "two": Run(simulate, ("lane_keeping", "delayed"), {"ideal": True}),
-    }
+    return (
+        Task("bus", simulate, ("lane_keeping", "step"), {"stop_time": 26.0}),
+        Task("ideal", simulate, ("lane_keeping", "step"), {"ideal": True}),
+        Task("one", simulate, ("lane_keeping", "step"), {"ideal": True} | one_late),
+        Task("two", simulate, ("lane_keeping", "delayed"), {"ideal": True}),
+    )
 
 
 def _page(found: dict[str, Any]) -> Page:

@@ -2,8 +2,9 @@
 
 The verdicts:
 
-    reproduced         the number comes out of published parameters and equations, within the reach
+    reproduced         the published number comes out of published parameters and equations, within the reach
     calibrated         it comes out, but parameters that the paper does not print were chosen so that it does
+    reached            a number that the paper does not print ("-") is what it was found to be before
     not reproducible   it cannot come out; the reason says why
     missed             it should come out and does not: the command fails
 """
@@ -15,10 +16,12 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal
 
+from ..parallel import Task
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Verdict = Literal["reproduced", "calibrated", "not reproducible", "missed"]
+Verdict = Literal["reproduced", "calibrated", "reached", "not reproducible", "missed"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -61,23 +64,11 @@ class Page:
 
 
 @dataclasses.dataclass(frozen=True)
-class Run:
-    """A piece of work that needs no other: `function(*arguments, **options)`, all of it picklable."""
-
-    function: Callable[..., Any]
-    arguments: tuple[Any, ...] = ()
-    options: dict[str, Any] = dataclasses.field(default_factory=dict)
-
-    def __call__(self) -> Any:
-        return self.function(*self.arguments, **self.options)
-
-
-@dataclasses.dataclass(frozen=True)
 class Paper:
-    """A paper: the runs that it needs, by name, and the page that is made of what they return."""
+    """A paper: its runs, none of which needs another, and the page made of what they return, by name."""
 
     name: str
-    runs: Callable[[], dict[str, Run]]
+    runs: Callable[[], tuple[Task[Any], ...]]
     page: Callable[[dict[str, Any]], Page]
 
 
@@ -147,8 +138,8 @@ def at_least(
 
 def holds(what: str, published: str, reach: str, obtained: str, true: bool, *, calibrated: str = "") -> Row:
     """A statement: `obtained` in words, `true` if it is what `reach` asks for."""
-    verdict: Verdict = "missed" if not true else "calibrated" if calibrated else "reproduced"
-    return Row(what, published, reach, obtained, verdict, calibrated if true else "does not hold")
+    reason = calibrated if true else "does not hold"
+    return Row(what, published, reach, obtained, _verdict(published, true, calibrated), reason)
 
 
 def not_reproducible(what: str, published: str, obtained: str, reason: str) -> Row:
@@ -169,7 +160,15 @@ def _judged(
     shown = _number(obtained, digits, unit)
     if math.isnan(obtained) or not within:
         return Row(what, published, reach, shown, "missed", "outside what was to be reached")
-    return Row(what, published, reach, shown, "calibrated" if calibrated else "reproduced", calibrated)
+    return Row(what, published, reach, shown, _verdict(published, True, calibrated), calibrated)
+
+
+def _verdict(published: str, within: bool, calibrated: str) -> Verdict:
+    if not within:
+        return "missed"
+    if calibrated:
+        return "calibrated"
+    return "reached" if published == "-" else "reproduced"
 
 
 def _number(value: float, digits: int, unit: str) -> str:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.errors import ConfigError, nearest
-from ..parallel import Task, run_all
+from ..parallel import Progress, run_all
 from .page import Page, Paper
 from .render import write_index, write_page
 
 NAMES = ("scooter", "lane_keeping", "braking", "multi_drive")
 """The papers by the name of their system; each is the module of that name in this package."""
-
-Progress = Callable[[int, int, str], None]
-"""Called with the number of pieces of work done, their number, and the name of the last one."""
 
 
 def load(name: str) -> Paper:
@@ -36,11 +34,13 @@ def reproduce(
     """
     papers = {name: load(name) for name in names}
     runs = {name: paper.runs() for name, paper in papers.items()}
-    tasks = [Task(f"{name}: {run}", piece) for name, some in runs.items() for run, piece in some.items()]
-    outcomes = iter(run_all(tasks, workers=workers, progress=progress))
+    tasks = [
+        dataclasses.replace(task, name=f"{name}: {task.name}") for name, some in runs.items() for task in some
+    ]
+    outcomes = iter(run_all(tasks, workers, progress))
     pages = []
     for name, paper in papers.items():
-        page = paper.page({run: next(outcomes) for run in runs[name]})
+        page = paper.page({task.name: next(outcomes).result() for task in runs[name]})
         write_page(page, folder)
         pages.append(page)
     write_index(pages, folder)
