@@ -19,7 +19,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 1240px; margin: 2rem aut
 table { border-collapse: collapse; width: 100%; font-size: 14px; }
 th, td { border-bottom: 1px solid #d0d0d0; padding: .35rem .6rem; text-align: left; vertical-align: top; }
 th { background: #f3f3f3; position: sticky; top: 0; }
-td.reproduced { color: #005a32; } td.calibrated { color: #08519c; }
+td.reproduced { color: #005a32; } td.calibrated, td.reached { color: #08519c; }
 td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
 figure { margin: 2rem 0; } figure img { max-width: 100%; height: auto; } figcaption { color: #444; }
 pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; }
@@ -31,7 +31,7 @@ def write_page(page: Page, folder: Path) -> list[Path]:
 
     Raises ConfigError naming the file that cannot be written.
     """
-    written = []
+    written: list[Path] = []
     for picture in page.pictures:
         written += figures.save(picture.figure, folder / "figures", f"{page.name}-{picture.stem}")
     images = {p.stem: written[2 * i] for i, p in enumerate(page.pictures)}
@@ -45,12 +45,8 @@ def write_page(page: Page, folder: Path) -> list[Path]:
 
 def write_index(pages: Sequence[Page], folder: Path) -> Path:
     """Write README.md: the papers and how many of their numbers came out."""
-    lines = [
-        "# Reproduced papers",
-        "",
-        "| system | paper | reproduced | calibrated | not reproducible | missed |",
-    ]
-    lines.append("|---|---|---|---|---|---|")
+    head = ["system", "paper", *verdicts()]
+    lines = ["# Reproduced papers", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
     for page in pages:
         counts = [sum(r.verdict == v for r in page.rows) for v in verdicts()]
         lines.append(f"| [{page.name}]({page.name}.md) | {page.source} | {' | '.join(map(str, counts))} |")
@@ -62,7 +58,7 @@ def write_index(pages: Sequence[Page], folder: Path) -> Path:
 
 def verdicts() -> tuple[str, ...]:
     """The verdicts, best first."""
-    return ("reproduced", "calibrated", "not reproducible", "missed")
+    return ("reproduced", "calibrated", "reached", "not reproducible", "missed")
 
 
 def _cells(row: Row) -> tuple[str, ...]:
