@@ -19,8 +19,8 @@ d lambda_i/ds = T_i - Psi_i. That is what is integrated here. Proportional contr
     Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock.
                       The fastest wheel believes in no slip and so is braked with k_i lambda*.
 
-k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip, everywhere. It gives 324.5 and
-135.2 N.m (expected 324.5 and 135.1); the first is set by the dry road, the second by cobble.
+k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip. It gives 324.5 and
+135.2 N.m (expected 324.5 and 135.1); the dry road sets the first, cobble the second.
 
 Slips and torques are arrays of one shape unless said otherwise.
 """

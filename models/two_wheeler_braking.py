@@ -250,11 +250,11 @@ def _rates(p: TwoWheelerBraking.Parameters) -> Rates:
             load_f, load_r = weight_f - k * a, weight_r + k * a  # (5)
             if load_f >= 0.0 and load_r >= 0.0:
                 return a, load_f * mu_f, load_r * mu_r  # (2)
-        if mu_f > mu_r:  # all on the front wheel
-            force = weight * mu_f
-            return -(force + air) / m, force, 0.0
-        force = weight * mu_r
-        return -(force + air) / m, 0.0, force
+            if load_f < 0.0:
+                force = weight * mu_r
+                return -(force + air) / m, 0.0, force
+        force = weight * mu_f  # the rear wheel is in the air
+        return -(force + air) / m, force, 0.0
 
     return rates
 
