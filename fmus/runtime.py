@@ -48,15 +48,15 @@ def _folder() -> Path:
 def _license(distribution: str) -> bytes:
     """The text lies in dist-info/licenses since metadata version 2.4, before in dist-info itself.
 
-    A checkout's own is beside the folder of this package.
+    A checkout's own is beside the folder of this package. Several distributions of one name may be found: the
+    working folder can hold the egg-info of a build, which has no texts.
     """
     checkout = Path(__file__).resolve().parents[1] / "LICENSE"
     if distribution == "evcosim" and checkout.is_file():
         return checkout.read_bytes()
     from importlib import metadata  # slow to import
 
-    found = metadata.distribution(distribution)
-    text = found.read_text("licenses/LICENSE") or found.read_text("LICENSE")
-    if text is None:
-        raise FileNotFoundError(f"the installed {distribution} has no LICENSE, which an FMU must carry")
-    return text.encode()
+    for found in metadata.distributions(name=distribution):
+        if text := found.read_text("licenses/LICENSE") or found.read_text("LICENSE"):
+            return text.encode()
+    raise FileNotFoundError(f"the installed {distribution} has no LICENSE, which an FMU must carry")

@@ -27,7 +27,9 @@ class Snapshot(NamedTuple):
 
 def to_bytes(snapshot: Snapshot, identity: str) -> bytes:
     """Equal snapshots give equal bytes. Raises what pickle does for a state that it cannot take."""
-    return _stamp(identity) + pickle.dumps(tuple(snapshot), protocol=4)
+    stream = io.BytesIO()
+    _Pickler(stream, protocol=4).dump(tuple(snapshot))
+    return _stamp(identity) + stream.getvalue()
 
 
 def from_bytes(data: bytes, identity: str) -> Snapshot:
@@ -41,6 +43,15 @@ def from_bytes(data: bytes, identity: str) -> Snapshot:
 
 def _stamp(identity: str) -> bytes:
     return f"{identity}\n".encode("ascii")
+
+
+class _Pickler(pickle.Pickler):
+    """Writes an item of an enumeration as a call of its class, as every Python does but 3.11.0 to 3.11.3:
+    those write a call of `getattr`, which is not loaded.
+    """
+
+    def reducer_override(self, obj: Any) -> Any:
+        return (type(obj), (obj.value,)) if isinstance(obj, enum.Enum) else NotImplemented
 
 
 class _Unpickler(pickle.Unpickler):
