@@ -6,14 +6,16 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 from .channel import SignalRoute
-from .dbc import Database, Message, Signal, load_dbc, schedule
+from .dbc import Database, Message, Signal, check_signal, load_dbc, schedule
 from .errors import ConfigError, nearest
 from .files import data_file
 from .interface import UnitInterface, VariableInfo
 from .layout import Layout
 from .plan import InputPlan, Link, MessagePlan, Route
+from .steps import steps_in
 from .system import Algorithm, Connection, Experiment, System
 from .units import Affine, UnitOfMeasure, conversion, defined
+from .variation import with_resolution
 
 
 @dataclasses.dataclass
@@ -161,6 +163,7 @@ def _over_bus(
     wire: _End = (connection.via or "", signal.unit, {})
     sender = _variable(work, source)
     to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), wire, place)
+    signal = _coarser(work, bus, message, signal, [source, *sinks], place)
     ends = []
     for sink in sinks:
         receiver = _variable(work, sink)
@@ -182,6 +185,24 @@ def _over_bus(
     work.signal_routes.setdefault(key, []).append(route)
 
 
+def _coarser(
+    work: _Connector,
+    bus: str,
+    message: Message,
+    signal: Signal,
+    ends: Sequence[tuple[str, str]],
+    place: str,
+) -> Signal:
+    """The signal in the resolution that the bus asks for. A state or a count, which stands behind a variable
+    that is not Real, has no resolution."""
+    resolution = work.system.file.buses[bus].resolution
+    if resolution == 1.0 or any(_variable(work, end).type != "Real" for end in ends):
+        return signal
+    changed = with_resolution(signal, resolution)
+    check_signal(message, changed, f"{place}: with resolution = {resolution!r}")
+    return changed
+
+
 def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signal]:
     bus, message_name, signal_name = via.split(".")
     if bus not in work.databases:
@@ -200,7 +221,12 @@ def _message(
     order: list[str],
 ) -> MessagePlan:
     message = work.databases[bus].require(name)
-    every, first = schedule(message, experiment.step_size, str(work.system.path))
+    entry, step_size = work.system.file.buses[bus], experiment.step_size
+    every, first = schedule(message, step_size, str(work.system.path))
+    delay = steps_in(entry.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
+    arrivals: list[tuple[int, int]] = []
+    if delay:
+        routes = [_staged(work.layout, route, arrivals) for route in routes]
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -210,8 +236,27 @@ def _message(
             if work.interfaces[unit].variables[variable].variability != "continuous"
         ]
         after = max(sampled, default=None)
-    settings = work.system.file.buses[bus].settings
-    return MessagePlan(bus, message, settings, tuple(routes), dict(senders), every, first, after)
+    return MessagePlan(
+        bus=bus,
+        message=dataclasses.replace(
+            message, signals=message.signals | {route.signal.name: route.signal for route in routes}
+        ),
+        settings=entry.settings,
+        routes=tuple(routes),
+        senders=dict(senders),
+        every=every * entry.cycle,
+        first=first,
+        after=after,
+        delay=delay,
+        arrivals=tuple(arrivals),
+    )
+
+
+def _staged(layout: Layout, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
+    """The route into slots of its own instead of mailboxes; `arrivals` gets the pairs (slot, mailbox)."""
+    sinks = [(layout.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
+    arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
+    return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))
 
 
 def _variable(work: _Connector, name: tuple[str, str]) -> VariableInfo:

@@ -99,6 +99,10 @@ class MessagePlan:
     It is sampled at the start of the step (`after` is None), or right after the turn of the unit with
     index `after`, where signals of variability discrete come from that unit's step. `senders` are the
     variables behind the signals, for messages to the user.
+
+    With a `delay` of d > 0 steps the routes end in slots of their own, and what a transmission writes there
+    reaches the mailboxes d steps later, at the same place in the step: `arrivals` are the pairs (slot,
+    mailbox).
     """
 
     bus: str
@@ -109,6 +113,8 @@ class MessagePlan:
     every: int
     first: int
     after: int | None
+    delay: int = 0
+    arrivals: tuple[tuple[int, int], ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)

@@ -14,6 +14,7 @@ from .network import Network, connect
 from .plan import Drive, InputPlan, Plan, UnitPlan
 from .results import ResultVariable
 from .scenario import EventEntry, Scenario
+from .steps import steps_in
 from .stimuli import stimulus
 from .system import Algorithm, Experiment, System, UnitEntry, Value
 from .units import Affine, conversion, defined
@@ -137,9 +138,8 @@ def _every(period: float | None, step_size: float, place: str) -> int:
 
 
 def _multiple(time: float, step_size: float, place: str) -> int:
-    """How many steps `time` is; a thousandth of a step is forgiven, for 0.1 is no binary number."""
-    count = round(time / step_size)
-    if count < 1 or abs(time / step_size - count) > 1e-3:
+    """How many steps `time` is, at least one."""
+    if (count := steps_in(time, step_size, place)) < 1:
         raise ConfigError(f"{place} = {time} s is not a multiple of the communication step {step_size} s")
     return count
 

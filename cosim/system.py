@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, PlainValidator
 
 from .channel import BusSettings
 from .figures import FigureSpec
@@ -35,6 +36,15 @@ def _signal(name: str) -> str:
     return name
 
 
+def checked_resolution(value: Any) -> float | Literal["ideal"]:
+    """The factor by which signals are coarser than their DBC says. Raises ValueError."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if value != "ideal" and not (number and 1.0 <= value < math.inf):
+        raise ValueError('a resolution is a factor from 1 on, or "ideal"')
+    return "ideal" if value == "ideal" else float(value)
+
+
+Resolution = float | Literal["ideal"]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 VariableName = Annotated[str, AfterValidator(_variable)]
 SignalName = Annotated[str, AfterValidator(_signal)]
@@ -66,12 +76,19 @@ class UnitEntry(FileModel):
 
 
 class BusEntry(FileModel):
-    """A CAN bus: its database and how its codecs behave (see `channel`)."""
+    """A CAN bus: its database, how its codecs behave (see `channel`), and what differs from the database.
+
+    `delay` [s] from sampling to the receivers' mailboxes; `resolution`, the factor by which signals are
+    coarser (see `variation.with_resolution`); `cycle`, the factor by which messages are sent less often.
+    """
 
     dbc: str
     bitrate: int = Field(default=500_000, gt=0)
     rounding: Literal["nearest", "half_even", "truncate"] = "nearest"
     overflow: Literal["saturate", "wrap", "error"] = "saturate"
+    delay: float = Field(default=0.0, ge=0.0, allow_inf_nan=False)
+    resolution: Annotated[Resolution, PlainValidator(checked_resolution)] = 1.0
+    cycle: int = Field(default=1, ge=1)
 
     @property
     def settings(self) -> BusSettings:
@@ -91,6 +108,17 @@ class Connection(FileModel):
     initial: float | None = None
 
 
+class BudgetEntry(FileModel):
+    """The metric by which `evcosim budget` judges a system: broken above `limit`, or with kind "min" below.
+
+    `metric` is the name of one of the metrics, `limit` is in its unit.
+    """
+
+    metric: str
+    limit: float = Field(allow_inf_nan=False)
+    kind: Literal["max", "min"] = "max"
+
+
 class SystemFile(FileModel):
     """What stands in a system file."""
 
@@ -105,6 +133,7 @@ class SystemFile(FileModel):
     record: list[str] = ["*"]
     figure: FigureSpec | None = None
     metrics: list[MetricSpec] = []
+    budget: BudgetEntry | None = None
 
 
 @dataclasses.dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Running what `evcosim.cosim` describes: FMUs as units, the master algorithms, the command line.
 
-from evcosim.master import simulate, Simulation
+from evcosim.master import simulate, Simulation, BusVariation
 """
 
 from __future__ import annotations
@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ..cosim.variation import BusVariation
     from .simulation import Simulation, simulate
 
-__all__ = ["Simulation", "simulate"]
+__all__ = ["BusVariation", "Simulation", "simulate"]
 
 
 def __getattr__(name: str) -> Any:

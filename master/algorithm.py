@@ -6,7 +6,8 @@ Time is a count: t_k = start + k * step_size. What step k does, under `gauss_sei
 2. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
    biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
    once; the continuous ones of a unit whose period is longer than a step only from the communication
-   point on at which they are valid. A message with discrete signals is sent right after its sender's turn;
+   point on at which they are valid. A message with discrete signals is sent right after its sender's turn.
+   On a bus with a delay, what was sent that long ago arrives where a message would be sent;
 3. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k.
 
 Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
@@ -17,6 +18,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal
 
@@ -85,14 +87,35 @@ class _Sender:
     channel: MessageChannel
 
     def send(self, memory: memoryview[float], k: int) -> None:
-        if k < self.plan.first or (k - self.plan.first) % self.plan.every:
-            return
+        if k >= self.plan.first and (k - self.plan.first) % self.plan.every == 0:
+            self.sample(memory, k)
+
+    def sample(self, memory: memoryview[float], k: int) -> None:
         try:
             self.channel.transmit(memory, k)
         except ChannelError as error:
             name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
             sender = self.plan.senders.get(error.signal, "")
             raise RunError(f"{sender} via {name}: {error.rule}") from error
+
+
+@dataclasses.dataclass
+class _LateSender(_Sender):
+    """A message whose values reach the mailboxes `plan.delay` steps after they were sampled."""
+
+    under_way: deque[tuple[int, list[float]]] = dataclasses.field(default_factory=deque)
+
+    def send(self, memory: memoryview[float], k: int) -> None:
+        while self.under_way and self.under_way[0][0] <= k:
+            _, values = self.under_way.popleft()
+            for (_, mailbox), value in zip(self.plan.arrivals, values, strict=True):
+                memory[mailbox] = value
+        super().send(memory, k)
+
+    def sample(self, memory: memoryview[float], k: int) -> None:
+        super().sample(memory, k)
+        values = [memory[slot] for slot, _ in self.plan.arrivals]
+        self.under_way.append((k + self.plan.delay, values))
 
 
 class Engine:
@@ -111,7 +134,9 @@ class Engine:
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
         self.turns = [_Turn(units[p.name], p, self) for p in plan.units]
-        self.senders = [_Sender(m, self._channel(m, log_raw)) for m in plan.messages]
+        self.senders = [
+            (_LateSender if m.delay else _Sender)(m, self._channel(m, log_raw)) for m in plan.messages
+        ]
         self._at_start = [s for s in self.senders if s.plan.after is None]
         self._after = [[s for s in self.senders if s.plan.after == i] for i in range(len(self.turns))]
         self._events = list(plan.events)

@@ -12,6 +12,7 @@ with Simulation("scooter") as sim:
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.metadata
 import platform
 import sys
@@ -32,6 +33,7 @@ from ..cosim.resolve import Options, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
 from ..cosim.system import Algorithm, System, Value, load_system
+from ..cosim.variation import BusVariation, varied
 from .algorithm import Engine
 from .builtin import fmu_file
 from .fmi2 import Fmi2Unit
@@ -43,18 +45,54 @@ Progress = Callable[[float, float], None]
 """Called with the simulated time reached and the stop time, both in s."""
 
 
+@dataclasses.dataclass(frozen=True)
+class Prepared:
+    """What is known of a run before any FMU is instantiated; whatever can be wrong so far was found."""
+
+    system: System
+    scenario: Scenario
+    fmus: dict[str, Fmu]
+    plan: Plan
+
+
+def prepare(
+    system: str | Path | System,
+    scenario: str | Path | None = None,
+    options: Options | None = None,
+    fmus: Mapping[str, str | Path] | None = None,
+    bus: BusVariation | None = None,
+) -> Prepared:
+    """Read and check all that a run needs; the arguments are those of `Simulation`.
+
+    Raises ConfigError naming place, rule and values.
+    """
+    options = options or Options()
+    read = system if isinstance(system, System) else load_system(str(system))
+    driven = load_scenario(read, None if scenario is None else str(scenario))
+    if bus is not None:
+        if options.ideal:
+            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
+        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
+    loaded = _read_fmus(read, driven, fmus or {})
+    plan = resolve(read, driven, {unit: fmu.interface for unit, fmu in loaded.items()}, options)
+    check_specs(read, driven, plan.columns)
+    ordered_links(plan)  # refuses an algebraic loop
+    return Prepared(read, driven, loaded, plan)
+
+
 class Simulation:
     """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
 
-    `system` and `scenario` are built-in names or paths of TOML files; `parameters` ("unit.parameter" to
-    value) override those of the files; `fmus` (unit to path) put other FMUs in the place of the named ones;
-    `ideal` leaves the buses out (unit conversion only); `log_frames` keeps the frames for `write_can_log`.
+    `system` and `scenario` are built-in names or paths of TOML files, a system also one made in memory;
+    `parameters` ("unit.parameter" to value) override those of the files; `fmus` (unit to path) put other
+    FMUs in the place of the named ones; `ideal` leaves the buses out (unit conversion only); `bus` varies
+    all of them (BusVariation); `log_frames` keeps the frames for `write_can_log`.
     Raises ConfigError before any step for every input that does not fit.
     """
 
     def __init__(
         self,
-        system: str | Path,
+        system: str | Path | System,
         scenario: str | Path | None = None,
         *,
         parameters: Mapping[str, Value] | None = None,
@@ -62,18 +100,19 @@ class Simulation:
         ideal: bool = False,
         algorithm: Algorithm | None = None,
         stop_time: float | None = None,
+        bus: BusVariation | None = None,
         log_frames: bool = False,
     ) -> None:
-        self.system: System = load_system(str(system))
-        self.scenario: Scenario = load_scenario(self.system, None if scenario is None else str(scenario))
-        self._fmus = _read_fmus(self.system, self.scenario, fmus or {})
-        interfaces = {unit: fmu.interface for unit, fmu in self._fmus.items()}
         options = Options(parameters or {}, algorithm, stop_time, ideal)
-        self.plan: Plan = resolve(self.system, self.scenario, interfaces, options)
-        check_specs(self.system, self.scenario, self.plan.columns)
+        prepared = prepare(system, scenario, options, fmus, bus)
+        self.system: System = prepared.system
+        self.scenario: Scenario = prepared.scenario
+        self.plan: Plan = prepared.plan
+        self._fmus = prepared.fmus
+        if log_frames:
+            _check_frames(self.system)
         self.log_frames = log_frames
         self.loop_seconds = 0.0
-        ordered_links(self.plan)  # an algebraic loop is refused before anything is instantiated
         self._units: dict[str, Unit] = {}
         self._last_warnings: dict[str, int] = {}
         self._slots = {c.name: s for c, s in zip(self.plan.columns, self.plan.column_slots, strict=True)}
@@ -299,6 +338,7 @@ def simulate(
     ideal: bool = False,
     algorithm: Algorithm | None = None,
     stop_time: float | None = None,
+    bus: BusVariation | None = None,
     progress: Progress | None = None,
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
@@ -314,6 +354,7 @@ def simulate(
         ideal=ideal,
         algorithm=algorithm,
         stop_time=stop_time,
+        bus=bus,
     ) as simulation:
         try:
             simulation.run(progress)
@@ -331,6 +372,15 @@ def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
         for kind, path in paths.items()
         if path is not None and DATA.resolve() not in path.resolve().parents
     }
+
+
+def _check_frames(system: System) -> None:
+    for name, entry in system.file.buses.items():
+        if entry.resolution == "ideal":
+            raise ConfigError(
+                f'{system.path}: buses.{name}.resolution = "ideal": values that are not quantized make no '
+                "frames that could be kept"
+            )
 
 
 def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path]) -> dict[str, Fmu]:
