@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
+    "COLORS",
     "FigureSpec",
     "PanelSpec",
     "SignalSpec",
@@ -44,11 +45,12 @@ __all__ = [
     "look",
     "pretty",
     "save",
+    "style",
     "thinned",
     "write",
 ]
 
-_COLORS = ("#0072B2", "#D55E00", "#009E73", "#000000", "#CC79A7", "#56B4E9", "#E69F00", "#7F7F7F")
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#000000", "#CC79A7", "#56B4E9", "#E69F00", "#7F7F7F")
 _DASHES: tuple[Any, ...] = (
     "solid",
     (0, (5, 1.5)),
@@ -99,7 +101,7 @@ def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None 
     """
     spec = spec or default_spec(results)
     check(spec, {v.name: v for v in results.variables}, "figure")
-    with _style():
+    with style():
         figure, panels = _panels([_height(p) for p in spec.panels], title or spec.title or _title(results))
         clock = _Clock.of(results)
         limit = _points_per_line(sum(len(p.signals) for p in spec.panels))
@@ -124,11 +126,11 @@ def draw_comparison(
         names = worst(compare(a, b).rows, MAX_PANELS)
     if not names:
         raise ConfigError("the two results have no variable in common that can be compared")
-    with _style():
+    with style():
         figure, panels = _panels([1.0] * len(names), f"{labels[0]} and {labels[1]}")
         clock = _Clock.of(a, b)
         limit = _points_per_line(2 * len(names))
-        looks = (_Look(_COLORS[0], _DASHES[0], 2.6), _Look(_COLORS[1], _DASHES[1], 1.2))
+        looks = (_Look(COLORS[0], _DASHES[0], 2.6), _Look(COLORS[1], _DASHES[1], 1.2))
         for axes, name in zip(panels, names, strict=True):
             unit = a.variable(name).unit or b.variable(name).unit
             for results, label, look in zip((a, b), labels, looks, strict=True):
@@ -161,7 +163,7 @@ def write(figure: Figure, path: Path) -> None:
         )
     dated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
     metadata = {dated[kind]: None} if kind in dated else None
-    with _style(), replacing(path) as file:
+    with style(), replacing(path) as file:
         figure.savefig(file, format=kind, metadata=metadata)
 
 
@@ -176,7 +178,7 @@ def canvas(
     """
     from matplotlib.figure import Figure
 
-    with _style():
+    with style():
         figure = Figure(figsize=(_WIDTH, height * rows + (0.5 if title else 0.2)), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, sharex=share_x)
         if title:
@@ -186,15 +188,15 @@ def canvas(
 
 def look(i: int) -> dict[str, Any]:
     """Color and dashes of the i-th line of a chart: told apart in black and white too."""
-    return {"color": _COLORS[i % len(_COLORS)], "linestyle": _DASHES[i % len(_DASHES)], "linewidth": 1.7}
+    return {"color": COLORS[i % len(COLORS)], "linestyle": _DASHES[i % len(_DASHES)], "linewidth": 1.7}
 
 
 @contextlib.contextmanager
-def _style() -> Iterator[None]:
+def style() -> Iterator[None]:
     """matplotlib's own defaults with ours on top, whatever the user's matplotlibrc says."""
-    from matplotlib import style
+    from matplotlib.style import context
 
-    with style.context(["default", _RC]):
+    with context(["default", _RC]):
         yield
 
 
@@ -273,7 +275,7 @@ class _Look:
     @classmethod
     def of(cls, place: int, dashes: Any) -> _Look:
         # the first line is the widest: one that the next ones cover is seen on both sides of them
-        return cls(_COLORS[place % len(_COLORS)], dashes, max(1.1, 2.2 - 0.35 * place))
+        return cls(COLORS[place % len(COLORS)], dashes, max(1.1, 2.2 - 0.35 * place))
 
 
 def _draw_signal(

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from .figures import FigureSpec
 from .files import FileModel, find, names_in, read_toml
+from .identification_spec import IdentificationSpec
 from .metrics import MetricSpec
 from .system import Algorithm, System, Value, VariableName
 
@@ -106,6 +107,7 @@ class ScenarioFile(FileModel):
     record: list[str] | None = None
     figure: FigureSpec | None = None
     metrics: list[MetricSpec] = []
+    identification: IdentificationSpec | None = None
 
 
 @dataclasses.dataclass(frozen=True)

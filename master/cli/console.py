@@ -26,14 +26,15 @@ Show = Callable[[float], None]
 
 def print_json(data: Any) -> None:
     """Print JSON; a number that is not finite becomes null, since JSON has no name for it."""
-    print(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+    print(json.dumps(finite(data), indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def _finite(data: Any) -> Any:
+def finite(data: Any) -> Any:
+    """The data with names as texts and null for numbers that are not finite: JSON has no name for them."""
     if isinstance(data, Mapping):
-        return {str(key): _finite(value) for key, value in data.items()}
+        return {str(key): finite(value) for key, value in data.items()}
     if isinstance(data, (list, tuple)):
-        return [_finite(value) for value in data]
+        return [finite(value) for value in data]
     if isinstance(data, float) and not math.isfinite(data):
         return None
     return str(data) if isinstance(data, os.PathLike) else data

@@ -1,0 +1,308 @@
+"""`evcosim identify`: gain and pole from any input to any output of a system or an FMU."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .run import Algorithm
+
+if TYPE_CHECKING:
+    from ...cosim.identification import Estimate
+    from ...cosim.identification_spec import IdentificationSpec
+    from ..identify import Identification
+
+DATA = "identification.json"
+
+
+def identify(
+    target: Annotated[
+        str, typer.Argument(metavar="TARGET", help="A system, or an FMU (built-in name, file).")
+    ],
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", "-s", metavar="S", help="Default: 'identification' where there is one."),
+    ] = None,
+    input: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="The input to sweep: unit.variable; of an FMU variable."),
+    ] = None,
+    output: Annotated[
+        str | None, typer.Option(metavar="NAME", help="What answers: any recorded Real variable.")
+    ] = None,
+    unit: Annotated[
+        str | None,
+        typer.Option(metavar="U", help="Unit of measure of the output, as km/h; default: its own."),
+    ] = None,
+    at: Annotated[
+        list[float] | None, typer.Option(metavar="Y", help="Working point of the output; can be given again.")
+    ] = None,
+    at_input: Annotated[
+        list[float] | None, typer.Option(metavar="U", help="Working point of the input; can be given again.")
+    ] = None,
+    amplitude: Annotated[
+        float | None, typer.Option(metavar="A", help="Amplitude of the sweep, in the input's unit.")
+    ] = None,
+    sweep: Annotated[
+        str | None, typer.Option(metavar="F0,F1", help="Lowest and highest frequency [Hz]; 0.008,0.6.")
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option(metavar="T", help="Duration of the sweep [s]; 900.")
+    ] = None,
+    repeats: Annotated[int | None, typer.Option(metavar="N", help="Sweep so many times; 1.")] = None,
+    band: Annotated[
+        str | None, typer.Option(metavar="F0,F1", help="Fit in this band [Hz]; 1.5 F0 to F1/2 of the sweep.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="[UNIT.]PARAMETER=VALUE", help="Set a parameter; can be given again."),
+    ] = None,
+    fmus: Annotated[
+        list[str] | None, typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in.")
+    ] = None,
+    ideal: Annotated[
+        bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")
+    ] = False,
+    algorithm: Annotated[
+        Algorithm | None,
+        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
+    ] = None,
+    step_size: Annotated[
+        float | None, typer.Option(metavar="T", help="Step of an FMU alone [s]; default: its own.")
+    ] = None,
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            "--output-folder", "-o", metavar="DIR", help="Default: results/<target>-identification."
+        ),
+    ] = None,
+    no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figures.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
+) -> int:
+    """Identify gain and pole from an input to an output."""
+    from ...cosim.errors import ConfigError
+    from .. import identify as library
+    from .arguments import parse_fmus
+    from .outputs import prepared
+
+    given: dict[str, Any] = {
+        "input": input, "output": output, "unit": unit, "at": at, "at_input": at_input,
+        "amplitude": amplitude, "duration": duration, "repeats": repeats,
+        "sweep": _pair(sweep, "--sweep"), "band": _pair(band, "--band"),
+    }  # fmt: skip # related options side by side
+    spec = _spec(target, scenario, {key: value for key, value in given.items() if value not in (None, [])})
+    spec.chirp()
+    if ideal and library.is_fmu(target):
+        raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
+    options: dict[str, Any] = {
+        "fmus": parse_fmus(fmus or []),
+        "ideal": ideal,
+        "algorithm": algorithm.value if algorithm else None,
+        "step_size": step_size,
+    }
+    where = prepared(folder or Path("results") / f"{Path(target).stem}-identification")
+    found = _measure(target, spec, scenario, settings or [], options, not (as_json or quiet))
+    files = _write(where, found, not no_plot)
+    _tell(found, where, files, as_json, quiet)
+    return 0
+
+
+def _pair(text: str | None, option: str) -> tuple[float, float] | None:
+    from ...cosim.errors import ConfigError
+
+    if text is None:
+        return None
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ConfigError(
+            f"{option} {text}: it is written F0,F1, two numbers in Hz, as in 0.05,0.3"
+        ) from None
+    return low, high
+
+
+def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> IdentificationSpec:
+    """The scenario's table with the user's options on top."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.files import validate
+    from ...cosim.identification_spec import IdentificationSpec
+    from ..identify import spec_of
+
+    base = spec_of(target, scenario)
+    known = base.model_dump() if base is not None else {}
+    if {"input", "output"} & given.keys() and base is not None:
+        other = [k for k in ("input", "output") if given.get(k, known[k]) != known[k]]
+        for key in (
+            ("unit", "at", "at_input", "amplitude") if "input" in other else ("unit", "at") if other else ()
+        ):
+            known.pop(key)  # they belong to what the scenario sweeps or measures
+    if {"at", "at_input"} & given.keys():
+        known = {k: v for k, v in known.items() if k not in ("at", "at_input")}
+    if "sweep" in given:
+        known.pop("band", None)  # the scenario's band belongs to its own sweep
+    merged = known | given
+    for key in ("input", "output", "amplitude"):
+        if key not in merged:
+            raise ConfigError(f"{target}: --{key} is needed: no [identification] of a scenario gives it")
+    return validate(merged, IdentificationSpec, target)
+
+
+def _measure(
+    target: str,
+    spec: IdentificationSpec,
+    scenario: str | None,
+    settings: Sequence[str],
+    options: dict[str, Any],
+    bar: bool,
+) -> list[Identification]:
+    from .. import identify as library
+    from .arguments import as_typed, parse_settings
+    from .console import progress_bar
+    from .interrupts import Interrupts
+
+    prefix = f"{library.UNIT}." if library.is_fmu(target) else ""
+    typed = [prefix + setting for setting in settings]
+    parameters = {name.removeprefix(prefix): value for name, value in parse_settings(typed).items()}
+    points = library.each_working_point(spec)
+    with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
+        found = []
+        for done, point in enumerate(points):
+
+            def progress(what: str, share: float, done: int = done) -> None:
+                show(done + _SHARES.get(what, (0.0, 0.1))[0] + _SHARES.get(what, (0.0, 0.1))[1] * share)
+                interrupts.check()
+
+            with as_typed(typed):
+                found.append(
+                    library.identify(
+                        target, point, scenario, parameters=parameters, progress=progress, **options
+                    )
+                )
+    return found
+
+
+_SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}  # of the time that one working point takes
+
+
+def _write(folder: Path, found: list[Identification], figures: bool) -> list[str]:
+    """Write data and figures and return the names of the files. Raises ConfigError."""
+    from ...cosim.writing import replacing
+    from .console import finite
+
+    text = json.dumps(finite([each.as_data() for each in found]), indent=2, allow_nan=False)
+    with replacing(folder / DATA) as file:
+        file.write((text + "\n").encode())
+    return [DATA, *(_draw(folder, found) if figures else ())]
+
+
+def _draw(folder: Path, found: list[Identification]) -> list[str]:
+    from ...cosim import figures
+    from ...cosim import identification_figures as drawing
+
+    paths: list[Path] = []
+    for number, each in enumerate(found, 1):
+        mark = f"-{number}" if len(found) > 1 else ""
+        title = f"{each.target}: {each.input} to {each.output} at {_point(each)}"
+        swept = (each.sweep.start, each.sweep.stop)
+        paths += figures.save(
+            drawing.bode(each.response, each.fit, swept, each.gain_unit, title), folder, f"bode{mark}"
+        )
+        shown = drawing.prediction(each.prediction, each.output_unit, each.output, title)
+        paths += figures.save(shown, folder, f"prediction{mark}")
+    if len(found) > 1:
+        paths += figures.save(
+            drawing.over_working_points(
+                [each.working_point[1] for each in found],
+                [each.fit for each in found],
+                f"{found[0].output} [{found[0].output_unit}]",
+                found[0].gain_unit,
+                f"{found[0].target}: gain and pole over working points",
+            ),
+            folder,
+            "working_points",
+        )
+    return [path.name for path in paths]
+
+
+def _tell(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
+    from .console import print_fields, print_json, print_title
+    from .failures import complain
+
+    if as_json:
+        print_json([each.as_data() | {"folder": str(folder), "files": files} for each in found])
+    if as_json or quiet:
+        for each in found:
+            for warning in each.warnings:
+                complain(f"warning: at {_point(each)}: {warning}")
+        return
+    for number, each in enumerate(found):
+        title = f"{each.target}: {each.input} [{each.input_unit}] to {each.output} [{each.output_unit}]"
+        print_title(title, first=number == 0)
+        print_fields(_fields(each))
+    if len(found) > 1:
+        _print_points(found)
+    print(f"\nin {folder}: {', '.join(files)}")
+
+
+def _fields(each: Identification) -> list[tuple[str, str]]:
+    from .console import number
+
+    fit, sweep = each.fit, each.sweep
+    times = f", {sweep.repeats} times" if sweep.repeats > 1 else ""
+    esr = each.prediction.mean_esr
+    return [
+        ("working point", _point(each) + (", ideal (no buses)" if each.ideal else "")),
+        (
+            "sweep",
+            f"{sweep.start:g} to {sweep.stop:g} Hz in {sweep.duration:g} s{times}, amplitude "
+            f"{sweep.amplitude:g} {each.input_unit}".rstrip(),
+        ),
+        (
+            "fit",
+            f"{fit.points} points in {fit.band[0]:g} to {fit.band[1]:g} Hz; rms error "
+            f"{100 * fit.residual:.1f} %, coherence {fit.coherence:.3f}",
+        ),
+        ("gain", _interval(fit.gain, each.gain_unit)),
+        ("pole", f"{_interval(fit.pole, 'Hz')}; T = {number(fit.model.time_constant)} s"),
+        ("gain x pole", _interval(fit.product, "") + f", +-{100 * fit.product.relative:.1f} %"),
+        *([("ESR", f"{esr:.2f} % on average in accelerations")] if esr == esr else []),
+        *(("warning", warning) for warning in each.warnings),
+    ]
+
+
+def _point(each: Identification) -> str:
+    u, y = each.working_point
+    return f"{u:.4g} {each.input_unit}, {y:.4g} {each.output_unit}".replace(" ,", ",").rstrip()
+
+
+def _interval(estimate: Estimate, unit: str) -> str:
+    shown = f"{estimate.value:.4g} {unit}".rstrip()
+    return f"{shown} (95 %: {estimate.low:.4g} to {estimate.high:.4g})"
+
+
+def _print_points(found: list[Identification]) -> None:
+    from .console import print_table
+
+    first = found[0]
+    headers = [
+        f"{first.input} [{first.input_unit}]",
+        f"{first.output} [{first.output_unit}]",
+        f"gain [{first.gain_unit}]",
+        "pole [Hz]",
+    ]
+    rows = [
+        [
+            f"{e.working_point[0]:.4g}",
+            f"{e.working_point[1]:.4g}",
+            f"{e.fit.gain.value:.4g}",
+            f"{e.fit.pole.value:.4g}",
+        ]
+        for e in found
+    ]
+    print()
+    print_table(headers, rows, right=headers)
