@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from evcosim.models.base import violations
@@ -37,6 +37,7 @@ def stop(p: Parameters, u: Inputs, dt: float = DT) -> list[State]:
 
 
 @given(roads, speeds, speeds, speeds)
+@example(Road.DRY, 3.0, 0.0, 4.0)  # front wheel locked, rear wheel driving: the front wheel lifts
 def test_newton_and_the_loads(road: Road, v: float, front: float, rear: float) -> None:
     """(1), (2), (5) hold together: the acceleration is the one that its own loads give."""
     p = replace(P, road=road)
@@ -47,7 +48,8 @@ def test_newton_and_the_loads(road: Road, v: float, front: float, rear: float) -
     assert y.front_force == pytest.approx(y.front_load * friction_coefficient(road, y.front_slip), abs=1e-8)
     assert y.rear_force == pytest.approx(y.rear_load * friction_coefficient(road, y.rear_slip), abs=1e-8)
     moment = p.mass * p.center_height * y.deceleration / p.wheelbase
-    assert y.front_load == pytest.approx(p.mass * GRAVITY * p.rear_distance / p.wheelbase + moment)  # (5)
+    both = p.mass * GRAVITY * p.rear_distance / p.wheelbase + moment  # (5), below 0 where the wheel lifts
+    assert y.front_load == pytest.approx(min(p.mass * GRAVITY, max(0.0, both)), abs=1e-8)
 
 
 @given(speeds, speeds)
