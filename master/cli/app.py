@@ -7,8 +7,10 @@ from typing import Annotated, Any
 
 import typer
 
+from .budget import budget
 from .build import build
 from .compare import compare
+from .identify import identify
 from .info import info
 from .listing import list_
 from .plot import plot
@@ -33,8 +35,10 @@ def command() -> Any:
         "info": info,
         "plot": plot,
         "compare": compare,
+        "identify": identify,
         "reproduce": reproduce,
         "build": build,
+        "budget": budget,
     }
     for name, verb in verbs.items():
         app.command(name)(verb)

@@ -1,0 +1,114 @@
+"""`evcosim budget`: how late, coarse and slow a system's buses may be before its own metric breaks."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .run import Algorithm
+
+if TYPE_CHECKING:
+    from ...cosim.budget import Budget
+
+_PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
+
+
+def budget(
+    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")],
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
+    ] = None,
+    fmus: Annotated[
+        list[str] | None,
+        typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
+    ] = None,
+    algorithm: Annotated[
+        Algorithm | None,
+        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
+    ] = None,
+    stop_time: Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>-budget."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
+) -> None:
+    """Find how late, coarse and slow the buses may be.
+
+    Bus delay, signal resolution and message cycle are stepped up, each by itself, and the system is judged by
+    the metric of its [budget] table. Writes budget.md, budget.json and a figure.
+    """
+    from ...cosim.budget import as_data
+    from ..budget import budget as measured
+    from .arguments import as_typed, parse_fmus, parse_settings
+    from .console import print_json, progress_bar
+    from .outputs import prepared
+
+    parameters, others = parse_settings(settings or []), parse_fmus(fmus or [])
+    folder = prepared(output or _default_folder(system, scenario))
+    with as_typed(settings or []), progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
+        found = measured(
+            system,
+            scenario,
+            parameters=parameters,
+            fmus=others,
+            algorithm=algorithm.value if algorithm else None,
+            stop_time=stop_time,
+            workers=workers,
+            progress=lambda done, total, _: show(done / total),
+        )
+    files = _write(folder, found)
+    if as_json:
+        print_json(as_data(found) | {"folder": str(folder), "files": files})
+    else:
+        _show(found, folder, files)
+
+
+def _default_folder(system: str, scenario: str | None) -> Path:
+    from ...cosim.scenario import load_scenario
+    from ...cosim.system import load_system
+
+    read = load_system(system)
+    names = (read.file.name, load_scenario(read, scenario).name, "budget")
+    return Path("results") / "-".join(name for name in names if name)
+
+
+def _write(folder: Path, found: Budget) -> list[str]:
+    """Write page, data and figure and return the names of the files. Raises ConfigError."""
+    from ...cosim import figures
+    from ...cosim.budget import as_data, as_markdown
+    from ...cosim.budget_figure import draw_budget
+
+    _write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
+    _write_text(folder / _DATA, json.dumps(as_data(found), indent=2, ensure_ascii=False) + "\n")
+    drawn = figures.save(draw_budget(found), folder, _FIGURE)
+    return [_PAGE, _DATA, *(path.name for path in drawn)]
+
+
+def _write_text(path: Path, text: str) -> None:
+    from ...cosim.writing import replacing
+
+    with replacing(path) as file:
+        file.write(text.encode())
+
+
+def _show(found: Budget, folder: Path, files: list[str]) -> None:
+    from .console import print_fields, print_table
+
+    scenario = f" {found.scenario}" if found.scenario else ""
+    print(f"{found.system}{scenario}, {found.rule} (* as it is)\n")
+    print_table(("variation", "point", "value", "verdict"), found.rows(), right=("value",))
+    print()
+    print_fields([(each.name, found.summary(each)) for each in found.series])
+    print(f"\nin {folder}: {', '.join(files)}")
