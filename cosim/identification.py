@@ -225,6 +225,20 @@ def _estimate(log_value: float, spread: float, sign: float) -> Estimate:
     return Estimate(sign * math.exp(log_value), ends[0], ends[1])
 
 
+def curvature(x: Array, y: Array) -> float:
+    """How far `y` bends from a straight line in `x`, the output of the linear model; both shape (n,).
+
+    The largest distance between the cubic and the line that fit best, as a share of the line's range: 0 where
+    the unit is linear, large where an input or an output is cut off.
+    """
+    scale = float(np.abs(x).max())
+    cubic, line = np.polyfit(x / scale, y, 3), np.polyfit(x / scale, y, 1)
+    at = np.linspace(float(x.min()), float(x.max()), 101) / scale
+    reach = abs(float(line[0])) * float(np.ptp(at))
+    bend = float(np.abs(np.polyval(cubic, at) - np.polyval(line, at)).max())
+    return bend / reach if reach > 0.0 else math.inf
+
+
 def flat_share(y: Array, sweep_frequency: Array, rate: float) -> float:
     """The longest time that `y` stays at one of its extremes, in periods of the sweep at that time.
 

@@ -51,9 +51,12 @@ def bode(
         _points(coherence, data.frequency, data.coherence, trusted)
         magnitude.set_yscale("log")
         magnitude.set_ylabel(f"Magnitude\n[{pretty(gain_unit)}]")
+        seen = np.abs(np.concatenate((data.response[trusted], fit.model.response(np.array(swept)))))
+        magnitude.set_ylim(seen.min() / 1.5, seen.max() * 1.5)  # what is not trusted may be anywhere
         _plain_ticks(magnitude)
         phase.set_ylabel("Phase [deg]")
-        phase.set_ylim(max(-200.0, degrees.min() - 10.0), min(90.0, max(5.0, degrees.max() + 10.0)))
+        known = np.concatenate((degrees[trusted], [-90.0, 0.0]))
+        phase.set_ylim(known.min() - 10.0, known.max() + 10.0)
         coherence.set_ylabel("Coherence [1]")
         coherence.set_ylim(0.0, 1.05)
         coherence.set_xscale("log")
@@ -117,7 +120,7 @@ def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
         )  # fmt: skip # one line of text in two
         top.set_ylabel(f"{label}\n[{pretty(unit)}]" if unit else label)
         if shown:
-            panels[1].plot(found.time, found.esr, color=COLORS[0], linewidth=1.4, label="in accelerations")
+            panels[1].plot(found.time, found.esr, color=COLORS[0], marker=".", ms=3, label="in accelerations")
             mean = f"mean, {found.mean_esr:.2f} %"
             panels[1].axhline(found.mean_esr, color=COLORS[1], linestyle=dashes, linewidth=1.4, label=mean)
             panels[1].set_ylabel("ESR [%]")
