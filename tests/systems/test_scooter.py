@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from evcosim.master import simulate
 from support.closed_loop import fig8_rider
 from support.closed_loop import run as plain_python
-from support.scooter_numbers import (
+
+from evcosim.master import simulate
+from evcosim.master.reproduce.scooter_numbers import (
     CONSTANT_SPEEDS,
     KMH,
     VARIANTS,

@@ -1,19 +1,31 @@
-"""The numbers of the scooter system, each a function of results; run this file to print them as a table."""
+"""The numbers of the scooter system, each a function of the results of a run."""
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from evcosim.cosim.results import Results
-from evcosim.master import Simulation, simulate
+from ...cosim.results import Results
+from ...models.scooter import Scooter, level_road_load, maximum_force
+from ..simulation import Simulation, simulate
 
 KMH = 3.6  # km/h in 1 m/s
-VARIANTS = {"bus": {}, "ideal": {"ideal": True}, "jacobi": {"algorithm": "jacobi"}}
+VARIANTS: dict[str, dict[str, Any]] = {"bus": {}, "ideal": {"ideal": True}, "jacobi": {"algorithm": "jacobi"}}
 CONSTANT_SPEEDS = (24.0, 27.3, 30.5, 34.49, 40.5, 45.25, 49.0)  # km/h
+
+
+def linearized(speed: float) -> tuple[float, float]:
+    """Gain [km/h per %] and pole [Hz] round a steady speed [km/h] on a level road, by (1)-(2)."""
+    p, v, h = Scooter.Parameters(), speed / KMH, 1e-4
+    load_slope = (level_road_load(p, v + h) - level_road_load(p, v - h)) / (2.0 * h)
+    force_slope = (maximum_force(p, v + h) - maximum_force(p, v - h)) / (2.0 * h)
+    damping = load_slope - level_road_load(p, v) / maximum_force(p, v) * force_slope  # N.s/m
+    return KMH * maximum_force(p, v) / 100.0 / damping, damping / p.mass / (2.0 * math.pi)
 
 
 def switches(results: Results) -> tuple[NDArray[np.float64], list[int]]:
@@ -31,7 +43,8 @@ def time_in_states(results: Results) -> list[float]:
 
 def over_bound(results: Results) -> NDArray[np.float64]:
     """True speed minus speed bound [km/h]."""
-    return results["vehicle.speed"] * KMH - results["ecu.speed_bound"]
+    over: NDArray[np.float64] = results["vehicle.speed"] * KMH - results["ecu.speed_bound"]
+    return over
 
 
 def settled_error(results: Results) -> float:
@@ -61,7 +74,7 @@ def since_switch(results: Results) -> NDArray[np.float64]:
     return np.where(results.time >= times[0], results.time - last, 0.0)
 
 
-def estimate_error(speed: float, **options: object) -> float:
+def estimate_error(speed: float, **options: Any) -> float:
     """Largest |v_e - v| [km/h] from 60 to 90 s at a constant speed [km/h], without bounds."""
     text = f"""
         leave_out = ["rider", "planner", "battery"]
@@ -78,7 +91,7 @@ def estimate_error(speed: float, **options: object) -> float:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "constant.toml"
         path.write_text(text)
-        results = simulate("scooter", path, **options)  # type: ignore[arg-type] # options of simulate
+        results = simulate("scooter", path, **options)
     error = np.abs(results["ecu.speed_estimate"] - results["vehicle.speed"] * KMH)
     return float(error[results.time > 60.0].max())
 
@@ -96,46 +109,3 @@ def energy_and_speed(results: Results) -> tuple[float, float]:
     """Consumption from the cells [Wh/km] and mean speed [km/h]."""
     kilometers = results["vehicle.distance"][-1] / 1000.0
     return results["battery.energy_drawn"][-1] / kilometers, kilometers / (results.time[-1] / 3600.0)
-
-
-def table() -> str:
-    """All numbers as a Markdown table: a row each, a column for each variant."""
-    columns = []
-    for options in VARIANTS.values():
-        fig8, fig9 = simulate("scooter", "fig8", **options), simulate("scooter", "fig9", **options)  # type: ignore[arg-type] # options of simulate
-        raw = simulate("scooter", "fig8", parameters={"ecu.use_observer": False}, **options)  # type: ignore[arg-type] # options of simulate
-        late = (fig9["ecu.state"] == 2) & (since_switch(fig9) > 8.0)
-        columns.append(
-            [
-                " ".join("DAV"[s] for s in switches(fig8)[1]),
-                " / ".join(f"{t:.2f}" for t in time_in_states(fig8)),
-                f"{over_bound(fig8).max():.3f}",
-                f"{settled_error(fig8):.3f}",
-                f"{ripple(raw):.1f} / {ripple(fig8):.1f} = {ripple(raw) / ripple(fig8):.1f}",
-                f"{largest_jump(fig8):.2f}",
-                str(len(switches(fig9)[0])),
-                f"{over_bound(fig9)[late].max():.3f}",
-                f"{max(estimate_error(v, **options) for v in CONSTANT_SPEEDS):.3f}",
-            ]
-        )
-    names = [
-        "Fig. 8: states",
-        "Fig. 8: time in D / A / V [s]",
-        "Fig. 8: overshoot over v_b [km/h]",
-        "Fig. 8: settled abs(v - v_b) [km/h]",
-        "Fig. 8: rms of dg_e/dt, raw v_m / observer [%/s]",
-        "Fig. 8: largest jump of g_e at a switch [%]",
-        "Fig. 9: switches",
-        "Fig. 9: highest v - v_b, 8 s after a switch [km/h]",
-        "abs(v_e - v) at constant v, 24-49 km/h, after 60 s [km/h]",
-    ]
-    rows = [f"| {' | '.join([name, *values])} |" for name, *values in zip(names, *columns, strict=True)]
-    head = f"| | {' | '.join(VARIANTS)} |\n|---|{'---|' * len(VARIANTS)}"
-    return "\n".join([head, *rows])
-
-
-if __name__ == "__main__":
-    print(table())
-    for bounded in (True, False):
-        consumption, speed = energy_and_speed(stop_and_go(bounded))
-        print(f"stop and go, bounds {'on' if bounded else 'off'}: {consumption:.1f} Wh/km, {speed:.1f} km/h")
