@@ -27,7 +27,7 @@ _Model = TypeVar("_Model", bound=BaseModel)
 def read_toml(path: Path, model: type[_Model]) -> _Model:
     """Read and validate a TOML file. Raises ConfigError naming file, key, rule and value."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

@@ -170,7 +170,8 @@ class Results:
         about = {**self.manifest, "variables": [_described(v) for v in self.variables]}
         text = json.dumps(_jsonable(about), indent=2, allow_nan=False, ensure_ascii=False)
         with replacing(folder / MANIFEST_NAME) as file:
-            file.write((text + "\n").encode())
+            # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
+            file.write((text + "\n").encode(errors="backslashreplace"))
         return folder
 
     @classmethod

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CoSimulation
 from numpy.typing import NDArray
 
 from ..cosim.interface import UnitInterface
@@ -23,6 +23,7 @@ from .log import STATUS, UnitLog
 from .unit import UnitError, Value, floats
 
 _WARNING = 1
+_INVISIBLE, _LOGGING = 0, 1  # fmi2Boolean
 _C_TYPES: dict[str, Any] = {"Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int}
 _FMI_TYPE = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 Call = Callable[[], None]
@@ -41,11 +42,12 @@ class Fmi2Unit:
         self.interface: UnitInterface = fmu.interface
         self.log = UnitLog()
         self._references = {v.name: int(v.valueReference) for v in fmu.description.modelVariables}
-        self._folder: Path | None = fmu.extract()
+        folder = fmu.extract()
+        self._folder: Path | None = folder
         self._slave: Any = None
         self._initialized = False
         try:
-            self._instantiate()
+            self._instantiate(folder)
         except BaseException:
             self.free()
             raise
@@ -53,25 +55,31 @@ class Fmi2Unit:
         self._get_feedthrough: tuple[Call, ...] = ()
         self._get_outputs: tuple[Call, ...] = ()
 
-    def _instantiate(self) -> None:
+    def _instantiate(self, folder: Path) -> None:
         md = self.fmu.description
         try:
             self._slave = FMU2Slave(
                 guid=md.guid,
-                unzipDirectory=str(self._folder),
+                unzipDirectory=str(folder),
                 modelIdentifier=md.coSimulation.modelIdentifier,
                 instanceName=self.name,
             )
         except Exception as error:  # FMPy raises plain Exception when the library does not load
             raise FmuError(f"{self.fmu.path}: {error}") from error
         self._callbacks = self.log.callbacks()
-        try:
-            self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
-        except Exception as error:  # FMPy: "Failed to instantiate model"
+        # not by FMPy's `instantiate`, which gives the resources' URI in a form that pythonfmu cannot read
+        self._slave.component = self._slave.fmi2Instantiate(
+            self.name.encode(),
+            fmi2CoSimulation,
+            md.guid.encode(),
+            self.fmu.resources_uri(folder),
+            ctypes.byref(self._callbacks),
+            _INVISIBLE,
+            _LOGGING,
+        )
+        if self._slave.component is None:
             said = self.log.last()
-            raise FmuError(
-                f"{self.fmu.path}: cannot be instantiated" + (f":\n{said}" if said else "")
-            ) from error
+            raise FmuError(f"{self.fmu.path}: cannot be instantiated" + (f":\n{said}" if said else ""))
         self._component = ctypes.c_void_p(self._slave.component)
         self._do_step = self._function("fmi2DoStep")
         self._time, self._step_size, self._no_set_state = (

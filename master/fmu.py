@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
+import os
 import shutil
 import sys
 import tempfile
@@ -63,6 +64,26 @@ class Fmu:
             shutil.rmtree(folder, ignore_errors=True)
             raise FmuError(f"{self.path}: cannot be extracted: {error}") from error
         return folder
+
+    def resources_uri(self, folder: Path) -> bytes:
+        """The URI of the resources in an extracted folder, as the library takes it.
+
+        That of pythonfmu decodes %20 and nothing else, and without its resources it ends the process: it gets
+        the other characters as they are. Raises FmuError for a folder that cannot be told to it.
+        """
+        resources = folder / "resources"
+        if not self.holds_python or sys.platform == "win32":
+            return resources.as_uri().encode()
+        path = os.fsencode(resources)
+        try:
+            problem = "'%20' in its name is read as a space" if "%20" in path.decode() else ""
+        except UnicodeDecodeError:
+            problem = "its name is not UTF-8"
+        if problem:
+            raise FmuError(
+                f"{self.path}: cannot run from the temporary folder {folder}: {problem}; set TMPDIR"
+            )
+        return b"file://" + path.replace(b" ", b"%20")
 
 
 def read_fmu(path: Path) -> Fmu:

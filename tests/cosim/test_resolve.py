@@ -221,6 +221,15 @@ def test_a_wrong_system_file_names_file_key_and_value(tmp_path, text, said):
     assert "mine.toml" in str(caught.value)
 
 
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_files_of_other_editors(tmp_path, mark, end):
+    path = tmp_path / "a.toml"
+    text = f'{mark}name = "a"{end}[units.u]{end}fmu = "F"{end}'
+    path.write_bytes(text.encode())
+    assert load_system(str(path)).file.units["u"].fmu == "F"
+
+
 def test_unknown_names_say_what_there_is(tmp_path):
     with pytest.raises(
         ConfigError, match=r"unknown system 'scoter' \(did you mean 'scooter'\?\); known: .*scooter"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import os
+import sys
 import tempfile
 from pathlib import Path
 
@@ -144,6 +146,24 @@ def test_nothing_is_left_behind(tmp_path, monkeypatch):
         Simulation("scooter", parameters={"vehicle.mass": -1.0})
     gc.collect()
     assert [p for p in Path(tmp_path).iterdir() if p.name.startswith("evcosim-")] == []
+
+
+@pytest.mark.parametrize("name", ["with space", "größer", "a#b", "50%", "a%41b"])
+def test_a_temporary_folder_of_any_name(tmp_path, monkeypatch, name):
+    (tmp_path / name).mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / name))
+    assert len(simulate("scooter", stop_time=0.1)) == 11
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are not bytes")
+@pytest.mark.parametrize(("name", "said"), [("a%20b", "read as a space"), (b"\xe4", "not UTF-8")])
+def test_a_temporary_folder_that_an_fmu_cannot_be_told(tmp_path, monkeypatch, name, said):
+    folder = tmp_path / os.fsdecode(name)
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    with pytest.raises(ConfigError, match=f"the temporary folder .*{said}; set TMPDIR"):
+        simulate("scooter", stop_time=0.1)
+    assert not list(folder.iterdir())
 
 
 def test_two_simulations_at_once_do_not_meet():
