@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.closed_loop import fig8_rider
-from support.closed_loop import run as plain_python
 
 from evcosim.master import simulate
 from evcosim.master.reproduce.scooter_numbers import (
@@ -26,6 +24,8 @@ from evcosim.master.reproduce.scooter_numbers import (
     switches,
     time_in_states,
 )
+from support.closed_loop import fig8_rider
+from support.closed_loop import run as plain_python
 
 
 @pytest.fixture(scope="module", params=list(VARIANTS))
