@@ -252,7 +252,7 @@ def _raw_figure(found: dict[str, Any]) -> Any:
         for row, (name, label) in enumerate((("fig8 raw", "raw v_m"), ("fig8 bus", "observer"))):
             results = found[name]
             axes[row, 0].plot(
-                results.time, results["ecu.throttle"], drawstyle="steps-post", **figures.look(row)
+                results.time, results["ecu.throttle"], drawstyle="steps-post", **figures.look(0)
             )
             axes[row, 0].set_ylabel(f"g_e [%]\n{label}")
             axes[row, 0].set_ylim(-5.0, 105.0)
