@@ -47,7 +47,7 @@ def test_help_imports_nothing_heavy():
     assert not heavy & set(loaded.split())
 
 
-@pytest.mark.parametrize("verb", ["run", "list", "info", "plot", "compare", "build"])
+@pytest.mark.parametrize("verb", ["run", "list", "info", "plot", "compare", "build", "identify"])
 def test_every_verb_has_help(evcosim, verb):
     answer = evcosim(verb, "--help")
     assert (answer.code, answer.err) == (0, "")
