@@ -33,6 +33,34 @@ def prepared(folder: Path) -> Path:
     return folder
 
 
+def prepared_for_results(folder: Path) -> Path:
+    """The same for a folder in which a run takes the place of an earlier one.
+
+    Raises ConfigError also where a file that would be replaced or removed is somebody's own.
+    """
+    from ...cosim.errors import ConfigError
+    from ...cosim.results import CSV_NAME, MANIFEST_NAME
+
+    names = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
+    taken = [name for name in names if (folder / name).exists()]
+    if taken and not _is_of_a_run(folder / MANIFEST_NAME):
+        raise ConfigError(
+            f"output folder {folder}: {', '.join(taken)} would be replaced, but no {MANIFEST_NAME} says that a "
+            "run wrote it; --output names another folder"
+        )
+    return prepared(folder)
+
+
+def _is_of_a_run(manifest: Path) -> bool:
+    import json
+
+    try:
+        about = json.loads(manifest.read_bytes())
+    except (OSError, ValueError):
+        return False
+    return isinstance(about, dict) and "evcosim" in about
+
+
 def write_results(folder: Path, results: Results) -> list[str]:
     """Write results.csv and run.json and return their names. Figures and logs of an earlier run are removed:
     a folder holds one run. Where they cannot be written they go to a temporary folder, and RunError says so.

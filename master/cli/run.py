@@ -132,7 +132,7 @@ def _run(order: Order) -> Outcome:
     from ...cosim.errors import ConfigError, RunError
     from .arguments import as_typed, parse_fmus, parse_settings
     from .interrupts import Interrupts
-    from .outputs import prepared
+    from .outputs import prepared_for_results
 
     parameters, fmus = parse_settings(order.settings), parse_fmus(order.fmus)
     if order.can_log and order.ideal:
@@ -144,7 +144,7 @@ def _run(order: Order) -> Outcome:
         try:
             with simulation:
                 interrupts.check()
-                folder = prepared(order.output or _default_folder(simulation))
+                folder = prepared_for_results(order.output or _default_folder(simulation))
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
             if simulation.time <= simulation.plan.experiment.start_time and not isinstance(failure, RunError):

@@ -216,6 +216,24 @@ def test_output_below_a_file(evcosim, tmp_path):
     refused(evcosim("build", "Battery", "-o", "file/fmus"), "file/fmus", "cannot be written")
 
 
+@pytest.mark.parametrize("name", ["figure.png", "results.csv", "run.json"])
+def test_a_file_of_the_users_own_is_not_replaced(evcosim, tmp_path, name):
+    (tmp_path / "out").mkdir()
+    own = tmp_path / "out" / name
+    own.write_text("[1, 2]")
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    refused(answer, f"output folder out: {name} would be replaced", "--output")
+    assert own.read_text() == "[1, 2]"
+
+
+def test_other_files_in_the_output_folder_stay(evcosim, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    for _ in range(2):
+        assert evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "out").code == 0
+    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
+
+
 def test_full_disk_before_the_run(evcosim, monkeypatch):
     def full(self, data):
         raise OSError(errno.ENOSPC, "No space left on device", str(self))
