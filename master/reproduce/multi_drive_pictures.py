@@ -309,6 +309,6 @@ def _coupling_figure(coupled: Mapping[float, tuple[Effect, Effect]]) -> Any:
             axes[row, 0].set_ylim(bottom=0.0)
         axes[0, 0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
         axes[2, 0].set_xlabel("κ")
-        axes[2, 0].set_xlim(0.0, 1.0)
+        axes[2, 0].set_xlim(-0.02, 1.02)
         figure.align_ylabels(axes[:, 0])
     return figure
