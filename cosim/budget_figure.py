@@ -74,7 +74,7 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
                 [i], [y], marker="o", markersize=14.0, linestyle="none", markerfacecolor="none",
                 markeredgecolor=COLORS[3], zorder=3, label="as it is",
             )  # fmt: skip # where, then how
-        text = "no value" if math.isnan(point.value) else f"{point.value:.3g}".replace("-", "\N{MINUS SIGN}")
+        text = "no value" if math.isnan(point.value) else f"{point.value:.4g}".replace("-", "\N{MINUS SIGN}")
         # not over the edge, and not over the line of the limit
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)
         panel.annotate(

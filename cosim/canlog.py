@@ -1,8 +1,8 @@
 """The frames that crossed a bus, as a log file that other tools read: candump, BLF or ASC.
 
 A frame stands at the time of the communication point at which its message was sampled, so a receiver's
-value in the results is what its frame decodes to. Frames of one instant stand in the order in which they
-would win the bus: by frame id.
+value in the results is what its frame decodes to (on a bus with a delay, that much later). Frames of one
+instant stand in the order in which they would win the bus: by frame id.
 
 The same run writes the same bytes: times count from the start of the run's clock, and no file holds the
 date at which it was written. ASC, which needs a date, has a fixed one; BLF has none.

@@ -92,10 +92,12 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
         "name": message.name,
         "id": message.frame_id,
         "cycle_time": plan.every * whole.experiment.step_size,
+        "delay": plan.delay * whole.experiment.step_size,
         "signals": [
             {"name": route.signal.name, "bits": route.signal.length, "scale": route.signal.scale,
              "offset": route.signal.offset, "minimum": route.signal.minimum,
              "maximum": route.signal.maximum, "unit": route.signal.unit,
+             "float": route.signal.is_float,
              "sender": plan.senders[route.signal.name]}
             for route in plan.routes
         ],
@@ -115,7 +117,7 @@ def show(about: dict[str, Any]) -> None:
     print_table(("from", "to", "via"), [_connection_row(c) for c in about["connections"]])
     if about["messages"]:
         print_title("Messages")
-        headers = ("message", "id", "every [s]", "signal", "bits", "resolution", "range")
+        headers = ("message", "id", "every [s]", "delay [s]", "signal", "bits", "resolution", "range")
         rows = [row for message in about["messages"] for row in _message_rows(message)]
         print_table(headers, rows, right=("bits",))
     if about["scenarios"]:
@@ -148,14 +150,17 @@ def _connection_row(c: dict[str, str]) -> tuple[str, ...]:
 def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for i, signal in enumerate(message["signals"]):
-        head = (f"{message['bus']}.{message['name']}", f"0x{message['id']:X}", f"{message['cycle_time']:g}")
+        delay = f"{message['delay']:g}" if message["delay"] else ""
+        name = f"{message['bus']}.{message['name']}"
+        head = (name, f"0x{message['id']:X}", f"{message['cycle_time']:g}", delay)
         unit = f" {signal['unit']}" if signal["unit"] else ""
         ends = [
             ("-inf", "inf")[j] if signal[key] is None else number(signal[key])
             for j, key in enumerate(("minimum", "maximum"))
         ]
+        resolution = "float" if signal["float"] else f"{number(signal['scale'])}{unit}"
         rows.append(
-            (*(head if i == 0 else ("", "", "")), signal["name"], str(signal["bits"]),
-             f"{number(signal['scale'])}{unit}", f"[{', '.join(ends)}]{unit}")
+            (*(head if i == 0 else [""] * len(head)), signal["name"], str(signal["bits"]), resolution,
+             f"[{', '.join(ends)}]{unit}")
         )  # fmt: skip # one line for each half of the row
     return rows
