@@ -19,6 +19,7 @@ import pickle
 import signal
 import sys
 import tempfile
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -225,9 +226,18 @@ def _serve(pipe: Connection, folder: str) -> None:
     sys.stdout = sys.stderr
     os.dup2(2, 1)  # what native code prints, too: the caller's stdout may be read by a machine
     tempfile.tempdir = folder
+    threading.Thread(target=_end_with_caller, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):  # the caller has gone
         while True:
             pipe.send_bytes(_done(pipe.recv_bytes()))
+
+
+def _end_with_caller() -> None:
+    """A caller that was killed could not end us; a task may go on for minutes."""
+    caller = multiprocessing.parent_process()
+    if caller is not None:
+        wait([caller.sentinel])
+        os._exit(1)
 
 
 def _done(packed: bytes) -> bytes:

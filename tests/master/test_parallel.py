@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -80,6 +81,43 @@ def test_workers_keep_the_stdout_of_the_caller_clean(capfd):
     out, err = capfd.readouterr()
     assert out == ""
     assert err.count("hello") == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_workers_end_with_a_caller_that_is_killed(tmp_path):
+    mark = tmp_path / "mark"
+    text = f"""
+from evcosim.master.parallel import Task, run_all
+from support import tasks
+
+if __name__ == "__main__":
+    run_all([Task("long", tasks.stay, ({str(mark)!r},))])
+"""
+    (tmp_path / "script.py").write_text(text)
+    folder = Path(tasks.__file__).parents[1]
+    surroundings = os.environ | {"PYTHONPATH": str(folder), "TMPDIR": str(tmp_path)}
+    caller = subprocess.Popen([sys.executable, tmp_path / "script.py"], env=surroundings)
+    while not (mark.exists() and mark.read_text()):
+        assert caller.poll() is None
+        time.sleep(0.02)
+    caller.kill()
+    caller.wait()
+    wait_for_the_end_of(int(mark.read_text()))
+
+
+def wait_for_the_end_of(process, seconds=10.0):
+    """Until there is no such process, or it is one that nobody has asked how it ended."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        try:
+            os.kill(process, 0)
+        except ProcessLookupError:
+            return
+        status = Path(f"/proc/{process}/stat")
+        if status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z":
+            return
+        time.sleep(0.02)
+    raise AssertionError(f"process {process} goes on")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to one process")

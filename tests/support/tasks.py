@@ -60,3 +60,9 @@ def interrupt_parent(path):
     os.kill(os.getppid(), signal.SIGINT)
     os.kill(os.getpid(), signal.SIGINT)  # a terminal sends it to all: a worker does not mind
     time.sleep(60.0)
+
+
+def stay(path):
+    """Leave a mark and go on for a long time."""
+    Path(path).write_text(str(os.getpid()))
+    time.sleep(60.0)
