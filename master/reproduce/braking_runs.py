@@ -1,0 +1,135 @@
+"""The runs of the braking two-wheeler: each strategy's stop, what the vehicle does to it, both propositions.
+
+All that is compared with another run is `ideal`: the bus adds up to 0.15 m in the last two meters a second,
+which are decided by half a newton meter.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ...cosim.results import Results
+from ...cosim.system import System, Value, load_system
+from ...models import braking_analysis as analysis
+from ...models.road_friction import Road
+from ..simulation import Simulation
+
+LOCKED = 0.99  # slip
+FAST = 5.0  # m/s: above it, the end of the stop has no say
+STOP_TIME = 5.0  # s, more than any stop on a dry road with the parameters here needs
+STARTS = 30
+FINE_STEP = 0.001  # s, of a controller at 1 kHz
+
+CONTROLLED = ("known_speed", "front_only", "front_compensated")
+"""(a), (c), (d): the strategies that stop under control."""
+
+NOMINAL = analysis.Parameters()
+
+
+class Stop(NamedTuple):
+    """How a stop went."""
+
+    distance: float  # m; NaN: not at rest at the end of the run
+    swing: float  # the highest slip of the front wheel above FAST
+    lock_speed: float  # m/s at which the front wheel first locks; NaN: it does not
+
+
+class Lock(NamedTuple):
+    """How both wheels locked: when [s], at what speed [m/s], and whether they stayed so to standstill."""
+
+    time: float
+    speed: float
+    stays: bool
+
+
+class Propositions(NamedTuple):
+    """What the random starts did on one road."""
+
+    spread: tuple[float, ...]  # of the end points of Proposition 3.1, in slip, for each of FACTORS
+    equilibria: tuple[int, ...]  # how many there are, for each of FACTORS
+    locked: int  # of STARTS, Proposition 3.2
+
+
+FACTORS = (1.05, 10.0)  # of k-bar
+MARGIN = 1.5  # k lambda* over max Psi
+
+
+def stop_of(results: Results) -> Stop:
+    """What came of a run."""
+    v, slip = results["vehicle.speed"], results["vehicle.front_slip"]
+    distance = float(results["vehicle.stopping_distance"][-1]) if v[-1] == 0.0 else math.nan
+    locked = np.flatnonzero(slip > LOCKED)
+    return Stop(distance, float(slip[v > FAST].max()), float(v[locked[0]]) if len(locked) else math.nan)
+
+
+def lock_of(results: Results) -> Lock:
+    """When and at what speed both wheels locked; NaN where they did not."""
+    v = results["vehicle.speed"]
+    both = (results["vehicle.front_slip"] > LOCKED) & (results["vehicle.rear_slip"] > LOCKED)
+    if not both.any():
+        return Lock(math.nan, math.nan, False)
+    first = int(both.argmax())
+    return Lock(float(results.time[first]), float(v[first]), bool(both[first:][v[first:] > 0.0].all()))
+
+
+def stops(strategy: str, changes: Sequence[dict[str, Value]], step_size: float | None = None) -> list[Stop]:
+    """The stops with some changed parameters each, at the system's step size or another one [s]."""
+    system = _sampled(step_size)
+    found = []
+    for change in changes:
+        with Simulation(system, strategy, parameters=change, ideal=True, stop_time=STOP_TIME) as simulation:
+            simulation.run()
+            found.append(stop_of(simulation.results))
+    return found
+
+
+def _sampled(step_size: float | None) -> System:
+    system = load_system("braking")
+    if step_size is None:
+        return system
+    experiment = system.file.experiment.model_copy(update={"step_size": step_size})
+    return dataclasses.replace(system, file=system.file.model_copy(update={"experiment": experiment}))
+
+
+def propositions(road: Road) -> Propositions:
+    """Both propositions on one road, from the same random starts."""
+    p, starts = dataclasses.replace(NOMINAL, road=road), analysis.random_starts(STARTS)
+    gains = [critical(factor) for factor in FACTORS]
+    return Propositions(
+        tuple(analysis.spread(analysis.end_points(p, k, starts)) for k in gains),
+        tuple(len(analysis.equilibria(p, k)) for k in gains),
+        int(analysis.locks(p, locking(p), starts).sum()),
+    )
+
+
+def critical(factor: float) -> analysis.Gains:
+    """k-bar over all roads, times a factor."""
+    k = analysis.k_bar(NOMINAL)
+    return analysis.Gains(factor * k.front, factor * k.rear)
+
+
+def locking(p: analysis.Parameters) -> analysis.Gains:
+    """The gains of Proposition 3.2: k lambda* = MARGIN max Psi on the road of p."""
+    psi = analysis.highest_psi(p)
+    factor = MARGIN / analysis.TARGET_SLIP
+    return analysis.Gains(factor * psi.front, factor * psi.rear)
+
+
+def late(extra: float) -> dict[str, Value]:
+    """Brakes later than the published 10 ms by `extra` [s]."""
+    return {f"{brake}.delay": 0.01 + extra for brake in ("front_brake", "rear_brake")}
+
+
+def high(factor: float) -> dict[str, Value]:
+    """A center of mass `factor` times as high."""
+    return {"vehicle.center_height": factor * NOMINAL.center_height}
+
+
+def heavy(factor: float) -> dict[str, Value]:
+    """Wheels of `factor` times the inertia; the controller, which compensates it in (d), knows."""
+    return {f"{unit}.wheel_inertia": factor * NOMINAL.wheel_inertia for unit in ("vehicle", "controller")}
