@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -19,6 +19,12 @@ class FileModel(BaseModel):
     """Base of what stands in a file: an unknown key is an error, and nothing changes after reading."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+
+class FiniteModel(FileModel):
+    """The same for tables in which infinity and NaN, which TOML can write, have no meaning."""
+
+    model_config = ConfigDict(allow_inf_nan=False)
 
 
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -48,7 +54,7 @@ def validate(data: Any, model: type[_Model], place: str) -> _Model:
 
 
 def _explain(problem: Any, keys: list[str]) -> str:
-    path = ".".join(str(part) for part in problem["loc"]) or "the file"
+    path = _dotted(problem["loc"]) or "the file"
     if problem["type"] == "extra_forbidden":
         return f"{path}: unknown key{nearest(str(problem['loc'][-1]), keys)}"
     if problem["type"] == "missing":
@@ -56,6 +62,11 @@ def _explain(problem: Any, keys: list[str]) -> str:
     message = problem["msg"].removeprefix("Value error, ")
     shown = repr(problem["input"])
     return f"{path}: {message}, not {shown if len(shown) <= 80 else shown[:77] + '...'}"
+
+
+def _dotted(path: Iterable[str | int]) -> str:
+    """Where in a file: keys with dots, and the number of an entry, counted from 1, as in 'connect 2.via'."""
+    return "".join(f" {part + 1}" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
 
 
 def _keys(model: type[BaseModel]) -> Iterator[str]:

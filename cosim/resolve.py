@@ -19,6 +19,9 @@ from .stimuli import stimulus
 from .system import Algorithm, Experiment, System, UnitEntry, Value
 from .units import Affine, conversion, defined
 
+_MOST_VALUES = 2**31
+"""What a run records stays in memory: 16 GiB."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Options:
@@ -71,7 +74,7 @@ def resolve(
         scenario=scenario.name,
         experiment=experiment,
         algorithm=algorithm,
-        steps=_steps(experiment, place),
+        steps=_steps(experiment, len(columns), place),
         ideal=options.ideal,
         units=tuple(
             UnitPlan(
@@ -124,13 +127,21 @@ def _experiment(system: System, scenario: Scenario, options: Options) -> tuple[E
     return experiment, algorithm
 
 
-def _steps(experiment: Experiment, place: str) -> int:
+def _steps(experiment: Experiment, columns: int, place: str) -> int:
+    """How many steps the run has, each recorded in so many columns."""
     duration = experiment.stop_time - experiment.start_time
     if not (math.isfinite(duration) and duration > 0.0):
         raise ConfigError(
             f"{place}: stop_time {experiment.stop_time} s is not after start_time {experiment.start_time} s"
         )
-    return _multiple(duration, experiment.step_size, f"{place}: stop_time - start_time")
+    steps = _multiple(duration, experiment.step_size, f"{place}: stop_time - start_time")
+    if steps * (columns + 1) > _MOST_VALUES:
+        raise ConfigError(
+            f"{place}: {steps:.3g} steps of {experiment.step_size:g} s with {columns} recorded variables are "
+            f"more than the {_MOST_VALUES:.3g} values that a run keeps; stop earlier, take longer steps or "
+            "`record` less"
+        )
+    return steps
 
 
 def _every(period: float | None, step_size: float, place: str) -> int:

@@ -9,7 +9,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from .figures import FigureSpec
-from .files import FileModel, find, names_in, read_toml
+from .files import FileModel, FiniteModel, find, names_in, read_toml
 from .identification_spec import IdentificationSpec
 from .metrics import MetricSpec
 from .system import Algorithm, System, Value, VariableName
@@ -17,7 +17,7 @@ from .system import Algorithm, System, Value, VariableName
 Interpolation = Literal["linear", "hold"]
 
 
-class Sine(FileModel):
+class Sine(FiniteModel):
     """mean + amplitude sin(2 pi (t - delay)/period + phase); mean before `delay`. Time in s, phase in rad."""
 
     amplitude: float
@@ -27,7 +27,7 @@ class Sine(FileModel):
     delay: float = 0.0
 
 
-class Ramp(FileModel):
+class Ramp(FiniteModel):
     """`start` until `delay`, then `slope` per second until `end` is reached (no end: for ever)."""
 
     slope: float
@@ -36,7 +36,7 @@ class Ramp(FileModel):
     delay: float = 0.0
 
 
-class StimulusEntry(FileModel):
+class StimulusEntry(FiniteModel):
     """A signal for a free input: exactly one of table, csv, sine, ramp or constant.
 
     Values are in `unit` (default: the input's own). Before its first point a table holds its first value,
@@ -67,7 +67,7 @@ class StimulusEntry(FileModel):
         return self
 
 
-class EventEntry(FileModel):
+class EventEntry(FiniteModel):
     """At `time` [s]: `override` what an input receives, add a `bias` to it, or `reset` both.
 
     It takes effect at the first communication point at or after `time`. `value` is in the input's unit.
@@ -85,7 +85,7 @@ class EventEntry(FileModel):
         return self
 
 
-class ScenarioExperiment(FileModel):
+class ScenarioExperiment(FiniteModel):
     """What a scenario may change of the system's experiment."""
 
     stop_time: float | None = None

@@ -50,7 +50,7 @@ def _sine(sine: Sine) -> Signal:
 def _ramp(ramp: Ramp, place: str) -> Signal:
     low, high = -math.inf, math.inf
     if ramp.end is not None:
-        if (ramp.end - ramp.start) * ramp.slope < 0.0:
+        if ramp.end != ramp.start and not (ramp.end - ramp.start) * ramp.slope > 0.0:
             raise ConfigError(
                 f"{place}: a ramp from {ramp.start} with slope {ramp.slope} per s never reaches {ramp.end}"
             )
@@ -105,6 +105,8 @@ def read_columns(path: Path, column: str | None) -> tuple[NDArray[np.float64], N
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ConfigError(f"{path}: cannot be read: {error}") from error
     header = [name.strip() for name in rows[0]] if rows else []
+    if len(header) == 1 and ";" in header[0]:
+        raise ConfigError(f"{path}: line 1: columns are separated by ',', not by ';': {header[0]!r}")
     if len(header) < 2:
         raise ConfigError(f"{path}: line 1: a header of two or more column names is needed, not {header}")
     if column is not None and column not in header[1:]:
@@ -135,6 +137,6 @@ def _number(row: list[str], index: int, header: list[str], path: Path, line: int
         value = float(text)
     except ValueError as error:
         raise ConfigError(f"{place}: '{text}' is not a number") from error
-    if not math.isfinite(value):
+    if not math.isfinite(value) or "_" in text:
         raise ConfigError(f"{place}: '{text}' is not a finite number")
     return value

@@ -7,11 +7,11 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, PlainValidator
+from pydantic import AfterValidator, Field, PlainValidator, model_validator
 
 from .channel import BusSettings
 from .figures import FigureSpec
-from .files import DATA, FileModel, find, names_in, read_toml
+from .files import DATA, FileModel, FiniteModel, find, names_in, read_toml
 from .metrics import MetricSpec
 
 Value = bool | int | float | str
@@ -50,12 +50,12 @@ VariableName = Annotated[str, AfterValidator(_variable)]
 SignalName = Annotated[str, AfterValidator(_signal)]
 
 
-class Experiment(FileModel):
+class Experiment(FiniteModel):
     """The communication points and the order of the units. Times in s."""
 
     start_time: float = 0.0
-    stop_time: float = Field(default=10.0, allow_inf_nan=False)
-    step_size: float = Field(default=0.01, gt=0.0, allow_inf_nan=False)
+    stop_time: float = 10.0
+    step_size: float = Field(default=0.01, gt=0.0)
     algorithm: Algorithm = "gauss_seidel"
     algebraic_loops: Literal["refuse", "iterate"] = "refuse"
     loop_tolerance: float = Field(default=1e-9, gt=0.0)
@@ -71,7 +71,7 @@ class UnitEntry(FileModel):
     fmu: str
     parameters: dict[str, Value] = {}
     start: dict[str, Value] = {}
-    period: float | None = Field(default=None, gt=0.0)
+    period: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
     substeps: int = Field(default=1, ge=1)
 
 
@@ -96,7 +96,7 @@ class BusEntry(FileModel):
         return BusSettings(rounding=self.rounding, overflow=self.overflow)
 
 
-class Connection(FileModel):
+class Connection(FiniteModel):
     """One output to one or more inputs, over a bus signal or directly.
 
     `initial` is what the receivers see before the first message, in their own unit of measure.
@@ -106,6 +106,12 @@ class Connection(FileModel):
     to: list[VariableName] = []
     via: SignalName | None = None
     initial: float | None = None
+
+    @model_validator(mode="after")
+    def _initial_over_a_bus(self) -> Connection:
+        if self.initial is not None and self.via is None:
+            raise ValueError("'initial' is what is there before the first message: it needs a 'via'")
+        return self
 
 
 class BudgetEntry(FileModel):

@@ -40,10 +40,12 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
 def fmu_file(name: str, beside: Path | None = None) -> Path:
     """The file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 
-    A relative path is looked up beside the system file `beside`, then from the working folder.
+    A relative path is looked up beside the system file `beside` that names it, then from the working folder.
     Raises ConfigError with the nearest name where there is none.
     """
     from ..fmus import build
+
+    place = "" if beside is None else f"{beside}: "
 
     if name in build.names():
         return build.built(name)
@@ -51,8 +53,8 @@ def fmu_file(name: str, beside: Path | None = None) -> Path:
         if path.is_file():
             return path
     if name.endswith(".fmu") or "/" in name or "\\" in name:
-        raise ConfigError(f"{name}: there is no such FMU file")
+        raise ConfigError(f"{place}{name}: there is no such FMU file")
     raise ConfigError(
-        f"there is no built-in FMU '{name}'{nearest(name, build.names())}; "
+        f"{place}there is no built-in FMU '{name}'{nearest(name, build.names())}; "
         f"built in: {', '.join(build.names())}"
     )

@@ -45,8 +45,8 @@ def prepared_for_results(folder: Path) -> Path:
     taken = [name for name in names if (folder / name).exists()]
     if taken and not _is_of_a_run(folder / MANIFEST_NAME):
         raise ConfigError(
-            f"output folder {folder}: {', '.join(taken)} would be replaced, but no {MANIFEST_NAME} says that a "
-            "run wrote it; --output names another folder"
+            f"output folder {folder}: {', '.join(taken)} would be replaced, but no {MANIFEST_NAME} says that "
+            "a run wrote it; --output names another folder"
         )
     return prepared(folder)
 

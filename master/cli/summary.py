@@ -97,7 +97,5 @@ def _final_values(outcome: Outcome) -> list[tuple[str, str]]:
     for v in outputs[:_FINAL_VALUES]:
         value = results[v.name][-1].item()
         text = dict(v.items).get(value, str(value)) if v.items else number(value)
-        rows.append(
-            (v.name, f"{text} {v.unit}".rstrip(" 1") if v.unit == "1" else f"{text} {v.unit}".rstrip())
-        )
+        rows.append((v.name, text if v.unit in ("", "1") else f"{text} {v.unit}"))
     return rows

@@ -294,7 +294,7 @@ def test_only_an_enumeration_shades() -> None:
     ("keys", "message"),
     [
         ({"panels": []}, "panels: List should have at least 1 item"),
-        ({"panels": [{"signals": []}]}, "panels.0.signals: List should have at least 1 item"),
+        ({"panels": [{"signals": []}]}, "panels 1.signals: List should have at least 1 item"),
         ({"panels": [{"signals": ["x"], "limits": [2, 1]}]}, "limits: the first must be below the second"),
         (
             {"panels": [{"signals": [{"name": "x", "sytle": "dashed"}]}]},

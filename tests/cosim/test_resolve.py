@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import re
+
 import pytest
 
 from evcosim.cosim.errors import ConfigError
@@ -219,6 +222,36 @@ def test_a_wrong_system_file_names_file_key_and_value(tmp_path, text, said):
     with pytest.raises(ConfigError, match=said) as caught:
         read_toml(path, SystemFile)
     assert "mine.toml" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ({"stimulus": [{"to": "a.b", "constant": 1.0}, {"to": "a.b", "sine": {"amplitude": math.nan, "period": 1}}]},
+         "stimulus 2.sine.amplitude: Input should be a finite number, not nan"),
+        ({"stimulus": [{"to": "a.b", "ramp": {"slope": math.inf}}]}, "stimulus 1.ramp.slope: Input should be a finite"),
+        ({"event": [{"time": 1.0, "action": "bias", "variable": "a.b", "value": math.inf}]},
+         "event 1.value: Input should be a finite number, not inf"),
+        ({"experiment": {"step_size": math.inf}}, "experiment.step_size: Input should be a finite number"),
+    ],
+)  # fmt: skip
+def test_numbers_of_a_scenario_are_finite(data, said):
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        validate(data, ScenarioFile, "s.toml")
+
+
+def test_a_direct_connection_has_no_value_before_the_first_message():
+    unit = {"fmu": "F"}
+    data = {"name": "a", "units": {"u": unit, "w": unit}}
+    connection = {"from": "u.y", "to": ["w.x"], "initial": 1.0}
+    with pytest.raises(ConfigError, match="connect 1: 'initial' is what is there before the first message"):
+        validate(data | {"connect": [connection]}, SystemFile, "s.toml")
+
+
+@pytest.mark.parametrize("stop_time", [1e8, 1e300])
+def test_a_run_that_no_memory_holds_is_refused(stop_time):
+    with pytest.raises(ConfigError, match=r"steps of 0\.01 s with .* recorded variables are more than"):
+        plan([], options={"stop_time": stop_time})
 
 
 @pytest.mark.parametrize("mark", ["", "\ufeff"])

@@ -64,6 +64,8 @@ def test_linear_is_numpys_where_times_differ(points):
         ("t,v\n0,1\n1\n", r"line 3 has 1 values, the header has 2"),
         ("t,v\n1,1\n0,2\n", r"time goes back from 1.0 s to 0.0 s in row 2"),
         ("t,v\n", r"no row below the header"),
+        ("t;v\n0;1\n", r"line 1: columns are separated by .,., not by .;.: .t;v."),
+        ("t,v\n0,1_0\n", r"line 2, column .v.: .1_0. is not a finite number"),
         ("", r"a header of two or more"),
     ],
 )

@@ -226,6 +226,13 @@ def test_final_values_where_there_are_no_metrics(evcosim, system):
     assert "cart.way  100 m" in answer.out
 
 
+def test_final_value_of_a_bare_number(evcosim, tmp_path):
+    path = tmp_path / "pack.toml"
+    path.write_text('name = "pack"\n[units.pack]\nfmu = "Battery"\n[experiment]\nstop_time = 0.1\n')
+    answer = evcosim("run", path, "--no-plot")
+    assert "pack.state_of_charge  1\n" in answer.out
+
+
 def narrow_bus(tmp_path):
     """A bus over which 20 m are the most that can be sent, as text of a system file."""
     dbc = tmp_path / "narrow.dbc"
