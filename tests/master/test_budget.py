@@ -16,6 +16,9 @@ from evcosim.cosim.budget import Budget, Series, as_data, as_markdown, series
 from evcosim.cosim.budget_figure import draw_budget
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures import save
+from evcosim.cosim.presentation import metric_specs
+from evcosim.cosim.scenario import load_scenario
+from evcosim.cosim.system import load_system, system_names
 from evcosim.cosim.variation import BusVariation
 from evcosim.fmus.build import build_model
 from evcosim.master import simulate
@@ -320,3 +323,10 @@ def test_ctrl_c_ends_all_processes(process, tmp_path):
             os.killpg(run.pid, 0)
             time.sleep(0.05)
     assert [path for path in tmp_path.glob("evcosim-*") if path.is_dir()] == []
+
+
+@pytest.mark.parametrize("name", system_names())
+def test_every_system_names_a_metric_of_its_default_scenario(name):
+    system = load_system(name)
+    assert system.file.budget is not None
+    assert system.file.budget.metric in {m.name for m in metric_specs(system, load_scenario(system))}

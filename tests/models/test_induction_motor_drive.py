@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
@@ -150,6 +150,7 @@ def test_power_at_rest_is_the_shafts_and_what_the_resistances_take(request: floa
 
 @given(requests, wheel_speeds)
 def test_the_gear_takes_its_share_whichever_way_power_flows(request: float, speed: float) -> None:
+    assume(min(abs(request), abs(speed)) > 1e-6)  # a power of subnormal size has no digits to compare
     x = run(IDEAL, request, speed, 20)
     at_wheel, at_shaft = x.torque * speed, x.motor_torque * speed * 10.0
     assert at_wheel <= at_shaft + 1e-9 * abs(at_shaft)
