@@ -54,9 +54,14 @@ class _Turn:
         self.step_size = run.plan.experiment.step_size * plan.every / plan.substeps
         self.substeps = plan.substeps
         outputs = [b for b in plan.blocks if b.kind != "input"]
-        self.continuous = [(b.slot, b.latest, len(b.variables)) for b in outputs if b.kind == "continuous"]
+        self.continuous = [
+            (slice(b.slot, b.slot + n), run.view[b.latest : b.latest + n])
+            for b in outputs
+            if b.kind == "continuous"
+            for n in [len(b.variables)]
+        ]
         self.read = [
-            (run.memory[f : f + len(b.variables)], b)
+            (run.view[f : f + len(b.variables)], b)
             for b in outputs
             if b.type == "Real"
             for f in [b.latest if b.kind == "continuous" else b.slot]
@@ -71,12 +76,12 @@ class _Turn:
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
         for values, block in self.read:
-            # NaN and infinity survive the sum of squares: the fastest way to see one; huge values follow on
-            if not math.isfinite(values.dot(values)) and not np.isfinite(values).all():
-                i = int(np.argmin(np.isfinite(values)))
-                v = block.variables[i]
-                unit = f" {v.unit}" if v.unit else ""
-                raise RunError(f"{self.unit.name}.{v.name} = {values[i]}{unit}: an output must be finite")
+            # NaN and infinity survive the sum: the fastest way to see one; so may a sum of huge values look
+            if not math.isfinite(sum(values)):
+                for v, value in zip(block.variables, values, strict=True):
+                    if not math.isfinite(value):
+                        unit = f" {v.unit}" if v.unit else ""
+                        raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
 
 
 @dataclasses.dataclass
@@ -241,8 +246,8 @@ class Engine:
 
     def _publish(self, turn: _Turn) -> None:
         """The continuous outputs after the step become those valid at the next communication point."""
-        for slot, latest, count in turn.continuous:
-            self.view[slot : slot + count] = self.view[latest : latest + count]
+        for valid, latest in turn.continuous:
+            self.view[valid] = latest
 
     # ---- events and results
 

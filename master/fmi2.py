@@ -51,9 +51,10 @@ class Fmi2Unit:
         except BaseException:
             self.free()
             raise
-        self._set_inputs: tuple[Call, ...] = ()
-        self._get_feedthrough: tuple[Call, ...] = ()
-        self._get_outputs: tuple[Call, ...] = ()
+        # the calls of a step (see `unit.Unit`), which `bind` makes
+        self.set_inputs: Call = _one_after_the_other()
+        self.get_feedthrough: Call = _one_after_the_other()
+        self.get_outputs: Call = _one_after_the_other()
 
     def _instantiate(self, folder: Path) -> None:
         md = self.fmu.description
@@ -123,11 +124,9 @@ class Fmi2Unit:
                 if block.feedthrough:
                     through.append(self._transfer("Get", memory, block, block.latest, block.feedthrough))
                     through.append(_copy(memory, block.latest, block.slot, block.feedthrough))
-        self._set_inputs, self._get_feedthrough, self._get_outputs = (
-            tuple(inputs),
-            tuple(through),
-            tuple(outputs),
-        )
+        self.set_inputs = _one_after_the_other(*inputs)
+        self.get_feedthrough = _one_after_the_other(*through)
+        self.get_outputs = _one_after_the_other(*outputs)
 
     def _transfer(
         self, direction: str, memory: NDArray[np.float64], block: Block, slot: int, count: int | None = None
@@ -195,27 +194,12 @@ class Fmi2Unit:
 
     # ---- the step
 
-    def set_inputs(self) -> None:
-        """See `unit.Unit`."""
-        for call in self._set_inputs:
-            call()
-
-    def get_feedthrough(self) -> None:
-        """See `unit.Unit`."""
-        for call in self._get_feedthrough:
-            call()
-
     def step(self, time: float, step_size: float) -> None:
         """See `unit.Unit`."""
         self._time.value, self._step_size.value = time, step_size
         status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
         if status:
             self._judge("fmi2DoStep", status)
-
-    def get_outputs(self) -> None:
-        """See `unit.Unit`."""
-        for call in self._get_outputs:
-            call()
 
     # ---- after the steps
 
@@ -262,6 +246,17 @@ class Fmi2Unit:
         raise UnitError(
             f"unit '{self.name}': {what} returned {word} ({status})" + (f"\n{said}" if said else "")
         )
+
+
+def _one_after_the_other(*calls: Call) -> Call:
+    if len(calls) == 1:
+        return calls[0]
+
+    def all_of_them() -> None:
+        for call in calls:
+            call()
+
+    return all_of_them
 
 
 def _copy(memory: NDArray[np.float64], source: int, target: int, count: int) -> Call:

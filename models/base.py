@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import functools
 import inspect
 import math
 from collections.abc import Callable
@@ -96,7 +97,22 @@ def time() -> Any:
 @dataclass_transform(frozen_default=True)
 def record(cls: type[_T]) -> type[_T]:
     """Make a frozen record of declared variables. No slots: Parameters may cache what derives from them."""
-    return dataclasses.dataclass(frozen=True)(cls)
+    made = dataclasses.dataclass(frozen=True)(cls)
+    setattr(made, "__init__", _initializer(made))  # noqa: B010 - mypy allows no assignment to a method
+    return made
+
+
+def _initializer(made: type) -> Callable[..., None]:
+    """An `__init__` in half the time: a frozen dataclass writes its fields by a call for each of them."""
+    slow = vars(made)["__init__"]
+    names = [f.name for f in dataclasses.fields(made)]
+    values = ", ".join(f"{name}={name}" for name in names)
+    scope: dict[str, Callable[..., None]] = {}
+    exec(f"def __init__(self, {', '.join(names)}):\n    self.__dict__.update({values})", scope)
+    fast = scope["__init__"]
+    functools.update_wrapper(fast, slow)
+    fast.__defaults__ = slow.__defaults__
+    return fast
 
 
 def variables(record_type: type) -> tuple[Variable, ...]:
