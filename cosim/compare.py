@@ -171,15 +171,13 @@ def _row(
     try:
         convert, remark = _conversion(other.unit, variable.unit)
     except ConfigError as error:
-        nan = math.nan
-        return Row(variable.name, unit, nan, nan, nan, nan, equal=False, remark=str(error))
+        return _without_values(variable.name, unit, str(error))
     x = a.column(variable.name)[grid.rows]
     y = grid.values_of(b, variable if variable.held else other)
     if not convert.identity:
         y = convert.scale * y + convert.offset
     if not len(x):
-        nan = math.nan
-        return Row(variable.name, unit, nan, nan, nan, nan, equal=False, remark="no common time")
+        return _without_values(variable.name, unit, "no common time")
     apart = _differences(x, y)
     worst = int(np.argmax(apart))
     largest, span = float(apart[worst]), _range(x)
