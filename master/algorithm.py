@@ -256,13 +256,11 @@ class Engine:
         self.effect(event.variable, event.action, event.value)
 
     def effect(self, name: str, action: str, value: float | None = None) -> None:
-        """Override or bias what an input receives from now on, or reset it."""
+        """Override or bias what an input receives from now on, or reset it (see `resolve.check_effect`)."""
         slot = self.plan.inputs[name].slot
         effects = self._by_slot[slot].effects
-        if action == "reset":
+        if value is None:
             effects.pop(slot, None)
-        elif value is None or not math.isfinite(value):
-            raise ValueError(f"{action} of {name} needs a finite value, not {value}")
         else:
             effects[slot] = ("override" if action == "override" else "bias", value)
 

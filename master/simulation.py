@@ -29,7 +29,7 @@ from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.files import DATA
 from ..cosim.plan import Plan
 from ..cosim.presentation import check_specs, figure_spec, metric_specs
-from ..cosim.resolve import Options, checked, participating, resolve
+from ..cosim.resolve import Options, check_effect, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
 from ..cosim.system import Algorithm, System, Value, load_system
@@ -205,8 +205,8 @@ class Simulation:
         self._effect(name, "reset", None)
 
     def _effect(self, name: str, action: str, value: float | None) -> None:
-        if name not in self.plan.inputs:
-            raise ConfigError(f"{name} is no input{nearest(name, self.plan.inputs)}; {action} acts on inputs")
+        interfaces = {unit: fmu.interface for unit, fmu in self._fmus.items()}
+        check_effect(name, action, value, interfaces, self.plan.inputs, action)
         self._engine.effect(name, action, value)
 
     def _split(self, name: str) -> tuple[str, str]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.interface import VariableInfo
 from evcosim.master.unit import UnitError
 from support.mocks import MockUnit, column, plan_of, real, started
 
@@ -269,3 +270,58 @@ def test_a_loop_that_does_not_converge_says_so():
     plan = plan_of(units, {"connect": RING, "experiment": {"algebraic_loops": "iterate"}})
     with pytest.raises(UnitError, match="does not converge"):
         started(units, plan)
+
+
+# ---- Integer and Boolean inputs over a bus
+
+
+def state_machine() -> MockUnit:
+    """Shows a state 0, 1, 2, 0, ... and a flag that is set in state 2."""
+
+    def step(values, time, step_size):
+        values["state"] = round(time / step_size) // 10 % 3
+        values["flag"] = values["state"] == 2
+
+    state = VariableInfo("state", "Enumeration", "output", "discrete", items=((0, "a"), (1, "b"), (2, "c")))
+    return MockUnit("machine", [state, VariableInfo("flag", "Boolean", "output", "discrete")], step)
+
+
+def display() -> MockUnit:
+    integer = VariableInfo("state", "Integer", "input", "discrete", start=0)
+    return MockUnit("display", [integer, VariableInfo("flag", "Boolean", "input", "discrete", start=False)])
+
+
+OVER_BUS = {
+    "buses": {"can0": {"dbc": "can/ev.dbc"}},
+    "connect": [
+        {"from": "machine.state", "to": ["display.state"], "via": "can0.VCU_State.VCU_ControllerState"},
+        {"from": "machine.flag", "to": ["display.flag"], "via": "can0.VCU_State.VCU_DriverTakeover"},
+    ],
+}
+
+
+def test_states_and_flags_cross_a_bus_every_100_ms():
+    units = [machine := state_machine(), display()]
+    engine = started(units, plan_of(units, OVER_BUS))
+    engine.advance(60)
+    sent, seen = column(engine, "machine.state"), column(engine, "display.state")
+    assert set(seen) == {0.0, 1.0, 2.0}
+    for k in range(60):
+        assert seen[k] == sent[k - k % 10]  # sampled at 0, 0.1, ... s, and held
+        assert column(engine, "display.flag")[k] == (seen[k] == 2.0)
+    assert len(machine.steps) == 60
+
+
+@pytest.mark.parametrize(
+    ("event", "said"),
+    [
+        ({"action": "override", "variable": "display.state", "value": 1.5}, "needs a whole number, not 1.5"),
+        ({"action": "override", "variable": "display.flag", "value": 2.0}, "overridden by 0 or 1"),
+        ({"action": "bias", "variable": "display.flag", "value": 1.0}, "overridden by 0 or 1, not bias"),
+        ({"action": "override", "variable": "display.stat", "value": 1.0}, r"did you mean 'display.state'\?"),
+    ],
+)
+def test_an_effect_must_fit_its_input(event, said):
+    units = [state_machine(), display()]
+    with pytest.raises(ConfigError, match=said):
+        plan_of(units, OVER_BUS, {"event": [{"time": 0.0} | event]})
