@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .run import Algorithm
+from .options import (
+    AlgorithmOption,
+    FmusOption,
+    ScenarioOption,
+    SettingsOption,
+    StopTimeOption,
+    SystemArgument,
+    WorkersOption,
+)
 
 if TYPE_CHECKING:
     from ...cosim.budget import Budget
@@ -17,31 +25,17 @@ _PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
 
 
 def budget(
-    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")],
-    scenario: Annotated[
-        str | None,
-        typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
-    ] = None,
-    fmus: Annotated[
-        list[str] | None,
-        typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
-    ] = None,
-    algorithm: Annotated[
-        Algorithm | None,
-        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
-    ] = None,
-    stop_time: Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")] = None,
+    system: SystemArgument,
+    scenario: ScenarioOption = None,
+    settings: SettingsOption = None,
+    fmus: FmusOption = None,
+    algorithm: AlgorithmOption = None,
+    stop_time: StopTimeOption = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>-budget."),
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
-    ] = None,
+    workers: WorkersOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
 ) -> None:
     """Find how late, coarse and slow the buses may be.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .run import Algorithm
+from .options import AlgorithmOption, FmusOption, IdealOption, QuietOption
 
 if TYPE_CHECKING:
     from ...cosim.identification import Estimate
@@ -61,16 +61,9 @@ def identify(
         list[str] | None,
         typer.Option("--set", metavar="[UNIT.]PARAMETER=VALUE", help="Set a parameter; can be given again."),
     ] = None,
-    fmus: Annotated[
-        list[str] | None, typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in.")
-    ] = None,
-    ideal: Annotated[
-        bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")
-    ] = False,
-    algorithm: Annotated[
-        Algorithm | None,
-        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
-    ] = None,
+    fmus: FmusOption = None,
+    ideal: IdealOption = False,
+    algorithm: AlgorithmOption = None,
     step_size: Annotated[
         float | None, typer.Option(metavar="T", help="Step of an FMU alone [s]; default: its own.")
     ] = None,
@@ -82,7 +75,7 @@ def identify(
     ] = None,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figures.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
+    quiet: QuietOption = False,
 ) -> int:
     """Identify gain and pole from an input to an output."""
     from ...cosim.errors import ConfigError

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .options import WorkersOption
+
 if TYPE_CHECKING:
     from ..reproduce.page import Page
 
@@ -16,15 +18,13 @@ def reproduce(
     papers: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[PAPER]...", help="By the name of its system, as 'evcosim list' shows; default: all."
+            metavar="PAPER", help="By the name of its system, as 'evcosim list' shows; default: all."
         ),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Where the pages go.")] = Path(
         "results/reproduce"
     ),
-    workers: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
-    ] = None,
+    workers: WorkersOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> int:
     """Reproduce papers: a page of published and obtained numbers, and figures.

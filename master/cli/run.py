@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import dataclasses
-import enum
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from .options import (
+    Algorithm,
+    AlgorithmOption,
+    FmusOption,
+    IdealOption,
+    QuietOption,
+    ScenarioOption,
+    SettingsOption,
+    StopTimeOption,
+    SystemArgument,
+)
 
 if TYPE_CHECKING:
     from ...cosim.results import Results
@@ -20,35 +31,14 @@ _CHUNK_STEPS = 256
 _CHUNK_SECONDS = 0.05  # between two looks at Ctrl-C and the progress bar, however slow a unit is
 
 
-class Algorithm(enum.StrEnum):
-    """The master algorithms."""
-
-    gauss_seidel = "gauss_seidel"
-    jacobi = "jacobi"
-
-
 def run(
-    system: Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")],
-    scenario: Annotated[
-        str | None,
-        typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
-    ] = None,
-    fmus: Annotated[
-        list[str] | None,
-        typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
-    ] = None,
-    ideal: Annotated[
-        bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")
-    ] = False,
-    algorithm: Annotated[
-        Algorithm | None,
-        typer.Option(help="The order of steps; default: the system's own.", show_default=False),
-    ] = None,
-    stop_time: Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")] = None,
+    system: SystemArgument,
+    scenario: ScenarioOption = None,
+    settings: SettingsOption = None,
+    fmus: FmusOption = None,
+    ideal: IdealOption = False,
+    algorithm: AlgorithmOption = None,
+    stop_time: StopTimeOption = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>."),
@@ -58,7 +48,7 @@ def run(
     ] = False,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figure.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what happened as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")] = False,
+    quiet: QuietOption = False,
 ) -> int:
     """Run a system; write results.csv, run.json, a figure."""
     order = Order(

@@ -1,0 +1,39 @@
+"""The options that several verbs share, each declared once."""
+
+from __future__ import annotations
+
+import enum
+from typing import Annotated
+
+import typer
+
+
+class Algorithm(enum.StrEnum):
+    """The master algorithms."""
+
+    gauss_seidel = "gauss_seidel"
+    jacobi = "jacobi"
+
+
+SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")]
+ScenarioOption = Annotated[
+    str | None,
+    typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
+]
+SettingsOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
+]
+FmusOption = Annotated[
+    list[str] | None,
+    typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
+]
+IdealOption = Annotated[bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")]
+AlgorithmOption = Annotated[
+    Algorithm | None, typer.Option(help="The order of steps; default: the system's own.", show_default=False)
+]
+StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")]
+WorkersOption = Annotated[
+    int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
+]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")]
