@@ -54,7 +54,10 @@ def _message(
     if queue is None:
         return
     word = STATUS[status] if 0 <= status < len(STATUS) else str(status)
-    queue.messages.append(f"[{word}] {(text or b'').decode('utf-8', 'replace').strip()}")
+    said = (text or b"").decode("utf-8", "replace").strip()
+    if said.startswith("Fatal py exception encountered: "):  # pythonfmu's own words above the exception's
+        said = said.partition("\n")[2] or said
+    queue.messages.append(f"[{word}] {said}")
     queue.warnings += status == 1
 
 
