@@ -23,7 +23,7 @@ def message(call: str, error: BaseException) -> str:
     """One line for the importer's log: call, exception and place; safe for printf and UTF-8."""
     try:
         text = str(error)
-    except Exception:
+    except Exception:  # a model's exception may fail to show itself, which must not hide that it was raised
         text = "(its text cannot be shown: str() of it fails)"
     if not isinstance(error, Refused):
         text = f"{type(error).__name__}: {text}{_place(error)}"

@@ -32,7 +32,7 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         complain("interrupted")
         return INTERRUPTED
-    except Exception as error:
+    except Exception as error:  # the last line of defense: a plain message, --debug for the traceback
         if debug:
             import traceback
 
