@@ -11,6 +11,7 @@ so an override or a bias acts on what the unit receives and never on what was se
 from __future__ import annotations
 
 import dataclasses
+import functools
 from typing import Literal
 
 from .channel import BusSettings, SignalRoute
@@ -139,12 +140,10 @@ class Plan:
     memory_size: int
     warnings: tuple[str, ...]
 
-    def slot(self, name: str) -> int | None:
-        """The slot that shows a recorded variable at the current communication point."""
-        for column, slot in zip(self.columns, self.column_slots, strict=True):
-            if column.name == name:
-                return slot
-        return None
+    @functools.cached_property
+    def slots(self) -> dict[str, int]:
+        """The slots that show the recorded variables at the current communication point, by name."""
+        return {c.name: slot for c, slot in zip(self.columns, self.column_slots, strict=True)}
 
 
 @dataclasses.dataclass(frozen=True)

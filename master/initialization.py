@@ -21,11 +21,11 @@ _ITERATIONS = 200
 _Node = tuple[str, str]
 
 
-def ordered_links(plan: Plan) -> tuple[Link, ...]:
-    """The direct connections in an order in which each source is final when it is passed on.
+def ordered_links(plan: Plan) -> tuple[tuple[Link, ...], bool]:
+    """The direct connections in an order in which each source is final when it is passed on, and False.
 
-    Raises ConfigError naming the loop where there is one and the experiment refuses loops; otherwise the
-    links of a system with loops stay in written order, to be iterated.
+    Where there is a loop: in written order, to be iterated, and True; ConfigError naming the loop if the
+    experiment refuses loops.
     """
     interfaces = {unit.name: unit.interface for unit in plan.units}
     loop, order = _order(plan.links, interfaces)
@@ -36,7 +36,7 @@ def ordered_links(plan: Plan) -> tuple[Link, ...]:
             f'feedthrough, or set algebraic_loops = "iterate" in [experiment]'
         )
     rank = {node: i for i, node in enumerate(order)}
-    return tuple(sorted(plan.links, key=lambda link: rank.get(link.source, 0)))
+    return tuple(sorted(plan.links, key=lambda link: rank.get(link.source, 0))), bool(loop)
 
 
 def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tuple[list[_Node], list[_Node]]:
@@ -62,16 +62,15 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
 
     Raises UnitError when a unit refuses, or a loop does not converge.
     """
-    links = ordered_links(plan)
+    links, looped = ordered_links(plan)
     experiment = plan.experiment
-    slots = {slot: name for name, slot in ((n, i.slot) for n, i in plan.inputs.items())}
     for unit_plan in plan.units:
         unit = units[unit_plan.name]
         for name, value in unit_plan.parameters.items():
             unit.set(name, value)
         unit.enter_initialization(experiment.start_time, experiment.stop_time)
-    _set_free_inputs(units, plan, slots)
-    if _loops(links, plan):
+    _set_free_inputs(units, plan)
+    if looped:
         _iterate(units, links, experiment.loop_tolerance)
     else:
         for link in links:
@@ -80,17 +79,12 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
         unit.exit_initialization()
 
 
-def _loops(links: tuple[Link, ...], plan: Plan) -> bool:
-    return bool(_order(links, {unit.name: unit.interface for unit in plan.units})[0])
-
-
-def _set_free_inputs(units: Mapping[str, Unit], plan: Plan, slots: Mapping[int, str]) -> None:
-    """Inputs that no output reaches directly start at their start value, or at that of their stimulus."""
+def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
+    """Inputs that no output reaches directly are initialized with their start value, driven or not."""
     linked = {".".join(link.sink) for link in plan.links}
-    for slot, value in plan.initial.items():
-        name = slots.get(slot)
-        if name is not None and name not in linked:
-            _set_number(units, name, value)
+    for name, receiver in plan.inputs.items():
+        if name not in linked:
+            _set_number(units, name, plan.initial[receiver.slot])
 
 
 def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:

@@ -115,7 +115,6 @@ class Simulation:
         self.loop_seconds = 0.0
         self._units: dict[str, Unit] = {}
         self._last_warnings: dict[str, int] = {}
-        self._slots = {c.name: s for c, s in zip(self.plan.columns, self.plan.column_slots, strict=True)}
         try:
             for unit, fmu in self._fmus.items():
                 self._units[unit] = Fmi2Unit(fmu, unit)
@@ -167,7 +166,7 @@ class Simulation:
 
     def __getitem__(self, name: str) -> float:
         """The value of any variable "unit.variable" at the current communication point, in its own unit."""
-        slot = self._slots.get(name)
+        slot = self.plan.slots.get(name)
         if slot is not None:
             return float(self._engine.memory[slot])
         unit, variable = self._split(name)

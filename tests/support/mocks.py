@@ -137,6 +137,4 @@ def started(units: list[MockUnit], plan: Plan) -> Engine:
 
 def column(engine: Engine, name: str) -> NDArray[np.float64]:
     """The recorded values of a variable, one for each step done and one for now."""
-    slot = engine.plan.slot(name)
-    assert slot is not None
-    return engine.rows[:, slot]
+    return engine.rows[:, engine.plan.slots[name]]
