@@ -169,21 +169,33 @@ def write(figure: Figure, path: Path) -> None:
 
 @contextlib.contextmanager
 def canvas(
-    rows: int = 1, columns: int = 1, *, height: float = 3.0, title: str = "", share_x: bool = False
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    height: float = 3.0,
+    title: str = "",
+    share_x: bool = False,
+    ratios: Sequence[float] | None = None,
 ) -> Iterator[tuple[Figure, NDArray[Any]]]:
     """An empty figure in the style of all others, for charts that are not over time.
 
     Gives the figure and its axes, shape (rows, columns); draw inside the `with` block. `height` is that of
-    a row in inches, the width is always the same.
+    a row in inches, or with `ratios` of the rows their mean; the width is always the same.
     """
+    with style():
+        yield _grid(rows, columns, height * rows + (0.5 if title else 0.2), title, share_x, ratios)
+
+
+def _grid(
+    rows: int, columns: int, tall: float, title: str, share_x: bool, ratios: Sequence[float] | None
+) -> tuple[Figure, NDArray[Any]]:
     from matplotlib.figure import Figure
 
-    with style():
-        figure = Figure(figsize=(_WIDTH, height * rows + (0.5 if title else 0.2)), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False, sharex=share_x)
-        if title:
-            figure.suptitle(title, fontweight="bold", fontsize=12.0)
-        yield figure, axes
+    figure = Figure(figsize=(_WIDTH, tall), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=share_x, height_ratios=ratios)
+    if title:
+        figure.suptitle(title, fontsize=12, fontweight="bold")
+    return figure, axes
 
 
 def look(i: int) -> dict[str, Any]:
@@ -201,16 +213,8 @@ def style() -> Iterator[None]:
 
 
 def _panels(heights: list[float], title: str) -> tuple[Figure, list[Axes]]:
-    from matplotlib.figure import Figure
-
-    tall = 1.9 * sum(heights) + 1.1
-    figure = Figure(figsize=(_WIDTH, tall), layout="constrained")
-    grid: NDArray[Any] = figure.subplots(
-        len(heights), sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
-    )
-    if title:
-        figure.suptitle(title, fontsize=12, fontweight="bold")
-    return figure, list(grid[:, 0])
+    figure, axes = _grid(len(heights), 1, 1.9 * sum(heights) + 1.1, title, True, heights)
+    return figure, list(axes[:, 0])
 
 
 def _height(panel: PanelSpec) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .figures import COLORS, pretty, style
+from .figures import COLORS, canvas, pretty
 from .frequency_response import FrequencyResponse
 from .identification import Estimate, FirstOrder, Fit, Prediction
 from .results import Array
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDTH = 10.0  # inches, as all figures
 _BAND = "#E8E8E8"
 _TRUSTED = 0.5  # coherence below which a point is drawn hollow
 
@@ -34,13 +33,10 @@ def bode(
 
     `published` is a gain and a pole [Hz] to be drawn beside the fitted model.
     """
-    from matplotlib.figure import Figure
-
     data = response.within(swept)
-    with style():
-        figure = Figure(figsize=(_WIDTH, 7.6), layout="constrained")
-        magnitude, phase, coherence = figure.subplots(3, sharex=True, height_ratios=[1.3, 1.0, 0.7])
-        figure.suptitle(title, fontsize=12, fontweight="bold")
+    ratios = (1.3, 1.0, 0.7)
+    with canvas(3, height=7.1 / 3, title=title, share_x=True, ratios=ratios) as (figure, grid):
+        magnitude, phase, coherence = grid[:, 0]
         for axes in (magnitude, phase, coherence):
             axes.axvspan(*fit.band, color=_BAND, zorder=0.1, label="band of the fit")
         degrees = np.degrees(np.angle(np.sign(fit.gain.value) * data.response))
@@ -104,13 +100,10 @@ def _plain_ticks(axes: Axes) -> None:
 
 def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
     """Measured and predicted output, and ESR(t) over the accelerations."""
-    from matplotlib.figure import Figure
-
     shown = np.isfinite(found.esr).any()
-    with style():
-        figure = Figure(figsize=(_WIDTH, 5.2 if shown else 3.6), layout="constrained")
-        figure.suptitle(title, fontsize=12, fontweight="bold")
-        panels = list(figure.subplots(2 if shown else 1, sharex=True, squeeze=False)[:, 0])
+    rows, height = (2, 2.35) if shown else (1, 3.1)
+    with canvas(rows, height=height, title=title, share_x=True) as (figure, grid):
+        panels = list(grid[:, 0])
         top = panels[0]
         top.plot(found.time, found.measured, color=COLORS[0], linewidth=2.4, label="measured")
         dashes = (0, (5, 1.5))
@@ -145,12 +138,8 @@ def over_working_points(
 
     `published` is a working point with its gain and its pole [Hz].
     """
-    from matplotlib.figure import Figure
-
-    with style():
-        figure = Figure(figsize=(_WIDTH, 5.2), layout="constrained")
-        figure.suptitle(title, fontsize=12, fontweight="bold")
-        gain, pole = figure.subplots(2, sharex=True)
+    with canvas(2, height=2.35, title=title, share_x=True) as (figure, grid):
+        gain, pole = grid[:, 0]
         _intervals(gain, points, [fit.gain for fit in fits])
         _intervals(pole, points, [fit.pole for fit in fits])
         if published is not None:
