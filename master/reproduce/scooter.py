@@ -9,7 +9,10 @@ import numpy as np
 
 from ...cosim import figures
 from ..parallel import Task
-from ..scooter_identification import (
+from ..simulation import simulate
+from . import scooter_numbers as numbers
+from .page import Page, Paper, Picture, Row, at_least, at_most, holds, near
+from .scooter_identification import (
     PUBLISHED_ESR,
     PUBLISHED_GAIN,
     PUBLISHED_POLE,
@@ -18,9 +21,6 @@ from ..scooter_identification import (
     at_speed,
     at_working_point,
 )
-from ..simulation import simulate
-from . import scooter_numbers as numbers
-from .page import Page, Paper, Picture, Row, at_least, at_most, holds, near
 
 _MAP = "the drive's force map is chosen so that gain and pole at 30 km/h come out"
 _CONTROLLER = "observer, crossover and tracking times, and the rider, are chosen"

@@ -28,6 +28,11 @@ def linearized(speed: float) -> tuple[float, float]:
     return KMH * maximum_force(p, v) / 100.0 / damping, damping / p.mass / (2.0 * math.pi)
 
 
+def steady_throttle(speed: float) -> float:
+    """The throttle [%] that keeps a speed [km/h] on a level road: v = 17.03 + 0.46 g, by the force map."""
+    return (speed - 17.03) / 0.46
+
+
 def switches(results: Results) -> tuple[NDArray[np.float64], list[int]]:
     """When the supervisor changes its state [s], and the states from the start on."""
     state = results["ecu.state"]
@@ -86,7 +91,7 @@ def estimate_error(speed: float, **options: Any) -> float:
         initial_speed = {speed / KMH}
         [[stimulus]]
         to = "ecu.throttle_request"
-        constant = {(speed - 17.03) / 0.46}
+        constant = {steady_throttle(speed)}
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "constant.toml"

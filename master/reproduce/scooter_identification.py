@@ -13,8 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..cosim.identification_spec import IdentificationSpec
-from .identify import Identification, Progress, identify
+from ...cosim.identification_spec import IdentificationSpec
+from ..identify import Identification, Progress, identify
+from .scooter_numbers import steady_throttle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +27,6 @@ PUBLISHED_BAND = (0.05, 0.3)  # Hz
 WORKING_POINT = 30.0  # km/h
 SPEEDS = (25.0, 30.0, 35.0, 40.0, 45.0, 49.0)  # km/h
 
-_OFFSET = 17.03  # km/h; the steady speed is _OFFSET + PUBLISHED_GAIN * throttle
 _SMALL = 1.0  # %; small enough for the speed limit at 49.5 km/h and the boost's below 24 km/h
 
 
@@ -50,7 +50,7 @@ class ScooterIdentification:
 
     def figures(self) -> dict[str, Figure]:
         """Figs. 2, 3 and 4 as `fig2`, `fig3`, `fig4`."""
-        from ..cosim import identification_figures as figures
+        from ...cosim import identification_figures as figures
 
         found = self.measured
         swept = (found.sweep.start, found.sweep.stop)
@@ -82,7 +82,7 @@ class ScooterIdentification:
 
     def save(self, folder: Path) -> list[Path]:
         """Write the figures as fig2.png, fig2.svg and so on, and return their paths. Raises ConfigError."""
-        from ..cosim.figures import save
+        from ...cosim.figures import save
 
         return [path for stem, figure in self.figures().items() for path in save(figure, folder, stem)]
 
@@ -106,7 +106,7 @@ def at_speed(speed: float, progress: Progress | None = None) -> Identification:
         output="speed",
         unit="km/h",
         amplitude=_SMALL,
-        at_input=[(speed - _OFFSET) / PUBLISHED_GAIN],
+        at_input=[steady_throttle(speed)],
         sweep=(0.008, 0.6),
         duration=600.0,
     )
