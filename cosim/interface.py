@@ -19,6 +19,8 @@ class VariableInfo:
     `depends` are the names of the inputs (for `depends_initially` also parameters) that reach an output
     at the same instant; None: not declared, so every input may.
     `items` are the (value, name) pairs of an enumeration.
+    `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
+    `inverted`: the system's value is the FMU's with the other sign.
     """
 
     name: str
@@ -33,6 +35,13 @@ class VariableInfo:
     items: tuple[tuple[int, str], ...] = ()
     depends: tuple[str, ...] | None = ()
     depends_initially: tuple[str, ...] | None = ()
+    declared: str = ""
+    inverted: bool = False
+
+    @property
+    def declared_name(self) -> str:
+        """The name that the FMU itself declares."""
+        return self.declared or self.name
 
 
 @dataclasses.dataclass(frozen=True)

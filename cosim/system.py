@@ -16,6 +16,7 @@ from .metrics import MetricSpec
 
 Value = bool | int | float | str
 Algorithm = Literal["gauss_seidel", "jacobi"]
+Isolation = Literal["process", "none"]
 
 
 def _identifier(name: str) -> str:
@@ -65,7 +66,8 @@ class UnitEntry(FileModel):
     """One unit: its FMU (a built-in name or a path), parameters and starts, and how it is stepped.
 
     `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
-    FMU steps a period is divided.
+    FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
+    that evcosim built itself is in the master's). `strict` refuses an FMU with defects that we could bear.
     """
 
     fmu: str
@@ -73,6 +75,8 @@ class UnitEntry(FileModel):
     start: dict[str, Value] = {}
     period: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
     substeps: int = Field(default=1, ge=1)
+    isolation: Isolation | None = None
+    strict: bool = False
 
 
 class BusEntry(FileModel):

@@ -50,7 +50,8 @@ class _Turn:
         self.every = plan.every
         self.take = compile_routes(plan.routes)
         self.set_inputs, self.get_feedthrough = unit.set_inputs, unit.get_feedthrough
-        self.get_outputs, self.do_step = unit.get_outputs, unit.step
+        self.start_step, self.finish_step = unit.start_step, unit.finish_step
+        self.get_outputs = unit.get_outputs
         self.step_size = run.plan.experiment.step_size * plan.every / plan.substeps
         self.substeps = plan.substeps
         outputs = [b for b in plan.blocks if b.kind != "input"]
@@ -214,7 +215,8 @@ class Engine:
         for turn, messages in zip(self.turns, self._after, strict=True):
             if k % turn.every == 0:
                 turn.take(memory)
-                self._do_turn(turn, time)
+                self._begin(turn, time)
+                self._end(turn)
             for sender in messages:
                 sender.send(memory, k)
 
@@ -225,17 +227,24 @@ class Engine:
         due = [turn for turn in self.turns if k % turn.every == 0]
         for turn in due:
             turn.take(memory)
+        for (
+            turn
+        ) in due:  # all begin before any is waited for: units in processes of their own step side by side
+            self._begin(turn, time)
         for turn in due:
-            self._do_turn(turn, time)
+            self._end(turn)
 
-    def _do_turn(self, turn: _Turn, time: float) -> None:
+    def _begin(self, turn: _Turn, time: float) -> None:
         if turn.effects:
             turn.apply_effects(self.view)
         turn.set_inputs()
         if turn.has_feedthrough:
             turn.get_feedthrough()
-        for i in range(turn.substeps):
-            turn.do_step(time + i * turn.step_size, turn.step_size)
+        turn.start_step(time, turn.step_size, turn.substeps)
+
+    @staticmethod
+    def _end(turn: _Turn) -> None:
+        turn.finish_step()
         turn.get_outputs()
         turn.check_finite()
 

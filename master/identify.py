@@ -46,7 +46,7 @@ from ..cosim.system import (
 )
 from ..cosim.units import Affine, conversion, defined
 from .builtin import builtin_names, fmu_file
-from .fmu import read_fmu
+from .fmi.fmu import read_fmu
 from .simulation import Simulation
 
 SCENARIO = "identification"

@@ -36,9 +36,9 @@ from ..cosim.system import Algorithm, System, Value, load_system
 from ..cosim.variation import BusVariation, varied
 from .algorithm import Engine
 from .builtin import fmu_file
-from .fmi2 import Fmi2Unit
-from .fmu import Fmu, check_runnable, read_fmu
+from .fmi.fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
+from .loading import load_unit
 from .unit import Unit
 
 Progress = Callable[[float, float], None]
@@ -116,8 +116,8 @@ class Simulation:
         self._units: dict[str, Unit] = {}
         self._last_warnings: dict[str, int] = {}
         try:
-            for unit, fmu in self._fmus.items():
-                self._units[unit] = Fmi2Unit(fmu, unit)
+            for unit in self.plan.units:
+                self._units[unit.name] = load_unit(self._fmus[unit.name], unit.name, unit.interface)
             self._engine = Engine(self.plan, self._units, log_raw=log_frames)
             initialize(self._units, self.plan)
             self._engine.start()

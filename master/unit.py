@@ -28,7 +28,7 @@ class Unit(Protocol):
 
     1. `bind` once, then `set` of parameters and starts, then `enter_initialization(start, stop)`
     2. `set` of inputs and `get` of outputs, any number, then `exit_initialization`
-    3. for each of its steps: `set_inputs`, `get_feedthrough`, `step`, `get_outputs`
+    3. for each of its turns: `set_inputs`, `get_feedthrough`, `start_step`, `finish_step`, `get_outputs`
     4. `terminate`, then `free`; after an error `free` alone
 
     Every call raises UnitError when the unit reports anything worse than a warning.
@@ -62,8 +62,14 @@ class Unit(Protocol):
     def get_feedthrough(self) -> None:
         """Read the outputs that depend on inputs at the same instant into their slots, valid and latest."""
 
-    def step(self, time: float, step_size: float) -> None:
-        """Step from `time` to `time + step_size`, both in s."""
+    def start_step(self, time: float, step_size: float, count: int) -> None:
+        """Begin `count` steps of `step_size`, the first from `time` on, both in s.
+
+        A unit in this process does them at once, one in a process of its own while the caller goes on.
+        """
+
+    def finish_step(self) -> None:
+        """Wait until the steps that were begun are done."""
 
     def get_outputs(self) -> None:
         """Read the discrete outputs into their slots, the continuous ones into their latest slots."""

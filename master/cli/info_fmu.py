@@ -46,7 +46,7 @@ def described(path: Path, causalities: Sequence[str], search: str | None) -> dic
 
     Raises ConfigError when it is no FMU, or no variable has such a causality.
     """
-    from ..fmu import read_fmu
+    from ..fmi.fmu import read_fmu
 
     fmu = read_fmu(path)
     md = fmu.description

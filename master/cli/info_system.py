@@ -46,7 +46,7 @@ def _whole_plan(system: System) -> Plan:
     from ...cosim.resolve import Options, resolve
     from ...cosim.scenario import Scenario, ScenarioFile
     from ..builtin import fmu_file
-    from ..fmu import read_fmu
+    from ..fmi.fmu import read_fmu
 
     entries = system.file.units
     interfaces = {

@@ -15,7 +15,7 @@ from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import Results
 from evcosim.fmus import build
 from evcosim.master import Simulation, simulate
-from evcosim.master.fmu import FmuError
+from evcosim.master.fmi.fmu import FmuError
 
 
 def test_simulate_gives_arrays_with_units():

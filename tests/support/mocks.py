@@ -78,10 +78,14 @@ class MockUnit:
             for i in range(block.feedthrough):
                 self.memory[block.slot + i] = self.memory[block.latest + i] = self.values[block.names[i]]
 
-    def step(self, time: float, step_size: float) -> None:
-        self.steps.append((time, step_size))
-        self._step(self.values, time, step_size)
-        self._through(self.values)
+    def start_step(self, time: float, step_size: float, count: int) -> None:
+        for i in range(count):
+            self.steps.append((time + i * step_size, step_size))
+            self._step(self.values, time + i * step_size, step_size)
+            self._through(self.values)
+
+    def finish_step(self) -> None:
+        pass
 
     def get_outputs(self) -> None:
         for kind in ("discrete", "continuous"):

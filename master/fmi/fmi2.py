@@ -16,11 +16,11 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CoSimulation
 from numpy.typing import NDArray
 
-from ..cosim.interface import UnitInterface
-from ..cosim.plan import Block, UnitPlan
+from ...cosim.interface import UnitInterface, VariableInfo
+from ...cosim.plan import Block, UnitPlan
+from ..unit import UnitError, Value, floats
 from .fmu import Fmu, FmuError, check_runnable
 from .log import STATUS, UnitLog
-from .unit import UnitError, Value, floats
 
 _WARNING = 1
 _INVISIBLE, _LOGGING = 0, 1  # fmi2Boolean
@@ -32,16 +32,18 @@ Call = Callable[[], None]
 class Fmi2Unit:
     """An instance of an FMU in this process. See `unit.Unit` for the order of the calls.
 
+    `interface` is how the system sees it, where that is not as the FMU declares it.
     Raises FmuError when the FMU cannot be run here or instantiated, UnitError when a call fails.
     """
 
-    def __init__(self, fmu: Fmu, name: str) -> None:
+    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
         check_runnable(fmu)
         self.name = name
         self.fmu = fmu
-        self.interface: UnitInterface = fmu.interface
+        self.interface = interface or fmu.interface
         self.log = UnitLog()
-        self._references = {v.name: int(v.valueReference) for v in fmu.description.modelVariables}
+        references = {v.name: int(v.valueReference) for v in fmu.description.modelVariables}
+        self._references = {v.name: references[v.declared_name] for v in self.interface.variables.values()}
         folder = fmu.extract()
         self._folder: Path | None = folder
         self._slave: Any = None
@@ -132,14 +134,16 @@ class Fmi2Unit:
         self, direction: str, memory: NDArray[np.float64], block: Block, slot: int, count: int | None = None
     ) -> Call:
         """A call without arguments that moves the first `count` values of a block between unit and memory."""
-        names = block.names[:count]
-        n = len(names)
-        references = (ctypes.c_uint * n)(*(self._references[name] for name in names))
+        variables = block.variables[:count]
+        n = len(variables)
+        references = (ctypes.c_uint * n)(*(self._references[v.name] for v in variables))
+        signs = _signs(variables)
         c_type = _C_TYPES[block.type]
         name = f"fmi2{direction}{block.type}"
         function = self._function(name)
         part = memory[slot : slot + n]
-        values = (c_type * n).from_buffer(part.data) if block.type == "Real" else (c_type * n)()
+        in_place = block.type == "Real" and signs is None
+        values = (c_type * n).from_buffer(part.data) if in_place else (c_type * n)()
         component, size = self._component, ctypes.c_size_t(n)
 
         def call() -> None:
@@ -147,20 +151,21 @@ class Fmi2Unit:
             if status:
                 self._judge(name, status)
 
-        if block.type == "Real":
+        if in_place:
             return call
 
-        whole = np.frombuffer(values, dtype=np.intc)
+        own = np.frombuffer(values, dtype=c_type)
+        factors = 1 if signs is None else signs
 
-        def set_whole() -> None:
-            whole[:] = part
+        def set_own() -> None:
+            np.multiply(part, factors, out=own, casting="unsafe")
             call()
 
-        def get_whole() -> None:
+        def get_own() -> None:
             call()
-            part[:] = whole
+            np.multiply(own, factors, out=part)
 
-        return set_whole if direction == "Set" else get_whole
+        return set_own if direction == "Set" else get_own
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """See `unit.Unit`."""
@@ -178,6 +183,8 @@ class Fmi2Unit:
         """See `unit.Unit`."""
         kind, reference = self._typed(name)
         value = self._checked(f"fmi2Get{kind} of {name}", getattr(self._slave, f"get{kind}"), [reference])[0]
+        if self.interface.variables[name].inverted:
+            value = -value
         if kind == "String":
             return str(value.decode("utf-8", "replace"))
         if kind == "Boolean":
@@ -187,6 +194,8 @@ class Fmi2Unit:
     def set(self, name: str, value: Value) -> None:
         """See `unit.Unit`."""
         kind, reference = self._typed(name)
+        if self.interface.variables[name].inverted:
+            value = -value  # type: ignore[operator] # a String is never inverted
         self._checked(f"fmi2Set{kind} of {name}", getattr(self._slave, f"set{kind}"), [reference], [value])
 
     def _typed(self, name: str) -> tuple[str, int]:
@@ -194,12 +203,17 @@ class Fmi2Unit:
 
     # ---- the step
 
-    def step(self, time: float, step_size: float) -> None:
+    def start_step(self, time: float, step_size: float, count: int) -> None:
         """See `unit.Unit`."""
-        self._time.value, self._step_size.value = time, step_size
-        status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
-        if status:
-            self._judge("fmi2DoStep", status)
+        self._step_size.value = step_size
+        for i in range(count):
+            self._time.value = time + i * step_size
+            status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
+            if status:
+                self._judge("fmi2DoStep", status)
+
+    def finish_step(self) -> None:
+        """See `unit.Unit`: nothing is left to do."""
 
     # ---- after the steps
 
@@ -257,6 +271,13 @@ def _one_after_the_other(*calls: Call) -> Call:
             call()
 
     return all_of_them
+
+
+def _signs(variables: tuple[VariableInfo, ...]) -> NDArray[np.float64] | None:
+    """-1 for each inverted variable, 1 for the others; None where none is inverted."""
+    if not any(v.inverted for v in variables):
+        return None
+    return np.array([-1.0 if v.inverted else 1.0 for v in variables])
 
 
 def _copy(memory: NDArray[np.float64], source: int, target: int, count: int) -> Call:

@@ -13,9 +13,9 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from ..cosim.errors import ConfigError
-from ..cosim.interface import UnitInterface, VariableInfo
-from ..cosim.units import BASE_UNITS, UnitOfMeasure
+from ...cosim.errors import ConfigError
+from ...cosim.interface import UnitInterface, VariableInfo
+from ...cosim.units import BASE_UNITS, UnitOfMeasure
 
 
 class FmuError(ConfigError):
