@@ -73,6 +73,7 @@ class ModelSlave:
         self._stale = True  # outputs (and before the start the state) do not belong to the inputs
         self._step = self.model.step
         self._outputs = self.model.outputs
+        self._record_inputs = self.model.Inputs
         self._living.add(self)
 
     # -- time ----------------------------------------------------------------------------------------------
@@ -92,15 +93,16 @@ class ModelSlave:
     def do_step(self, current_time: float, step_size: float) -> bool:
         """fmi2DoStep: True for OK, False for Discard."""
         try:
+            layout = self._layout
             if not self._started:
                 raise Refused("the initialization mode has not been left")
-            if self._layout.time is not None:
+            if layout.timed:
                 self._set_time(current_time)
             u = self._inputs
             if u is None:
-                u = self._inputs = self.model.Inputs(*self._values[self._layout.inputs])
+                u = self._inputs = self._record_inputs(*self._values[layout.inputs])
             state = self._step(self._parameters, self._state, u, step_size)
-            if self._layout.time is not None and self._layout.follows_inputs:
+            if layout.timed and layout.follows_inputs:
                 self._set_time(current_time + step_size)
                 u = None
             self._show(state, u)
@@ -121,7 +123,7 @@ class ModelSlave:
         p = self._derive_parameters()
         if bad := violations(p):
             raise Refused("; ".join(bad))
-        u = self.model.Inputs(*self._values[self._layout.inputs])
+        u = self._record_inputs(*self._values[self._layout.inputs])
         state = self.model.initial(p, u)
         self._parameters = p
         self._show(state, u)
@@ -135,7 +137,7 @@ class ModelSlave:
         layout = self._layout
         if layout.feeds_through:
             if u is None:
-                u = self._inputs = self.model.Inputs(*self._values[layout.inputs])
+                u = self._inputs = self._record_inputs(*self._values[layout.inputs])
             y = self._outputs(self._parameters, state, u)
         else:
             y = self._outputs(self._parameters, state)
@@ -160,28 +162,36 @@ class ModelSlave:
     def get_real(self, references: Sequence[int]) -> list[float]:
         """fmi2GetReal."""
         try:
-            return self._get("Real", references)
+            if self._stale:
+                self._refresh()
+            return self._layout.read_real[tuple(references)](self._values)
         except BaseException as error:
             raise self._failure("fmi2GetReal", error) from None
 
     def get_integer(self, references: Sequence[int]) -> list[int]:
         """fmi2GetInteger, for Integer and Enumeration."""
         try:
-            return self._get("Integer", references)
+            if self._stale:
+                self._refresh()
+            return self._layout.read_integer[tuple(references)](self._values)
         except BaseException as error:
             raise self._failure("fmi2GetInteger", error) from None
 
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
         """fmi2GetBoolean."""
         try:
-            return self._get("Boolean", references)
+            if self._stale:
+                self._refresh()
+            return self._layout.read_boolean[tuple(references)](self._values)
         except BaseException as error:
             raise self._failure("fmi2GetBoolean", error) from None
 
     def get_string(self, references: Sequence[int]) -> list[str]:
         """fmi2GetString: there are no String variables."""
         try:
-            return self._get("String", references)
+            if self._stale:
+                self._refresh()
+            return self._layout.read_string[tuple(references)](self._values)
         except BaseException as error:
             raise self._failure("fmi2GetString", error) from None
 
@@ -215,23 +225,15 @@ class ModelSlave:
         except BaseException as error:
             raise self._failure("fmi2SetString", error) from None
 
-    def _get(self, kind: str, references: Sequence[int]) -> list[Any]:
-        if self._stale:
-            self._refresh()
-        readable = self._layout.readable[kind]
-        if not readable.issuperset(references):
-            raise _unknown(kind, set(references) - readable)
-        values = self._values
-        return [values[r] for r in references]
-
     def _set(self, kind: str, references: Sequence[int], values: Sequence[Any]) -> None:
         layout = self._layout
         settable = (layout.settable_later if self._started else layout.settable_first)[kind]
-        if not settable.issuperset(references):
-            raise self._not_settable(kind, set(references) - settable)
-        stored = self._values
-        for r, value in zip(references, values, strict=True):
-            stored[r] = value
+        place = settable[tuple(references)]
+        if place is not None and len(values) == len(references):
+            self._values[place] = values
+        else:
+            for r, value in zip(references, values, strict=True):
+                self._values[r] = value
         self._inputs = None
         if layout.follows_inputs or not self._started:
             self._stale = True
@@ -246,16 +248,6 @@ class ModelSlave:
             items = ", ".join(f"{int(item)} {item.name.lower()}" for item in enumeration)
             name = self._layout.variables[reference].name
             raise Refused(f"{name} = {value} is no item of its enumeration ({items})") from None
-
-    def _not_settable(self, kind: str, references: set[int]) -> Refused:
-        layout = self._layout
-        if unknown := references - layout.readable[kind]:
-            return _unknown(kind, unknown)
-        reference = min(references)
-        name = layout.variables[reference].name
-        if layout.causalities[reference] == "parameter":
-            return Refused(f"{name} is a fixed parameter: it cannot be set after the initialization")
-        return Refused(f"{name} is neither parameter nor input: it cannot be set")
 
     # -- FMU state: pythonfmu calls the two conversions on the class -----------------------------------------
 
@@ -302,9 +294,3 @@ class ModelSlave:
         for instance in list(cls._living):
             hold(instance, instance.log_queue)
         return SlaveError(message(call, error))
-
-
-def _unknown(kind: str, references: set[int]) -> Refused:
-    return Refused(
-        f"there is no {kind} variable with value reference {', '.join(map(str, sorted(references)))}"
-    )
