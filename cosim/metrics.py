@@ -264,7 +264,7 @@ def _window(results: Results, part: Reduction) -> Results:
         kept = results.time >= part.after
         if not kept.any():
             raise _NoValueError(f"the run ends before {part.after:g} s")
-        results = Results(results.time[kept], results.data[kept], results.variables)
+        results = results.part(kept, [name for name in (part.signal, part.minus) if name is not None])
     if part.reduce in _NEEDS_DURATION and _duration(results) == 0.0:
         raise _NoValueError("the run has no duration")
     return results

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ConfigError, nearest
+from .rows import MemoryTable, Table
 from .writing import replacing
 
 if TYPE_CHECKING:
@@ -65,6 +66,8 @@ class Results:
 
     `time` [s], shape (n,), and `data`, shape (n, m), hold row k of communication point k; `variables`
     describes the m columns. `results["vehicle.speed"]` is one column, `len(results)` is n.
+    `data` may be given as a Table that is not in memory: then `results.data` reads all of it, while a column
+    or `part` reads no more than is asked for.
     `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
     scenario (None and none for results that were read from a file).
 
@@ -76,26 +79,32 @@ class Results:
     def __init__(
         self,
         time: ArrayLike,
-        data: ArrayLike,
+        data: ArrayLike | Table,
         variables: Sequence[ResultVariable],
         manifest: Mapping[str, Any] | None = None,
         figure: FigureSpec | None = None,
         metrics: Sequence[MetricSpec] = (),
     ) -> None:
         self.time: Array = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
-        self.data: Array = np.asarray(data, dtype=np.float64)
+        given = hasattr(data, "whole")
+        self._table: Table = data if given else _table(data)  # type: ignore[assignment, arg-type] # one or the other
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
         self.figure = figure
         self.metric_specs = tuple(metrics)
-        if self.data.shape != (len(self.time), len(self.variables)):
+        if self._table.shape != (len(self.time), len(self.variables)):
             raise ValueError(
-                f"data is {self.data.shape}, {len(self.time)} times and {len(self.variables)} variables need "
-                f"{(len(self.time), len(self.variables))}"
+                f"data is {self._table.shape}, {len(self.time)} times and {len(self.variables)} variables "
+                f"need {(len(self.time), len(self.variables))}"
             )
         self._columns = {v.name: j for j, v in enumerate(self.variables)}
         if len(self._columns) != len(self.variables) or "time" in self._columns:
             raise ValueError("the names of the variables must differ from each other and from 'time'")
+
+    @property
+    def data(self) -> Array:
+        """All values, shape (n, m), in memory."""
+        return self._table.whole()
 
     def __len__(self) -> int:
         return len(self.time)
@@ -140,9 +149,25 @@ class Results:
         return self.variables[self._columns[name]]
 
     def column(self, name: str) -> Array:
-        """The values of a variable as float64, whatever its type: a view, shape (n,)."""
+        """The values of a variable as float64, whatever its type, shape (n,): a view if it is in memory."""
         self.variable(name)
-        return self.data[:, self._columns[name]]
+        return self._table.column(self._columns[name])
+
+    def final(self) -> dict[str, float | int | bool]:
+        """The last value of each variable, as the type that it has; empty without a row."""
+        if not len(self):
+            return {}
+        last = self._table.rows(len(self) - 1, len(self))[0].tolist()
+        kinds = {"Real": float, "Boolean": bool}
+        return {v.name: kinds.get(v.type, int)(x) for v, x in zip(self.variables, last, strict=True)}
+
+    def part(self, rows: NDArray[np.bool_] | slice, names: Sequence[str]) -> Results:
+        """The results of some rows and variables, in memory. Raises ConfigError as `variable` does."""
+        variables = [self.variable(name) for name in names]
+        columns = [self.column(name)[rows] for name in names]
+        time = self.time[rows]
+        data = np.column_stack(columns) if columns else np.empty((len(time), 0))
+        return Results(time, data, variables, self.manifest)
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write the CSV file. Raises ConfigError when it cannot be written; then no file is left."""
@@ -154,9 +179,9 @@ class Results:
     def _write_rows(self, file: BinaryIO) -> None:
         file.write((",".join(["time", *map(_quoted, self.names)]) + "\n").encode())
         for start in range(0, len(self), _CHUNK):
-            rows = slice(start, start + _CHUNK)
-            columns = [list(map(repr, self.time[rows].tolist()))]
-            columns += [_texts(self.data[rows, j], v.type) for j, v in enumerate(self.variables)]
+            values = self._table.rows(start, start + _CHUNK)
+            columns = [list(map(repr, self.time[start : start + _CHUNK].tolist()))]
+            columns += [_texts(values[:, j], v.type) for j, v in enumerate(self.variables)]
             file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
 
     def write(self, folder: str | os.PathLike[str]) -> Path:
@@ -212,6 +237,13 @@ class Results:
         if path is not None:
             figures.write(figure, Path(path))
         return figure
+
+
+def _table(data: ArrayLike) -> Table:
+    array = np.asarray(data, dtype=np.float64)
+    if array.ndim != 2:
+        raise ValueError(f"data has {array.ndim} dimensions: rows and columns are needed")
+    return MemoryTable(array)
 
 
 def to_nanoseconds(time: Array) -> Array:

@@ -45,16 +45,15 @@ def plot(
 def chosen(results: Results, patterns: list[str]) -> Results:
     """The results of the variables that match a pattern. Raises ConfigError for one that matches none."""
     from ...cosim.errors import ConfigError, nearest
-    from ...cosim.results import Results
 
     for pattern in patterns:
         if not any(_matches(name, pattern) for name in results.names):
             raise ConfigError(
                 f"--signals {pattern}: the results have no such variable{nearest(pattern, results.names)}"
             )
-    kept = [i for i, name in enumerate(results.names) if any(_matches(name, p) for p in patterns)]
-    variables = [results.variables[i] for i in kept]
-    return Results(results.time, results.data[:, kept], variables, results.manifest)
+    return results.part(
+        slice(None), [name for name in results.names if any(_matches(name, p) for p in patterns)]
+    )
 
 
 def _matches(name: str, pattern: str) -> bool:

@@ -43,7 +43,7 @@ def as_data(outcome: Outcome) -> dict[str, Any]:
         "real_time_factor": _factor(outcome),
         "warnings": outcome.remarks,
         "metrics": manifest.get("metrics", {}),
-        "final": {name: results[name][-1].item() for name in results.names} if len(results) else {},
+        "final": results.final(),
         "folder": str(outcome.folder),
         "files": outcome.files,
     }
@@ -93,9 +93,9 @@ def _final_values(outcome: Outcome) -> list[tuple[str, str]]:
     sent = {connection.source for connection in outcome.simulation.system.file.connect}
     outputs = [v for v in results.variables if v.causality == "output"]
     outputs.sort(key=lambda v: v.name not in sent)
-    rows = []
+    rows, final = [], results.final()
     for v in outputs[:_FINAL_VALUES]:
-        value = results[v.name][-1].item()
-        text = dict(v.items).get(value, str(value)) if v.items else number(value)
+        value = final[v.name]
+        text = dict(v.items).get(int(value), str(value)) if v.items else number(value)
         rows.append((v.name, text if v.unit in ("", "1") else f"{text} {v.unit}"))
     return rows

@@ -91,7 +91,7 @@ def _table(time: Array, columns: Iterable[tuple[ResultVariable, Array]]) -> Resu
 
 def _between(results: Results, begin: float, end: float) -> Results:
     rows = (results.time > begin - 1e-9) & (results.time < end + 1e-9)
-    return Results(results.time[rows], results.data[rows], results.variables)
+    return results.part(rows, results.names)
 
 
 def _resistances(results: Results) -> Results:

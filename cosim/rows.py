@@ -1,0 +1,166 @@
+"""Rows of numbers that a run appends: in memory while they are few, in a temporary file beyond that.
+
+A run of 8 hours at 100 Hz records a gigabyte. What looks at its results needs a stretch of rows or a column
+at a time, so that is all that is in memory of a Table in a file.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import weakref
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import RunError
+
+Array = NDArray[np.float64]
+
+MEMORY = 64 * 2**20  # bytes of rows that stay in memory: half an hour of 40 variables at 100 Hz
+_STRETCH = 2**20  # bytes that are read at a time to take a column
+
+
+class Table(Protocol):
+    """Numbers in rows and columns."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """The numbers of rows and of columns."""
+
+    def rows(self, start: int, stop: int) -> Array:
+        """The rows from `start` to before `stop`, or to the end, shape (n, columns)."""
+
+    def column(self, j: int) -> Array:
+        """Column j, shape (rows,)."""
+
+    def whole(self) -> Array:
+        """All of it, in memory."""
+
+
+class MemoryTable:
+    """A Table that is an array; rows and columns are views of it."""
+
+    def __init__(self, array: Array) -> None:
+        self._array = array
+        self.shape: tuple[int, int] = (array.shape[0], array.shape[1])
+
+    def rows(self, start: int, stop: int) -> Array:
+        """See `Table`."""
+        return self._array[start:stop]
+
+    def column(self, j: int) -> Array:
+        """See `Table`."""
+        return self._array[:, j]
+
+    def whole(self) -> Array:
+        """See `Table`."""
+        return self._array
+
+
+class _TemporaryFile:
+    """A file without a name, closed when the last that refers to it has gone."""
+
+    def __init__(self, folder: Path | None) -> None:
+        file = tempfile.TemporaryFile(prefix="evcosim-", dir=folder, buffering=0)  # noqa: SIM115 - see finalize
+        self._file: Any = file  # its type depends on the platform
+        weakref.finalize(self, file.close)
+
+    def read(self, place: int, into: memoryview[int]) -> None:
+        self._file.seek(place)
+        while into:  # one call reads 2 GiB at most
+            count = self._file.readinto(into)
+            if not count:
+                raise RunError(f"the temporary file of the results ends {len(into)} bytes too early")
+            into = into[count:]
+
+    def write(self, place: int, data: memoryview[int]) -> None:
+        self._file.seek(place)
+        while data:
+            data = data[self._file.write(data) :]
+
+
+class _FileTable:
+    """The first rows of a file, and then those of `last`."""
+
+    def __init__(self, file: _TemporaryFile, count: int, last: Array) -> None:
+        self._file, self._count, self._last = file, count, last
+        self.shape: tuple[int, int] = (count + len(last), last.shape[1])
+
+    def rows(self, start: int, stop: int) -> Array:
+        """See `Table`."""
+        start, stop, _ = slice(start, stop).indices(self.shape[0])
+        count, width = max(0, min(stop, self._count) - start), self.shape[1]
+        found = np.empty((max(0, stop - start), width))
+        if count:
+            self._file.read(start * width * 8, found[:count].data.cast("B"))
+        found[count:] = self._last[max(0, start - self._count) : max(0, stop - self._count)]
+        return found
+
+    def column(self, j: int) -> Array:
+        """See `Table`."""
+        found = np.empty(self.shape[0])
+        step = max(1, _STRETCH // (8 * self.shape[1]))
+        for start in range(0, len(found), step):
+            found[start : start + step] = self.rows(start, start + step)[:, j]
+        return found
+
+    def whole(self) -> Array:
+        """See `Table`."""
+        return self.rows(0, self.shape[0])
+
+
+class RowStore:
+    """Rows of `width` numbers, appended in order.
+
+    Beyond `memory` bytes they are in a temporary file without a name in `folder` (default: the system's,
+    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends.
+    """
+
+    def __init__(self, width: int, memory: int = MEMORY, folder: Path | None = None) -> None:
+        self._width, self._memory, self._folder = width, memory, folder
+        self._chunks: list[Array] = []
+        self._file: _TemporaryFile | None = None
+        self._in_file = self._in_memory = 0
+
+    def __len__(self) -> int:
+        return self._in_file + self._in_memory
+
+    def append(self, rows: Array) -> None:
+        """Keep rows, shape (n, width), which are not to be changed afterwards.
+
+        Raises RunError when the temporary file cannot be written; the rows are then kept in memory.
+        """
+        if not len(rows):
+            return  # nothing to keep, and a memoryview of nothing cannot be cast
+        self._chunks.append(rows)
+        self._in_memory += len(rows)
+        if self._in_memory * self._width * 8 > self._memory:
+            self._write()
+
+    def _write(self) -> None:
+        try:
+            if self._file is None:
+                self._file = _TemporaryFile(self._folder)
+            place = self._in_file * self._width * 8
+            for rows in self._chunks:
+                data = np.ascontiguousarray(rows)
+                self._file.write(place, data.data.cast("B"))
+                place += data.nbytes
+        except OSError as error:
+            folder = self._folder or tempfile.gettempdir()
+            raise RunError(
+                f"what the run records cannot be kept in {folder}: {error.strerror or error}; "
+                "TMPDIR names another folder, `record` less needs less"
+            ) from error
+        self._in_file += self._in_memory
+        self._chunks, self._in_memory = [], 0
+
+    def table(self, last: Array | None = None) -> Table:
+        """What is there by now, and `last` rows after it; what is appended later does not change it."""
+        tail = [*self._chunks, *([] if last is None else [last])]
+        rows = np.vstack([np.empty((0, self._width)), *tail])
+        if self._file is None:
+            return MemoryTable(rows)
+        return _FileTable(self._file, self._in_file, rows)
