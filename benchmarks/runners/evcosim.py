@@ -1,0 +1,84 @@
+"""This project, with either engine."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evcosim.master.simulation import Simulation
+
+from ..case import STEP_SIZE, Case
+from ..fmus import c_fmu, python_fmu
+from . import Measured
+
+
+def version() -> str:
+    """The version of evcosim."""
+    return importlib.metadata.version("evcosim")
+
+
+def measure(case: Case, folder: Path, engine: str) -> Measured:
+    """Run a case with the engine of that name."""
+    system = _write_system(case, folder)
+    with Simulation(system, engine=engine) as simulation:
+        simulation.step(1)  # what is made in the first step is no cost of a step
+        before = simulation.loop_seconds
+        simulation.run()
+        seconds = simulation.loop_seconds - before
+        results = simulation.results
+        outputs = _outputs(case, simulation)
+    return Measured(seconds * case.steps / (case.steps - 1), outputs, "jacobi")
+
+
+def _outputs(case: Case, simulation: Simulation) -> NDArray[np.float64]:
+    names = [[f"n{i}.y{s}" for s in range(case.signals)] for i in range(case.units)]
+    if not case.record:
+        return np.array([[simulation[name] for name in row] for row in names])
+    # row k holds what is valid at t_k: what a unit shows after step k stands in row k + 1
+    results = simulation.results
+    return np.stack([np.stack([results[name][1:] for name in row], axis=-1) for row in names], axis=1)
+
+
+def _write_system(case: Case, folder: Path) -> Path:
+    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    lines = ['name = "ring"', "[experiment]", f"step_size = {STEP_SIZE}", 'algorithm = "jacobi"']
+    lines.append(f"stop_time = {case.steps * STEP_SIZE!r}")
+    for i in range(case.units):
+        lines += [f"[units.n{i}]", f'fmu = "{fmu}"', 'isolation = "none"', f"[units.n{i}.parameters]"]
+        lines += [f"gain = {case.gain(i)!r}"]
+        lines += [f"bias{s} = {case.bias(i, s)!r}" for s in range(case.signals)]
+    if case.channel:
+        _write_dbc(case, folder / "ring.dbc")
+        lines += ["[buses.can0]", f'dbc = "{folder / "ring.dbc"}"']
+    for i in range(case.units):
+        for s in range(case.signals):
+            lines += ["[[connect]]", f'from = "n{i - 1 if i else case.units - 1}.y{s}"', f'to = ["n{i}.u{s}"]']
+            if case.channel:
+                lines.append(f'via = "can0.M{i}_{s // 4}.S{i}_{s}"')
+    if not case.record:
+        lines.insert(1, "record = []")
+    path = folder / "ring.toml"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def _write_dbc(case: Case, path: Path) -> None:
+    """Four signals of 16 bits to a message, one message for each unit and four signals, sent at every step."""
+    lines = ['VERSION ""', "", "BU_: N", ""]
+    cycle = round(1000 * STEP_SIZE)
+    messages = []
+    for i in range(case.units):
+        for first in range(0, case.signals, 4):
+            number = len(messages)
+            messages.append(number)
+            lines.append(f"BO_ {100 + number} M{i}_{first // 4}: 8 N")
+            for place, s in enumerate(range(first, min(first + 4, case.signals))):
+                lines.append(f' SG_ S{i}_{s} : {16 * place}|16@1- (0.0009765625,0) [-30|30] "" N')
+            lines.append("")
+    lines.append('BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;')
+    lines.append('BA_DEF_DEF_ "GenMsgCycleTime" 0;')
+    lines += [f'BA_ "GenMsgCycleTime" BO_ {100 + number} {cycle};' for number in messages]
+    path.write_text("\n".join(lines) + "\n")
