@@ -50,6 +50,25 @@ class Fmu:
         return tuple(sorted(found - {""}))
 
     @property
+    def binary(self) -> str:
+        """Where the library for this machine stands, or would stand, in the archive."""
+        from fmpy import platform, platform_tuple, sharedLibraryExtension
+
+        folder = platform if self.description.fmiVersion[0] in "12" else platform_tuple
+        return f"binaries/{folder}/{self.kind.modelIdentifier}{sharedLibraryExtension}"
+
+    @property
+    def kind(self) -> Any:
+        """The interface that is used: FMPy's CoSimulation where there is one, else its ModelExchange.
+
+        Raises FmuError for an FMU that has neither.
+        """
+        found = self.description.coSimulation or self.description.modelExchange
+        if found is None:
+            raise FmuError(f"{self.path}: has neither a Co-Simulation nor a Model Exchange interface")
+        return found
+
+    @property
     def holds_python(self) -> bool:
         """Whether it was made with pythonfmu, so that its steps run in this process's interpreter."""
         return "resources/slavemodule.txt" in self.entries

@@ -1,11 +1,17 @@
-"""The log messages of FMI 2.0 units: one callback for the process, a queue for each unit."""
+"""The log messages of units: one callback for the process and FMI version, a queue for each unit."""
 
 from __future__ import annotations
 
 import collections
+import contextlib
 import ctypes
 import itertools
+from collections.abc import Iterator
 
+from fmpy.fmi1 import fmi1CallbackAllocateMemoryTYPE as AllocateMemory1
+from fmpy.fmi1 import fmi1CallbackFreeMemoryTYPE as FreeMemory1
+from fmpy.fmi1 import fmi1CallbackFunctions
+from fmpy.fmi1 import fmi1CallbackLoggerTYPE as Logger1
 from fmpy.fmi2 import addLoggerProxy, calloc, fmi2CallbackFunctions, free
 from fmpy.fmi2 import fmi2CallbackAllocateMemoryTYPE as AllocateMemory
 from fmpy.fmi2 import fmi2CallbackFreeMemoryTYPE as FreeMemory
@@ -13,7 +19,11 @@ from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 _KEPT = 100
+_LONGEST = 2000  # characters of a message that are kept
 _queues: dict[int, UnitLog] = {}
+_instantiating: list[
+    UnitLog
+] = []  # FMI 1.0 tells units apart by their component, which comes at the end of it
 _ids = itertools.count(1)
 
 
@@ -24,10 +34,11 @@ class UnitLog:
         self.id = next(_ids)
         self.messages: collections.deque[str] = collections.deque(maxlen=_KEPT)
         self.warnings = 0
+        self._keys = [self.id]
         _queues[self.id] = self
 
     def callbacks(self) -> fmi2CallbackFunctions:
-        """The callback structure to instantiate the unit with; keep it as long as the unit lives."""
+        """FMI 2.0's callback structure to instantiate the unit with; keep it as long as the unit lives."""
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = _receive
         callbacks.allocateMemory = AllocateMemory(calloc)
@@ -38,27 +49,63 @@ class UnitLog:
         addLoggerProxy(ctypes.byref(callbacks))
         return callbacks
 
+    def callbacks_1(self) -> fmi1CallbackFunctions:
+        """The same for FMI 1.0."""
+        callbacks = fmi1CallbackFunctions()
+        callbacks.logger = ctypes.cast(_receive, Logger1)
+        callbacks.allocateMemory = AllocateMemory1(calloc)
+        callbacks.freeMemory = FreeMemory1(free)
+        callbacks.stepFinished = None
+        addLoggerProxy(ctypes.byref(callbacks))
+        return callbacks
+
+    @contextlib.contextmanager
+    def instantiating(self) -> Iterator[None]:
+        """What an FMI 1.0 unit says in here is this log's."""
+        _instantiating.append(self)
+        try:
+            yield
+        finally:
+            _instantiating.remove(self)
+
+    def belongs_to(self, component: int) -> None:
+        """Receive what the FMI 1.0 unit with this component says."""
+        self._keys.append(component)
+        _queues[component] = self
+
+    def add(self, status: int, text: str) -> None:
+        """Keep a message; one of status Warning is counted."""
+        word = STATUS[status] if 0 <= status < len(STATUS) else str(status)
+        self.messages.append(f"[{word}] {text[:_LONGEST]}")
+        self.warnings += status == 1
+
     def last(self, count: int = 3) -> str:
         """The last messages, one in a line; empty when there is none."""
         return "\n".join(list(self.messages)[-count:])
 
     def close(self) -> None:
         """Receive no more messages."""
-        _queues.pop(self.id, None)
+        for key in self._keys:
+            _queues.pop(key, None)
 
 
 def _message(
     environment: int | None, _name: bytes, status: int, category: bytes | None, text: bytes | None
 ) -> None:
-    queue = _queues.get(environment or 0)
+    queue = _queues.get(environment or 0) or (_instantiating[-1] if _instantiating else None)
     if queue is None:
         return
-    word = STATUS[status] if 0 <= status < len(STATUS) else str(status)
     said = (text or b"").decode("utf-8", "replace").strip()
     if said.startswith("Fatal py exception encountered: "):  # pythonfmu's own words above the exception's
         said = said.partition("\n")[2] or said
-    queue.messages.append(f"[{word}] {said}")
-    queue.warnings += status == 1
+    queue.add(status, said)
+
+
+def _message_3(environment: int | None, status: int, category: bytes | None, text: bytes | None) -> None:
+    _message(environment, b"", status, category, text)
 
 
 _receive = Logger(_message)
+LogMessage3 = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+receive_3 = LogMessage3(_message_3)
+"""FMI 3.0's fmi3LogMessageCallback; the instance environment is `UnitLog.id`."""

@@ -1,0 +1,55 @@
+"""The shared library of an FMU: its C functions by name, without the argument lists of any FMI version.
+
+What is passed must be ctypes objects, which ctypes then passes on as they are: that takes a third of the time
+of functions with declared arguments. A function that the library lacks is missed only when it is asked for:
+real FMUs leave out what the standard demands and nobody calls.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+from fmpy import freeLibrary
+
+
+class Library:
+    """A loaded library. `prefix` stands before every function's name (FMI 1.0).
+
+    With `keeps_lock` Python's lock is kept over its calls: those into a pythonfmu FMU come back into this
+    interpreter at once, and keeping the lock saves handing it over twice.
+    Raises OSError with the loader's reason.
+    """
+
+    def __init__(self, path: Path, prefix: str = "", keeps_lock: bool = False) -> None:
+        self.path, self.prefix = path, prefix
+        before = os.getcwd()
+        try:
+            os.chdir(path.parent)  # some find the libraries that they need beside them by this alone
+            if sys.platform == "win32":
+                self._library: Any = ctypes.CDLL(str(path), winmode=0)
+            else:
+                self._library = (ctypes.PyDLL if keeps_lock else ctypes.CDLL)(str(path))
+        finally:
+            os.chdir(before)
+
+    def function(self, name: str, result: Any = ctypes.c_int) -> Any:
+        """A C function; `result` is its ctypes type. Raises AttributeError when the library lacks it."""
+        function = self._library[self.prefix + name]
+        function.restype = result
+        return function
+
+    def has(self, name: str) -> bool:
+        """Whether the library has a function."""
+        return hasattr(self._library, self.prefix + name)
+
+    def address(self, name: str) -> int:
+        """The address of a C function."""
+        return ctypes.cast(self.function(name), ctypes.c_void_p).value or 0
+
+    def close(self) -> None:
+        """Unload the library."""
+        freeLibrary(self._library._handle)
