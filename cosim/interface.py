@@ -48,12 +48,14 @@ class VariableInfo:
 class UnitInterface:
     """The variables of a unit by name, and the units of measure that it defines by name.
 
-    `place` says where the description comes from (a file) for error messages.
+    `place` says where the description comes from (a file) for error messages. `unusable` are the variables
+    that it declares and no one can ask for, with the reason.
     """
 
     place: str
     variables: dict[str, VariableInfo]
     units_of_measure: dict[str, UnitOfMeasure] = dataclasses.field(default_factory=dict)
+    unusable: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def of_causality(self, *causalities: str) -> tuple[VariableInfo, ...]:
         """The variables of these causalities, in declared order."""
@@ -62,6 +64,8 @@ class UnitInterface:
     def require(self, unit: str, name: str, causalities: Iterable[str], place: str) -> VariableInfo:
         """The variable `name`, or ConfigError naming `place`, the unit and the nearest name there is."""
         wanted = tuple(causalities)
+        if name in self.unusable:
+            raise ConfigError(f"{place}: unit '{unit}': {name} {self.unusable[name]} ({self.place})")
         if name not in self.variables:
             offered = [v.name for v in self.of_causality(*wanted)]
             raise ConfigError(

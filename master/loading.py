@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ..cosim.interface import UnitInterface
+from .fmi.fmi1 import Fmi1Unit
 from .fmi.fmi2 import Fmi2Unit
-from .fmi.fmu import Fmu
+from .fmi.fmi3 import Fmi3Unit
+from .fmi.fmu import Fmu, FmuError
 from .unit import Unit
+
+_CO_SIMULATION: dict[str, Callable[[Fmu, str, UnitInterface], Unit]] = {
+    "1": Fmi1Unit,
+    "2": Fmi2Unit,
+    "3": Fmi3Unit,
+}
 
 
 def load_unit(fmu: Fmu, name: str, interface: UnitInterface) -> Unit:
@@ -13,4 +23,6 @@ def load_unit(fmu: Fmu, name: str, interface: UnitInterface) -> Unit:
 
     Raises FmuError naming the file and the reason when it cannot run here.
     """
-    return Fmi2Unit(fmu, name, interface)
+    if fmu.description.coSimulation is None:
+        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
+    return _CO_SIMULATION[fmu.description.fmiVersion[0]](fmu, name, interface)

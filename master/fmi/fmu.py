@@ -127,18 +127,16 @@ def read_fmu(path: Path) -> Fmu:
 
 def check_runnable(fmu: Fmu) -> None:
     """Raise FmuError unless this master can run the FMU on this machine."""
-    from fmpy import platform, sharedLibraryExtension
-
-    md = fmu.description
-    if md.fmiVersion != "2.0":
-        raise FmuError(f"{fmu.path}: is FMI {md.fmiVersion}; FMI 2.0 is supported")
-    if md.coSimulation is None:
-        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
-    binary = f"binaries/{platform}/{md.coSimulation.modelIdentifier}{sharedLibraryExtension}"
-    if binary not in fmu.entries:
+    md, kind = fmu.description, fmu.kind
+    if md.fmiVersion.startswith("1") and md.coSimulation is None:
+        raise FmuError(f"{fmu.path}: is FMI 1.0 Model Exchange; Model Exchange is supported from FMI 2.0 on")
+    if str(getattr(kind, "needsExecutionTool", None)).lower() in ("true", "1"):
+        tool = f" ({md.generationTool})" if md.generationTool else ""
+        raise FmuError(f"{fmu.path}: needs the tool that made it{tool}: export it without (stand-alone)")
+    if fmu.binary not in fmu.entries:
         raise FmuError(
-            f"{fmu.path}: has no binary for this platform ({platform}, Python on {sys.platform}): "
-            f"{binary} is missing; it has {', '.join(fmu.platforms) or 'none'}"
+            f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "
+            f"{', '.join(fmu.platforms) or 'no platform'}"
         )
 
 
@@ -146,27 +144,47 @@ def _interface(fmu: Fmu) -> UnitInterface:
     md = fmu.description
     depends = {u.variable.name: _names(u.dependencies) for u in md.outputs}
     initially = {u.variable.name: _names(u.dependencies) for u in md.initialUnknowns}
-    variables = {v.name: _variable(v, depends, initially) for v in md.modelVariables}
-    return UnitInterface(str(fmu.path), variables, {u.name: _unit_of_measure(u) for u in md.unitDefinitions})
+    unusable = {v.name: reason for v in md.modelVariables if (reason := _why_unusable(v))}
+    variables = {
+        v.name: _variable(v, depends, initially) for v in md.modelVariables if v.name not in unusable
+    }
+    units = {u.name: _unit_of_measure(u) for u in md.unitDefinitions}
+    return UnitInterface(str(fmu.path), variables, units, unusable)
 
 
 def _names(variables: Any) -> tuple[str, ...] | None:
     return None if variables is None else tuple(v.name for v in variables)
 
 
+_KINDS = {"Real": "Real", "Float32": "Real", "Float64": "Real", "Boolean": "Boolean", "String": "String"}
+_KINDS |= {"Enumeration": "Enumeration", "Integer": "Integer"}
+_KINDS |= {f"{sign}Int{bits}": "Integer" for sign in ("", "U") for bits in (8, 16, 32, 64)}
+
+
+def _why_unusable(v: Any) -> str:
+    """Why no value of a variable can be asked for ("": it can)."""
+    if v.dimensions:
+        size = ", ".join(str(n) for n in v.shape or ())
+        return f"is an array, {v.type}[{size}]; arrays are not supported"
+    return "" if str(v.type) in _KINDS else f"is of type {v.type}, which is not supported"
+
+
 def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any]) -> VariableInfo:
     declared = v.declaredType
-    kind = str(v.type)
+    kind = _KINDS[str(v.type)]
     items = (
         tuple((int(i.value), i.name) for i in (declared.items or ()))
         if kind == "Enumeration" and declared
         else ()
     )
+    variability = v.variability or ("continuous" if kind == "Real" else "discrete")
+    if kind != "Real" and variability == "continuous":  # the default of FMI 2.0, but only a Real can be
+        variability = "discrete"
     return VariableInfo(
         name=v.name,
         type=kind,
         causality=v.causality or "local",
-        variability=v.variability or ("continuous" if kind == "Real" else "discrete"),
+        variability=variability,
         unit=_inherited(v, "unit") or "",
         start=_number(v.start, kind),
         min=_limit(_inherited(v, "min")),

@@ -1,0 +1,89 @@
+"""A unit of FMI 1.0 Co-Simulation.
+
+It has no initialization mode: values are set on the instantiated slave, fmiInitializeSlave fixes them, and
+before it no value can be asked for, so that a variable then answers with its start value.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+from ...cosim.interface import VariableInfo
+from ..unit import Value
+from .instance import Instance
+from .library import Library
+
+_FALSE, _TRUE = ctypes.c_char(0), ctypes.c_char(1)  # fmiBoolean
+_C_TYPES: dict[str, Any] = {
+    "Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_byte, "String": ctypes.c_char_p,
+}  # fmt: skip # a table
+_NOTHING: dict[str, Value] = {"Real": 0.0, "Boolean": False, "String": ""}
+
+
+class Fmi1Unit(Instance):
+    """See `Instance`."""
+
+    fmi = "fmi"
+
+    def _prefix(self) -> str:
+        return f"{self.fmu.kind.modelIdentifier}_"
+
+    def _instantiate(self, folder: Path) -> int | None:
+        self._callbacks = self.log.callbacks_1()
+        component: int | None = self.function("fmiInstantiateSlave", ctypes.c_void_p)(
+            ctypes.c_char_p(self.name.encode()),
+            ctypes.c_char_p((self.fmu.description.guid or "").encode()),
+            ctypes.c_char_p(folder.as_uri().encode()),
+            ctypes.c_char_p(b"application/x-fmu-sharedlibrary"),
+            ctypes.c_double(0.0),
+            _FALSE,  # invisible
+            _FALSE,  # not interactive
+            self._callbacks,
+            _TRUE,  # logging
+        )
+        if component:
+            self.log.belongs_to(component)
+        return component
+
+    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
+        kind = "Integer" if variable.type == "Enumeration" else variable.type
+        return f"fmi{direction}{kind}", _C_TYPES[kind]
+
+    def get(self, name: str) -> Value:
+        """See `unit.Unit`; before the initialization, the start value."""
+        if self._initialized:
+            return super().get(name)
+        variable = self.interface.variables[name]
+        return _NOTHING.get(variable.type, 0) if variable.start is None else variable.start
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        """See `unit.Unit`."""
+        known = _FALSE if stop_time is None else _TRUE
+        self._experiment = ctypes.c_double(start_time), known, ctypes.c_double(stop_time or 0.0)
+
+    def exit_initialization(self) -> None:
+        """See `unit.Unit`."""
+        self._call("fmiInitializeSlave", self._component, *self._experiment)
+        self._initialized = True
+        self._do_step = self.function("fmiDoStep")
+        self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
+
+    def start_step(self, time: float, step_size: float, count: int) -> None:
+        """See `unit.Unit`."""
+        self._step_size.value = step_size
+        for i in range(count):
+            self._time.value = time + i * step_size
+            status = self._do_step(self._component, self._time, self._step_size, _TRUE)
+            if status:
+                self._judge("fmiDoStep", status)
+
+    def terminate(self) -> None:
+        """See `unit.Unit`."""
+        if self._initialized:
+            self._initialized = False
+            self._call("fmiTerminateSlave", self._component)
+
+    def _free_instance(self, library: Library, component: Any) -> None:
+        library.function("fmiFreeSlaveInstance", None)(component)

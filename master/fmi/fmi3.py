@@ -1,0 +1,104 @@
+"""A unit of FMI 3.0 Co-Simulation, without event mode and early return."""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+from ...cosim.interface import VariableInfo
+from ..unit import UnitError
+from .instance import Instance, resources_path
+from .log import receive_3
+
+_FALSE, _TRUE = ctypes.c_bool(False), ctypes.c_bool(True)
+_C_TYPES: dict[str, Any] = {
+    "Float32": ctypes.c_float, "Float64": ctypes.c_double,
+    "Int8": ctypes.c_int8, "Int16": ctypes.c_int16, "Int32": ctypes.c_int32, "Int64": ctypes.c_int64,
+    "UInt8": ctypes.c_uint8, "UInt16": ctypes.c_uint16, "UInt32": ctypes.c_uint32, "UInt64": ctypes.c_uint64,
+    "Boolean": ctypes.c_bool, "String": ctypes.c_char_p,
+}  # fmt: skip # a table, as in section 2.2.2 of FMI 3.0
+
+
+class Fmi3Unit(Instance):
+    """See `Instance`."""
+
+    fmi = "fmi3"
+
+    def _instantiate(self, folder: Path) -> int | None:
+        description = self.fmu.description
+        component: int | None = self.function("fmi3InstantiateCoSimulation", ctypes.c_void_p)(
+            *self._about(folder, description.instantiationToken or ""),
+            _FALSE,  # no event mode
+            _FALSE,  # no early return
+            ctypes.c_void_p(),
+            ctypes.c_size_t(0),  # no variable is looked at within a step
+            ctypes.c_void_p(self.log.id),
+            receive_3,
+            ctypes.c_void_p(),
+        )
+        return component
+
+    def _about(self, folder: Path, token: str) -> tuple[Any, ...]:
+        """The arguments that all kinds of FMI 3.0 have: name, token, resources, invisible, logging."""
+        return (
+            ctypes.c_char_p(self.name.encode()),
+            ctypes.c_char_p(token.encode()),
+            ctypes.c_char_p(resources_path(folder)),
+            _FALSE,
+            _TRUE,
+        )
+
+    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
+        kind = str(self._declared[variable.declared_name].type)
+        kind = "Int64" if kind == "Enumeration" else kind
+        return f"fmi3{direction}{kind}", _C_TYPES[kind]
+
+    def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
+        return self._component, references, ctypes.c_size_t(count), values, ctypes.c_size_t(count)
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        """See `unit.Unit`."""
+        stop = ctypes.c_bool(stop_time is not None), ctypes.c_double(stop_time or 0.0)
+        start = ctypes.c_double(start_time)
+        self._call("fmi3EnterInitializationMode", self._component, *self._tolerance(), start, *stop)
+
+    def _tolerance(self) -> tuple[Any, Any]:
+        return _FALSE, ctypes.c_double(0.0)
+
+    def exit_initialization(self) -> None:
+        """See `unit.Unit`."""
+        self._call("fmi3ExitInitializationMode", self._component)
+        self._initialized = True
+        self._do_step = self.function("fmi3DoStep")
+        self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
+        self._event, self._ending, self._early = (ctypes.c_bool() for _ in range(3))
+        self._reached = ctypes.c_double()
+        self._step_arguments = (
+            self._component, self._time, self._step_size, _TRUE, ctypes.byref(self._event),
+            ctypes.byref(self._ending), ctypes.byref(self._early), ctypes.byref(self._reached),
+        )  # fmt: skip # the last four are what the step answers
+
+    def start_step(self, time: float, step_size: float, count: int) -> None:
+        """See `unit.Unit`."""
+        self._step_size.value = step_size
+        for i in range(count):
+            self._time.value = time + i * step_size
+            status = self._do_step(*self._step_arguments)
+            if status:
+                self._judge("fmi3DoStep", status)
+            if self._ending or self._early:
+                self._judge_end()
+
+    def _judge_end(self) -> None:
+        """Raise UnitError for a step that ended the simulation, or ended early though that is not allowed."""
+        if self._ending:
+            raise UnitError(f"unit '{self.name}': fmi3DoStep asks to terminate the simulation{self._said()}")
+        raise UnitError(
+            f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though early "
+            f"return is not allowed{self._said()}"
+        )
+
+    def _said(self) -> str:
+        said = self.log.last()
+        return f"\n{said}" if said else ""

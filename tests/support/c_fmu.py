@@ -1,0 +1,137 @@
+"""FMUs in C, compiled when a test needs them.
+
+`compile_fmu` makes an FMU of any C source and model description; `mixed_fmu` the unit of sources/mixed.c,
+which has a variable of every type, in any version of FMI.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import subprocess
+import tempfile
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+
+SOURCES = Path(__file__).with_name("sources")
+PLATFORM = {1: "linux64", 2: "linux64", 3: "x86_64-linux"}
+
+
+@functools.cache
+def compiled(source: Path, flags: tuple[str, ...] = ()) -> bytes:
+    """The shared library of a C source, from a cache of this user where it has been."""
+    command = ["cc", "-O1", "-fPIC", "-shared", "-w", *flags]
+    content = source.read_bytes() + " ".join(command).encode()
+    cache = Path(tempfile.gettempdir()) / f"evcosim-tests-{os.getuid()}"
+    cache.mkdir(exist_ok=True)
+    path = cache / f"{hashlib.sha256(content).hexdigest()[:24]}.so"
+    if not path.exists():
+        made = path.with_suffix(f".{os.getpid()}")  # several test processes may compile it at once
+        subprocess.run([*command, str(source), "-o", str(made), "-lm"], check=True)
+        made.replace(path)
+    return path.read_bytes()
+
+
+def compile_fmu(
+    path: Path,
+    source: Path,
+    description: str,
+    identifier: str,
+    fmi: int = 2,
+    flags: Sequence[str] = (),
+    more: dict[str, bytes] | None = None,
+) -> Path:
+    """Write an FMU whose library is compiled from `source`; `more` are further entries of the archive."""
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", description)
+        archive.writestr(f"binaries/{PLATFORM[fmi]}/{identifier}.so", compiled(source, tuple(flags)))
+        for name, content in (more or {}).items():
+            archive.writestr(name, content)
+    return path
+
+
+_WIDE = ("Int8", "UInt8", "Int16", "UInt16", "UInt32", "Int64", "UInt64")
+
+
+def mixed_fmu(path: Path, fmi: int, behavior: int = 0, gain_unit: str = "") -> Path:
+    """The unit of sources/mixed.c as an FMU at `path`, in FMI 1.0, 2.0 or 3.0."""
+    description = {1: _mixed_1, 2: _mixed_2, 3: _mixed_3}[fmi]()
+    flags = (f"-DFMI={fmi}", f"-DBEHAVIOR={behavior}", "-DMODEL=mixed")
+    return compile_fmu(path, SOURCES / "mixed.c", description, "mixed", fmi, flags)
+
+
+_COMMON: list[tuple[str, int, str, str, str]] = [
+    # name, value reference, causality, type of FMI 2.0, start
+    ("u", 0, "input", "Real", "0"),
+    ("y", 1, "output", "Real", ""),
+    ("gain", 2, "parameter", "Real", "1"),
+    ("count_in", 3, "input", "Integer", "0"),
+    ("count", 4, "output", "Integer", ""),
+    ("switch_in", 5, "input", "Boolean", "false"),
+    ("switch", 6, "output", "Boolean", ""),
+    ("title", 7, "parameter", "String", "some text"),
+    ("shown", 8, "output", "String", ""),
+]
+
+
+def _scalars(version: int) -> str:
+    lines = []
+    for name, reference, causality, kind, start in _COMMON:
+        variability = {"parameter": "fixed"}.get(causality, "continuous" if kind == "Real" else "discrete")
+        if version == 1:
+            variability = "parameter" if causality == "parameter" else variability
+            causality = "internal" if causality == "parameter" else causality
+        given = f' start="{start}"' if start else ""
+        lines.append(
+            f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" '
+            f'variability="{variability}"><{kind}{given}/></ScalarVariable>'
+        )
+    return "\n".join(lines)
+
+
+def _mixed_1() -> str:
+    return f"""<?xml version="1.0"?>
+<fmiModelDescription fmiVersion="1.0" modelName="mixed" modelIdentifier="mixed" guid="mixed"
+  numberOfContinuousStates="0" numberOfEventIndicators="0">
+<ModelVariables>{_scalars(1)}</ModelVariables>
+<Implementation><CoSimulation_StandAlone><Capabilities canHandleVariableCommunicationStepSize="true"/>
+</CoSimulation_StandAlone></Implementation></fmiModelDescription>"""
+
+
+def _mixed_2() -> str:
+    outputs = "".join(
+        f'<Unknown index="{i}" dependencies=""/>' for i, v in enumerate(_COMMON, 1) if v[2] == "output"
+    )
+    return f"""<?xml version="1.0"?>
+<fmiModelDescription fmiVersion="2.0" modelName="mixed" guid="mixed">
+<CoSimulation modelIdentifier="mixed"/>
+<ModelVariables>{_scalars(2)}</ModelVariables>
+<ModelStructure><Outputs>{outputs}</Outputs></ModelStructure></fmiModelDescription>"""
+
+
+def _mixed_3() -> str:
+    names = {"Real": "Float64", "Integer": "Int32"}
+    lines, outputs = ['<Float64 name="time" valueReference="63" causality="independent"/>'], []
+    variables = [(n, r, c, names.get(k, k), s) for n, r, c, k, s in _COMMON]
+    variables += [("single_in", 10, "input", "Float32", "0"), ("single", 11, "output", "Float32", "")]
+    for i, kind in enumerate(_WIDE):
+        variables.append((f"{kind.lower()}_in", 20 + 2 * i, "input", kind, "0"))
+        variables.append((f"{kind.lower()}", 21 + 2 * i, "output", kind, ""))
+    for name, reference, causality, kind, start in variables:
+        variability = "fixed" if causality == "parameter" else ""
+        about = f'name="{name}" valueReference="{reference}" causality="{causality}"'
+        about += f' variability="{variability}"' if variability else ""
+        if kind == "String" and start:
+            lines.append(f'<String {about}><Start value="{start}"/></String>')
+        else:
+            lines.append(f"<{kind} {about}" + (f' start="{start}"' if start else "") + "/>")
+        if causality == "output":
+            outputs.append(f'<Output valueReference="{reference}" dependencies=""/>')
+    lines.append('<Float64 name="wheels" valueReference="50" start="0 0"><Dimension start="2"/></Float64>')
+    return f"""<?xml version="1.0"?>
+<fmiModelDescription fmiVersion="3.0" modelName="mixed" instantiationToken="mixed">
+<CoSimulation modelIdentifier="mixed"/>
+<ModelVariables>{"".join(lines)}</ModelVariables>
+<ModelStructure>{"".join(outputs)}</ModelStructure></fmiModelDescription>"""
