@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from ..cosim.channel import ChannelError, MessageChannel
 from ..cosim.errors import RunError
 from ..cosim.plan import MessagePlan, Plan, Route, UnitPlan
+from ..cosim.rows import RowStore, Table
 from .unit import Unit, floats
 
 _CHUNK = 256
@@ -127,7 +128,7 @@ class _LateSender(_Sender):
 class Engine:
     """A plan with its units, and the steps done so far.
 
-    `rows` are the recorded rows up to now, shape (steps done, number of recorded slots).
+    `recorded` gives the rows up to now; those of long runs are in a temporary file (see `cosim.rows`).
     """
 
     def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
@@ -135,7 +136,7 @@ class Engine:
         self.k = 0
         self.whole = True
         self.memory: NDArray[np.float64] = np.zeros(plan.memory_size)
-        self.recorded = max(plan.column_slots, default=-1) + 1
+        self._columns = np.array(plan.column_slots, dtype=np.intp)
         self.view = floats(self.memory)
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
@@ -146,7 +147,7 @@ class Engine:
         self._at_start = [s for s in self.senders if s.plan.after is None]
         self._after = [[s for s in self.senders if s.plan.after == i] for i in range(len(self.turns))]
         self._events = list(plan.events)
-        self._chunks: list[NDArray[np.float64]] = []
+        self._store = RowStore(len(self._columns))
         self._step = self._gauss_seidel if plan.algorithm == "gauss_seidel" else self._jacobi
         self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
                          for b in p.blocks if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
@@ -190,8 +191,9 @@ class Engine:
     def _advance_chunk(self, count: int) -> None:
         times = np.array([self.time_at(k) for k in range(self.k, self.k + count)])
         drives = [(d.sink, (d.map.scale * d.signal(times) + d.map.offset).tolist()) for d in self.plan.drives]
-        rows = np.empty((count, self.recorded))
-        first, view, row = self.k, self.view, self.memory[: self.recorded]
+        width = int(self._columns.max(initial=-1)) + 1
+        rows = np.empty((count, width))
+        first, view, row = self.k, self.view, self.memory[:width]
         try:
             for i in range(count):
                 while self._events and self._events[0][0] <= self.k:
@@ -206,7 +208,7 @@ class Engine:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         finally:
             self.whole = self.k == first + count
-            self._chunks.append(rows[: self.k - first])
+            self._store.append(rows[: self.k - first, self._columns])
 
     def _gauss_seidel(self, k: int, time: float) -> None:
         memory = self.view
@@ -273,9 +275,9 @@ class Engine:
         else:
             effects[slot] = ("override" if action == "override" else "bias", value)
 
-    @property
-    def rows(self) -> NDArray[np.float64]:
-        """The rows so far; unless the last step broke off, one more for the current communication point, in
-        which the inputs and the discrete outputs are those of the last step."""
-        now = [self.memory[None, : self.recorded]] if self.whole else []
-        return np.vstack([np.empty((0, self.recorded)), *self._chunks, *now])
+    def recorded(self) -> Table:
+        """The rows so far, a column for each of the plan's; unless the last step broke off, one more for now.
+
+        In that one the inputs and the discrete outputs are those of the last step.
+        """
+        return self._store.table(self.memory[None, self._columns] if self.whole else None)

@@ -8,7 +8,7 @@ from ..cosim.interface import UnitInterface
 from .fmi.fmi1 import Fmi1Unit
 from .fmi.fmi2 import Fmi2Unit
 from .fmi.fmi3 import Fmi3Unit
-from .fmi.fmu import Fmu, FmuError
+from .fmi.fmu import Fmu
 from .unit import Unit
 
 _CO_SIMULATION: dict[str, Callable[[Fmu, str, UnitInterface], Unit]] = {
@@ -23,6 +23,4 @@ def load_unit(fmu: Fmu, name: str, interface: UnitInterface) -> Unit:
 
     Raises FmuError naming the file and the reason when it cannot run here.
     """
-    if fmu.description.coSimulation is None:
-        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
     return _CO_SIMULATION[fmu.description.fmiVersion[0]](fmu, name, interface)

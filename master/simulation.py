@@ -41,6 +41,8 @@ from .initialization import initialize, ordered_links
 from .loading import load_unit
 from .unit import Unit
 
+_SHOWN_DEFECTS = 5  # of an FMU's description, as warnings
+
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and the stop time, both in s."""
 
@@ -221,7 +223,8 @@ class Simulation:
     def warnings(self) -> list[str]:
         """What is not as it should be, one sentence each: missing units of measure, warnings of units."""
         from_units = [f"unit '{name}' gave {n} warnings" for name, n in self._unit_warnings().items() if n]
-        return [*self.plan.warnings, *from_units]
+        defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
+        return [*defects, *self.plan.warnings, *from_units]
 
     def _unit_warnings(self) -> dict[str, int]:
         return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}
@@ -231,14 +234,13 @@ class Simulation:
     @property
     def results(self) -> Results:
         """What was recorded up to now, with the manifest of the run."""
-        rows = self._engine.rows
-        columns = np.array(self.plan.column_slots, dtype=np.intp)
+        table = self._engine.recorded()
         experiment = self.plan.experiment
-        times = experiment.start_time + experiment.step_size * np.arange(len(rows))
+        times = experiment.start_time + experiment.step_size * np.arange(table.shape[0])
         return Results(
             time=times,
             variables=self.plan.columns,
-            data=rows[:, columns],
+            data=table,
             manifest=self.manifest(),
             figure=figure_spec(self.system, self.scenario),
             metrics=metric_specs(self.system, self.scenario),
@@ -382,6 +384,13 @@ def _check_frames(system: System) -> None:
             )
 
 
+def _defects(unit: str, fmu: Fmu) -> list[str]:
+    """What was tolerated in an FMU's description: the first defects, and how many more there are."""
+    shown = [f"unit '{unit}': {fmu.path.name}: {defect}" for defect in fmu.defects[:_SHOWN_DEFECTS]]
+    more = len(fmu.defects) - len(shown)
+    return [*shown, *([f"unit '{unit}': {fmu.path.name}: {more} more defects"] if more else [])]
+
+
 def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path]) -> dict[str, Fmu]:
     entries = participating(system, scenario)
     for unit in fmus:
@@ -392,6 +401,6 @@ def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path
     read = {}
     for unit, entry in entries.items():
         path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
-        read[unit] = read_fmu(path)
-        check_runnable(read[unit])  # before its variables are read as those of an FMI version that we know
+        read[unit] = read_fmu(path, entry.strict)
+        check_runnable(read[unit])
     return read

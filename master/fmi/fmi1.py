@@ -28,7 +28,7 @@ class Fmi1Unit(Instance):
     fmi = "fmi"
 
     def _prefix(self) -> str:
-        return f"{self.fmu.kind.modelIdentifier}_"
+        return f"{self.fmu.description.coSimulation.modelIdentifier}_"
 
     def _instantiate(self, folder: Path) -> int | None:
         self._callbacks = self.log.callbacks_1()

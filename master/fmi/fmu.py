@@ -6,29 +6,35 @@ import dataclasses
 import functools
 import hashlib
 import os
-import shutil
 import sys
-import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
-from ...cosim.errors import ConfigError
+from ...cosim.errors import nearest
 from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.units import BASE_UNITS, UnitOfMeasure
+from .archive import FmuError, entries_of, extract, read_entry
+from .description import read_description
 
+__all__ = ["Fmu", "FmuError", "check_runnable", "read_fmu"]
 
-class FmuError(ConfigError):
-    """An FMU that cannot be used. The message names the file and the reason."""
+_DESCRIPTION = "modelDescription.xml"
+_SHOWN_DEFECTS = 5
 
 
 @dataclasses.dataclass(frozen=True)
 class Fmu:
-    """An FMU file that was read: `description` is FMPy's ModelDescription."""
+    """An FMU file that was read: `description` is FMPy's ModelDescription.
+
+    `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are what is wrong with
+    the description and was tolerated, one sentence each with what was assumed.
+    """
 
     path: Path
     description: Any
     entries: tuple[str, ...]
+    unpacked: int = 0
+    defects: tuple[str, ...] = ()
 
     @functools.cached_property
     def digest(self) -> str:
@@ -55,18 +61,7 @@ class Fmu:
         from fmpy import platform, platform_tuple, sharedLibraryExtension
 
         folder = platform if self.description.fmiVersion[0] in "12" else platform_tuple
-        return f"binaries/{folder}/{self.kind.modelIdentifier}{sharedLibraryExtension}"
-
-    @property
-    def kind(self) -> Any:
-        """The interface that is used: FMPy's CoSimulation where there is one, else its ModelExchange.
-
-        Raises FmuError for an FMU that has neither.
-        """
-        found = self.description.coSimulation or self.description.modelExchange
-        if found is None:
-            raise FmuError(f"{self.path}: has neither a Co-Simulation nor a Model Exchange interface")
-        return found
+        return f"binaries/{folder}/{self.description.coSimulation.modelIdentifier}{sharedLibraryExtension}"
 
     @property
     def holds_python(self) -> bool:
@@ -75,14 +70,7 @@ class Fmu:
 
     def extract(self) -> Path:
         """Extract into a new temporary folder, which the caller removes."""
-        folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
-        try:
-            with zipfile.ZipFile(self.path) as archive:
-                archive.extractall(folder)  # extractall keeps member paths inside the folder
-        except (OSError, zipfile.BadZipFile, RuntimeError) as error:
-            shutil.rmtree(folder, ignore_errors=True)
-            raise FmuError(f"{self.path}: cannot be extracted: {error}") from error
-        return folder
+        return extract(self.path)
 
     def resources_uri(self, folder: Path) -> bytes:
         """The URI of the resources in an extracted folder, as the library takes it.
@@ -105,34 +93,26 @@ class Fmu:
         return b"file://" + path.replace(b" ", b"%20")
 
 
-def read_fmu(path: Path) -> Fmu:
-    """Read an FMU's description. Raises FmuError when it is none, or is damaged."""
-    from fmpy.model_description import read_model_description
+def read_fmu(path: Path, strict: bool = False) -> Fmu:
+    """Read an FMU's description. Raises FmuError when it is none, or is damaged.
 
-    if not path.exists():
-        raise FmuError(f"{path}: there is no such file")
-    try:
-        with zipfile.ZipFile(path) as archive:
-            entries = tuple(archive.namelist())
-    except (OSError, zipfile.BadZipFile) as error:
-        raise FmuError(f"{path}: is not an FMU: {error}") from error
-    if "modelDescription.xml" not in entries:
-        raise FmuError(f"{path}: is not an FMU: it has no modelDescription.xml")
-    try:
-        description = read_model_description(str(path), validate=False)
-    except Exception as error:  # FMPy raises five unrelated types for broken descriptions
-        raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
-    return Fmu(path, description, entries)
+    What can be tolerated is a defect of the Fmu; with `strict` it is a FmuError too.
+    """
+    entries = entries_of(path)
+    names = tuple(entry.filename for entry in entries)
+    if _DESCRIPTION not in names:
+        raise FmuError(f"{path}: is not an FMU: it has no {_DESCRIPTION}{nearest(_DESCRIPTION, names)}")
+    description, defects = read_description(path, read_entry(path, _DESCRIPTION))
+    fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects)
+    if strict and defects:
+        raise FmuError(f"{path}: strict: {len(defects)} defects: " + "; ".join(defects[:_SHOWN_DEFECTS]))
+    return fmu
 
 
 def check_runnable(fmu: Fmu) -> None:
     """Raise FmuError unless this master can run the FMU on this machine."""
-    md, kind = fmu.description, fmu.kind
-    if md.fmiVersion.startswith("1") and md.coSimulation is None:
-        raise FmuError(f"{fmu.path}: is FMI 1.0 Model Exchange; Model Exchange is supported from FMI 2.0 on")
-    if str(getattr(kind, "needsExecutionTool", None)).lower() in ("true", "1"):
-        tool = f" ({md.generationTool})" if md.generationTool else ""
-        raise FmuError(f"{fmu.path}: needs the tool that made it{tool}: export it without (stand-alone)")
+    if fmu.description.coSimulation is None:
+        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
     if fmu.binary not in fmu.entries:
         raise FmuError(
             f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "

@@ -199,7 +199,7 @@ def test_an_output_that_is_no_number_stops_the_run_and_keeps_the_rows(value):
     with pytest.raises(RunError, match=rf"t = 5 s \(step 500\): bad.t = {value} m/s"):
         engine.advance(600)
     assert engine.k == 500
-    assert len(engine.rows) == 500
+    assert engine.recorded().shape[0] == 500
 
 
 def test_a_unit_that_fails_is_named_with_the_time():
@@ -211,7 +211,7 @@ def test_a_unit_that_fails_is_named_with_the_time():
     engine = started([bad], plan_of([bad], {}))
     with pytest.raises(UnitError, match=r"t = 0.03 s \(step 3\): unit 'bad': fmi2DoStep returned Error"):
         engine.advance(10)
-    assert len(engine.rows) == 3
+    assert engine.recorded().shape[0] == 3
 
 
 def test_an_interrupt_keeps_the_rows():
@@ -223,7 +223,7 @@ def test_an_interrupt_keeps_the_rows():
     engine = started([bad], plan_of([bad], {}))
     with pytest.raises(KeyboardInterrupt):
         engine.advance(1000)
-    assert len(engine.rows) == engine.k == 301
+    assert engine.recorded().shape[0] == engine.k == 301
 
 
 # ---- initialization

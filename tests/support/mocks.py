@@ -141,4 +141,4 @@ def started(units: list[MockUnit], plan: Plan) -> Engine:
 
 def column(engine: Engine, name: str) -> NDArray[np.float64]:
     """The recorded values of a variable, one for each step done and one for now."""
-    return engine.rows[:, engine.plan.slots[name]]
+    return engine.recorded().column([c.name for c in engine.plan.columns].index(name))

@@ -1,0 +1,169 @@
+"""Opening and extracting the archive of an FMU, which may be damaged or hostile.
+
+Before anything is written: no entry stands outside the archive's folder, none is a link, a device or
+encrypted, no two are the same file, and sizes, their ratio and their number are within limits. While it is
+written, bytes are counted again, since an archive can lie about sizes. The limits are those that no honest
+FMU meets; EVCOSIM_FMU_LIMITS ("size=8e9 ratio=1000 entries=50000", sizes in bytes) sets others.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+import shutil
+import stat
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import IO
+
+from ...cosim.errors import ConfigError
+
+_VARIABLE = "EVCOSIM_FMU_LIMITS"
+_BLOCK = 1 << 20
+_RATIO_FROM = 1 << 20  # bytes: a small file of equal characters packs as well as a bomb
+_DESCRIPTION = 64 << 20  # bytes of modelDescription.xml
+
+
+class FmuError(ConfigError):
+    """An FMU that cannot be used. The message names the file and the reason."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+    """What an archive may hold: `size` bytes in all, `ratio` of unpacked to packed bytes, `entries`."""
+
+    size: float = 4e9
+    ratio: float = 500.0
+    entries: float = 20_000
+
+
+def limits() -> Limits:
+    """The limits, with those that the environment sets. Raises ConfigError for what is no limit."""
+    given = {}
+    for part in os.environ.get(_VARIABLE, "").split():
+        name, _, value = part.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = -1.0
+        if name not in ("size", "ratio", "entries") or not number > 0.0:
+            raise ConfigError(
+                f"{_VARIABLE}: '{part}' is not size=N, ratio=N or entries=N with a number above 0"
+            )
+        given[name] = number
+    return Limits(**given)
+
+
+def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
+    """The entries of an archive, none of which breaks a rule. Raises FmuError."""
+    if path.is_dir():
+        raise FmuError(f"{path}: is a folder, not an FMU; an FMU is one file (zip its content)")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            found = tuple(archive.infolist())
+    except FileNotFoundError as error:
+        raise FmuError(f"{path}: there is no such file") from error
+    except OSError as error:
+        raise FmuError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (
+        Exception
+    ) as error:  # zipfile raises BadZipFile, NotImplementedError, UnicodeDecodeError, struct.error
+        raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
+    _check(path, found, limits())
+    return found
+
+
+def _reason(path: Path, error: Exception) -> str:
+    if path.stat().st_size == 0:
+        return "the file is empty"
+    return "it is no zip archive, or a truncated one" if isinstance(error, zipfile.BadZipFile) else str(error)
+
+
+def _check(path: Path, entries: tuple[zipfile.ZipInfo, ...], allowed: Limits) -> None:
+    if len(entries) > allowed.entries:
+        raise FmuError(
+            f"{path}: the archive has {len(entries)} entries, more than {allowed.entries:g} ({_VARIABLE})"
+        )
+    total = sum(entry.file_size for entry in entries)
+    if total > allowed.size:
+        raise FmuError(
+            f"{path}: unpacked it has {total:.3g} bytes, more than {allowed.size:.3g} ({_VARIABLE})"
+        )
+    seen: dict[str, str] = {}
+    for entry in entries:
+        if problem := _problem(entry, allowed):
+            raise FmuError(f"{path}: entry {entry.filename!r} {problem}")
+        folded = entry.filename.rstrip("/").casefold()
+        if folded in seen and not entry.is_dir():
+            raise FmuError(f"{path}: entries {seen[folded]!r} and {entry.filename!r} are the same file")
+        seen[folded] = entry.filename
+
+
+def _problem(entry: zipfile.ZipInfo, allowed: Limits) -> str:
+    """What is wrong with an entry; "" when nothing is."""
+    name = entry.orig_filename  # zipfile cuts `filename` at a NUL and turns separators
+    parts = re.split(r"[/\\]", name)
+    if not name or "\0" in name or name[0] in "/\\" or ".." in parts or re.match(r"[A-Za-z]:", name):
+        return "would be written outside the FMU's folder"
+    mode = entry.external_attr >> 16
+    if mode and stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
+        return "is a link or a device, not a file"
+    if entry.flag_bits & 1:
+        return "is encrypted"
+    if entry.file_size > _RATIO_FROM and entry.file_size > allowed.ratio * max(1, entry.compress_size):
+        return (
+            f"unpacks to {entry.file_size / max(1, entry.compress_size):.0f} times its size, more than "
+            f"{allowed.ratio:g} ({_VARIABLE})"
+        )
+    return ""
+
+
+def read_entry(path: Path, name: str) -> bytes:
+    """The bytes of one entry of at most 64 MiB. Raises FmuError."""
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open(name) as file:
+            content = file.read(_DESCRIPTION + 1)
+    except Exception as error:  # a wrong checksum, a compression that is not known, ...
+        raise FmuError(f"{path}: entry {name!r} cannot be read: {error}") from error
+    if len(content) > _DESCRIPTION:
+        raise FmuError(f"{path}: entry {name!r} has more than {_DESCRIPTION >> 20} MiB")
+    return content
+
+
+def extract(path: Path) -> Path:
+    """Extract an archive into a new temporary folder, which the caller removes.
+
+    Raises FmuError naming the entry; then no folder is left.
+    """
+    entries = entries_of(path)
+    folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
+    left = limits().size
+    try:
+        with zipfile.ZipFile(path) as archive:
+            for entry in entries:
+                target = folder / entry.filename
+                if entry.is_dir():
+                    target.mkdir(parents=True, exist_ok=True)
+                    continue
+                target.parent.mkdir(parents=True, exist_ok=True)
+                with archive.open(entry) as source, target.open("wb") as copy:
+                    left -= _copied(path, entry, source, copy, left)
+    except BaseException as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, FmuError) or not isinstance(error, Exception):
+            raise
+        raise FmuError(f"{path}: cannot be extracted: {error}") from error
+    return folder
+
+
+def _copied(path: Path, entry: zipfile.ZipInfo, source: IO[bytes], target: IO[bytes], left: float) -> int:
+    """Copy an entry; how many bytes it had. Raises FmuError when they are more than it declares."""
+    count = 0
+    while block := source.read(_BLOCK):
+        count += len(block)
+        if count > entry.file_size or count > left:
+            raise FmuError(f"{path}: entry {entry.filename!r} is larger than it declares")
+        target.write(block)
+    return count

@@ -1,0 +1,173 @@
+"""Reading modelDescription.xml: nothing is expanded or fetched, and what can be borne is mended and told.
+
+FMPy reads the description of every FMI version, but raises what comes up for the small defects that the
+descriptions of real tools have. Each of them that has one sensible reading is mended before, and becomes a
+sentence that says what was assumed; what has none is a FmuError.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from .archive import FmuError
+
+_VERSIONS = ("1.0", "2.0", "3.0")
+_SCALAR_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration")
+_FLOATS = ("Real", "Float32", "Float64")
+_NUMBERS_ONLY = re.compile(r"[+-]?\d+")
+
+
+def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...]]:
+    """FMPy's ModelDescription and the defects that were mended. Raises FmuError."""
+    from fmpy.model_description import read_model_description
+
+    root = _parsed(path, xml)
+    defects = _mend(path, root)
+    from lxml import etree
+
+    packed = io.BytesIO()  # FMPy reads from archives
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("modelDescription.xml", etree.tostring(root))
+    try:
+        return read_model_description(packed, validate=False), tuple(defects)
+    except Exception as error:  # FMPy raises five unrelated types for broken descriptions
+        raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
+
+
+def _parsed(path: Path, xml: bytes) -> Any:
+    from lxml import etree
+
+    place = f"{path}: modelDescription.xml"
+    # in UTF-16 too: no description needs a document type, and entities are how XML reads files and explodes
+    if b"<!DOCTYPE" in xml.replace(b"\0", b"") or b"<!ENTITY" in xml.replace(b"\0", b""):
+        raise FmuError(
+            f"{place} has a document type (<!DOCTYPE), which may read files and expand without end"
+        )
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    try:
+        root = etree.fromstring(xml, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        raise FmuError(f"{place} is no well-formed XML: {error}") from error
+    if root.tag != "fmiModelDescription":
+        raise FmuError(f"{place} begins with <{root.tag}>, not with <fmiModelDescription>")
+    version = root.get("fmiVersion")
+    if version not in _VERSIONS and not (version or "").startswith("3."):
+        raise FmuError(f"{place}: fmiVersion is {version!r}; {', '.join(_VERSIONS)} are supported")
+    if root.find("ModelVariables") is None:
+        raise FmuError(f"{place} has no <ModelVariables>")
+    _check_identifiers(place, root)
+    return root
+
+
+def _check_identifiers(place: str, root: Any) -> None:
+    """A modelIdentifier names a file of the archive and C functions: it is a plain name or nothing of it."""
+    kinds = [root, *(root.find(k) for k in ("CoSimulation", "ModelExchange", "ScheduledExecution"))]
+    for kind in kinds:
+        name = None if kind is None else kind.get("modelIdentifier")
+        if name is not None and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
+            raise FmuError(
+                f"{place}: modelIdentifier is {name!r}, which is no plain name (letters, digits, _)"
+            )
+
+
+def _mend(path: Path, root: Any) -> list[str]:
+    defects: list[str] = []
+    variables = [v for v in root.find("ModelVariables") if isinstance(v.tag, str)]
+    scalar = root.get("fmiVersion")[0] in "12"
+    types = {t.get("name") for t in root.iter("SimpleType", "Type")}
+    types |= {t.get("name") for t in root.findall("TypeDefinitions/*")}
+    seen: set[str] = set()
+    for v in variables:
+        value = next((c for c in v if c.tag in _SCALAR_TYPES), None) if scalar else v
+        name = v.get("name")
+        if name is None or value is None:
+            v.getparent().remove(v)
+            defects.append(
+                f"line {v.sourceline}: a variable without {'a type' if name else 'a name'} is left out"
+            )
+            continue
+        _require(path, v, name, seen)
+        defects += _mend_variable(v, value, name, types)
+    defects += _mend_structure(root, len(variables))
+    return defects
+
+
+def _require(path: Path, v: Any, name: str, seen: set[str]) -> None:
+    place = f"{path}: modelDescription.xml: variable '{name}' (line {v.sourceline})"
+    if name in seen:
+        raise FmuError(f"{place} is declared twice")
+    seen.add(name)
+    reference = v.get("valueReference")
+    if reference is None or not re.fullmatch(r"\d+", reference) or int(reference) >= 2**32:
+        raise FmuError(
+            f"{place} has valueReference {reference!r}; a whole number from 0 to 2^32 - 1 is needed"
+        )
+
+
+def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> list[str]:
+    defects = []
+    declared = value.get("declaredType")
+    if declared is not None and declared not in types:
+        del value.attrib["declaredType"]
+        defects.append(f"{name}: declaredType '{declared}' is not defined; it is ignored")
+    for attribute in ("start", "min", "max"):
+        given = value.get(attribute)
+        if given is not None and not v.findall("Dimension") and not _is_of_type(given, value.tag):
+            del value.attrib[attribute]
+            defects.append(f"{name}: {attribute} = {given!r} is no {value.tag}; it is ignored")
+    if (wrong := _illegal_variability(v)) is not None:
+        causality = v.get("causality", "local")
+        v.set("variability", _ALLOWED[causality][0])
+        defects.append(
+            f"{name}: a {causality} of variability '{wrong}' is not allowed; '{v.get('variability')}' is assumed"
+        )
+    return defects
+
+
+def _is_of_type(text: str, kind: str) -> bool:
+    if kind in _FLOATS:
+        try:
+            return float(text) == float(text)
+        except ValueError:
+            return False
+    if kind == "Boolean":
+        return text.strip().lower() in ("true", "false", "1", "0")
+    if "Int" in kind or kind == "Enumeration":
+        return _NUMBERS_ONLY.fullmatch(text.strip()) is not None
+    return True
+
+
+_ALLOWED = {
+    "parameter": ("fixed", "tunable"), "calculatedParameter": ("fixed", "tunable"),
+    "structuralParameter": ("fixed", "tunable"), "input": ("discrete", "continuous"),
+    "output": ("constant", "discrete", "continuous"), "independent": ("continuous",),
+}  # fmt: skip # a table: section 2.2.7 of FMI 2.0, 2.4.7.4 of FMI 3.0
+
+
+def _illegal_variability(v: Any) -> str | None:
+    """The variability, given or by default, that a variable of this causality cannot have."""
+    version = v.getroottree().getroot().get("fmiVersion")
+    variability: str | None = v.get("variability", "continuous" if version == "2.0" else None)
+    allowed = _ALLOWED.get(v.get("causality", "local"))
+    if version == "1.0" or variability is None or allowed is None or variability in allowed:
+        return None
+    return variability
+
+
+def _mend_structure(root: Any, count: int) -> list[str]:
+    """Unknowns of FMI 2.0 that name no variable are left out."""
+    defects: list[str] = []
+    if root.get("fmiVersion") != "2.0":
+        return defects
+    for unknown in list(root.iter("Unknown")):
+        numbers = [unknown.get("index") or "", *(unknown.get("dependencies") or "").split()]
+        bad = [n for n in numbers if not (_NUMBERS_ONLY.fullmatch(n) and 1 <= int(n) <= count)]
+        if bad:
+            unknown.getparent().remove(unknown)
+            place = f"ModelStructure, line {unknown.sourceline}"
+            defects.append(f"{place}: {bad[0]!r} is the index of none of {count} variables; it is left out")
+    return defects
