@@ -67,7 +67,8 @@ class UnitEntry(FileModel):
 
     `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
     FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
-    that evcosim built itself is in the master's). `strict` refuses an FMU with defects that we could bear.
+    that evcosim built itself is in the master's); `step_timeout` [s] is what an answer of such a process may
+    take. `strict` refuses an FMU with defects that we could bear.
     """
 
     fmu: str
@@ -76,6 +77,7 @@ class UnitEntry(FileModel):
     period: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
     substeps: int = Field(default=1, ge=1)
     isolation: Isolation | None = None
+    step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
     strict: bool = False
 
 

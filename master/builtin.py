@@ -5,6 +5,7 @@ This is the one module of the master that knows the package of FMUs.
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest
@@ -22,6 +23,18 @@ def builtin_text(name: str) -> str:
     from ..fmus import catalog
 
     return catalog.text(name)
+
+
+def is_builtin(name: str, digest: str) -> bool:
+    """Whether an FMU with this model name and SHA-256 is the one that evcosim builds.
+
+    Equal sources give equal bytes, so that no other file can pass for it.
+    """
+    from ..fmus import build
+
+    if name not in build.names():
+        return False
+    return hashlib.sha256(build.built(name).read_bytes()).hexdigest() == digest
 
 
 def build_fmu(name: str, folder: Path | None = None) -> Path:

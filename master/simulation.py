@@ -27,17 +27,18 @@ import numpy as np
 from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.files import DATA
-from ..cosim.plan import Plan
+from ..cosim.plan import Plan, UnitPlan
 from ..cosim.presentation import check_specs, figure_spec, metric_specs
 from ..cosim.resolve import Options, check_effect, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
-from ..cosim.system import Algorithm, System, Value, load_system
+from ..cosim.system import Algorithm, Isolation, System, Value, load_system
 from ..cosim.variation import BusVariation, varied
 from .algorithm import Engine
-from .builtin import fmu_file
+from .builtin import fmu_file, is_builtin
 from .fmi.fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
+from .isolation.unit import IsolatedUnit
 from .loading import load_unit
 from .unit import Unit
 
@@ -88,7 +89,8 @@ class Simulation:
     `system` and `scenario` are built-in names or paths of TOML files, a system also one made in memory;
     `parameters` ("unit.parameter" to value) override those of the files; `fmus` (unit to path) put other
     FMUs in the place of the named ones; `ideal` leaves the buses out (unit conversion only); `bus` varies
-    all of them (BusVariation); `log_frames` keeps the frames for `write_can_log`.
+    all of them (BusVariation); `log_frames` keeps the frames for `write_can_log`; `isolation` puts all units
+    into processes of their own ("process") or none ("none"), whatever the system says.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -104,6 +106,7 @@ class Simulation:
         stop_time: float | None = None,
         bus: BusVariation | None = None,
         log_frames: bool = False,
+        isolation: Isolation | None = None,
     ) -> None:
         options = Options(parameters or {}, algorithm, stop_time, ideal)
         prepared = prepare(system, scenario, options, fmus, bus)
@@ -117,15 +120,25 @@ class Simulation:
         self.loop_seconds = 0.0
         self._units: dict[str, Unit] = {}
         self._last_warnings: dict[str, int] = {}
+        self.isolation: dict[str, Isolation] = {}
         try:
             for unit in self.plan.units:
-                self._units[unit.name] = load_unit(self._fmus[unit.name], unit.name, unit.interface)
+                self._units[unit.name] = self._load(unit, isolation)
             self._engine = Engine(self.plan, self._units, log_raw=log_frames)
             initialize(self._units, self.plan)
             self._engine.start()
         except BaseException:
             self._free()
             raise
+
+    def _load(self, plan: UnitPlan, wanted: Isolation | None) -> Unit:
+        fmu, entry = self._fmus[plan.name], self.system.file.units[plan.name]
+        own = fmu.description.modelName
+        isolation = wanted or entry.isolation or ("none" if is_builtin(own, fmu.digest) else "process")
+        self.isolation[plan.name] = isolation
+        if isolation == "none":
+            return load_unit(fmu, plan.name, plan.interface)
+        return IsolatedUnit(fmu, plan.name, plan.interface, entry.step_timeout)
 
     # ---- a loop of one's own
 
@@ -282,6 +295,7 @@ class Simulation:
                     "parameters": unit.parameters,
                     "period": unit.every * experiment.step_size,
                     "substeps": unit.substeps,
+                    "isolation": self.isolation[unit.name],
                 }
                 for unit in plan.units
             },
@@ -340,6 +354,7 @@ def simulate(
     algorithm: Algorithm | None = None,
     stop_time: float | None = None,
     bus: BusVariation | None = None,
+    isolation: Isolation | None = None,
     progress: Progress | None = None,
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
@@ -356,6 +371,7 @@ def simulate(
         algorithm=algorithm,
         stop_time=stop_time,
         bus=bus,
+        isolation=isolation,
     ) as simulation:
         try:
             simulation.run(progress)

@@ -121,9 +121,10 @@ def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> lis
             defects.append(f"{name}: {attribute} = {given!r} is no {value.tag}; it is ignored")
     if (wrong := _illegal_variability(v)) is not None:
         causality = v.get("causality", "local")
-        v.set("variability", _ALLOWED[causality][0])
+        assumed = _ALLOWED[causality][0]
+        v.set("variability", assumed)
         defects.append(
-            f"{name}: a {causality} of variability '{wrong}' is not allowed; '{v.get('variability')}' is assumed"
+            f"{name}: a {causality} of variability '{wrong}' is not allowed; '{assumed}' is assumed"
         )
     return defects
 
