@@ -20,6 +20,21 @@ ScenarioOption = Annotated[
     str | None,
     typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
 ]
+
+
+class Isolation(enum.StrEnum):
+    """Where units run."""
+
+    process = "process"
+    none = "none"
+
+
+IsolationOption = Annotated[
+    Isolation | None,
+    typer.Option(
+        help="Each unit in a process of its own, or none; default: other tools' FMUs.", show_default=False
+    ),
+]
 SettingsOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),

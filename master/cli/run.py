@@ -14,6 +14,8 @@ from .options import (
     AlgorithmOption,
     FmusOption,
     IdealOption,
+    Isolation,
+    IsolationOption,
     QuietOption,
     ScenarioOption,
     SettingsOption,
@@ -38,6 +40,7 @@ def run(
     fmus: FmusOption = None,
     ideal: IdealOption = False,
     algorithm: AlgorithmOption = None,
+    isolation: IsolationOption = None,
     stop_time: StopTimeOption = None,
     output: Annotated[
         Path | None,
@@ -58,6 +61,7 @@ def run(
         fmus=fmus or [],
         ideal=ideal,
         algorithm=algorithm,
+        isolation=isolation,
         stop_time=stop_time,
         output=output,
         can_log=can_log,
@@ -77,6 +81,7 @@ class Order:
     fmus: list[str]
     ideal: bool
     algorithm: Algorithm | None
+    isolation: Isolation | None
     stop_time: float | None
     output: Path | None
     can_log: bool
@@ -155,6 +160,7 @@ def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Sim
         algorithm=order.algorithm.value if order.algorithm else None,
         stop_time=order.stop_time,
         log_frames=order.can_log,
+        isolation=order.isolation.value if order.isolation else None,
     )
 
 

@@ -94,9 +94,8 @@ class IsolatedUnit:
         if not isinstance(answer, dict):
             raise UnitError(f"unit '{self.name}': its process answers {answer!r}")
         if "error" in answer:
-            raise (FmuError if answer.get("kind") in ("FmuError", "ConfigError") else UnitError)(
-                answer["error"]
-            )
+            of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
+            raise (FmuError if of_the_file else UnitError)(answer["error"])
         return answer
 
     def _turn(self, what: bytes, time: float = 0.0, step_size: float = 0.0, count: int = 0) -> None:
@@ -140,20 +139,16 @@ class IsolatedUnit:
         ours = floats(np.frombuffer(mmap.mmap(self._shared.fileno(), 8 * max(1, size)), dtype=np.float64))
         view = floats(memory)
         pairs = list(zip(plan.blocks, theirs.blocks, strict=True))
-        n = {id(b): len(b.variables) for b, _ in pairs}
         self._inputs = [
-            (ours, slice(t.slot, t.slot + n[id(b)]), view[b.slot : b.slot + n[id(b)]])
+            (ours, slice(t.slot, t.slot + len(b.variables)), view[b.slot : b.slot + len(b.variables)])
             for b, t in pairs
             if b.kind == "input"
         ]
         self._outputs = [
-            (
-                view,
-                slice(wire.shown(b), wire.shown(b) + n[id(b)]),
-                ours[wire.shown(t) : wire.shown(t) + n[id(b)]],
-            )
+            (view, slice(place, place + len(b.variables)), ours[own : own + len(b.variables)])
             for b, t in pairs
             if b.kind != "input"
+            for place, own in [(wire.shown(b), wire.shown(t))]
         ]
         self._through = [
             (view, slice(first, first + b.feedthrough), ours[t.latest : t.latest + b.feedthrough])

@@ -4,6 +4,9 @@
    Value references: tests/support/c_fmu.py. BEHAVIOR (a number, 0: good) makes one thing go wrong:
    10 s  doStep returns status s from t = 0.5 on    20 s  setReal returns status s    30 s  getReal does
    1     instantiate returns nothing                2     getReal gives NaN from t = 0.5 on
+   50 on: from t = 0.5 s on, doStep 50 writes to address 0, 51 aborts, 52 and 53 call exit(0) and exit(3), 54 never
+   returns, 55 recurses without end, 56 takes memory without end, 57 fills a file, 58 frees twice
+   60 instantiate writes to address 0               61 terminate never returns     62 prints a banner
    3     FMI 3.0: terminateSimulation at t = 0.5    4     FMI 3.0: early return at t = 0.5 */
 
 #include <stdbool.h>
@@ -47,8 +50,11 @@ static int bad(Unit *u, int group) {
     return status;
 }
 
+static void misbehave(void);
+
 static void advance(Unit *u, double h) {
     double *v = u->values;
+    if (u->time >= 0.4999) misbehave();
     v[1] += h * (v[2] * v[0] - v[1]);
     if (BEHAVIOR == 2 && u->time >= 0.4999) v[1] = NAN;
     v[4] = v[3] + 1;
@@ -63,8 +69,28 @@ static void advance(Unit *u, double h) {
     u->time += h;
 }
 
+static int *volatile nowhere; /* where the compiler cannot see that it is */
+
+static int deeper(volatile int n) { return n ? deeper(n + 1) + n : 0; }
+
+static void misbehave(void) {
+    switch (BEHAVIOR) {
+    case 50: *nowhere = 1; break;
+    case 51: abort();
+    case 52: exit(0);
+    case 53: exit(3);
+    case 54: for (volatile int i = 0;; i++) {}
+    case 55: deeper(1); break;
+    case 56: for (;;) { char *p = malloc(1 << 28); if (!p) abort(); p[0] = 1; }
+    case 57: { FILE *f = fopen("large", "w"); static char block[1 << 20]; for (;;) fwrite(block, 1, sizeof block, f); }
+    case 58: { char *volatile p = malloc(100); free(p); free(p); }
+    }
+}
+
 static Unit *make(const char *name) {
     if (BEHAVIOR == 1) return NULL;
+    if (BEHAVIOR == 60) *nowhere = 1;
+    if (BEHAVIOR == 62) { printf("*** a banner of the tool ***\n"); fflush(stdout); }
     Unit *u = calloc(1, sizeof(Unit));
     u->values[2] = 1.0;
     u->texts[7] = strdup("some text");
@@ -196,7 +222,7 @@ EXPORT int F(DoStep)(void *c, double t, double h, int no_set_state) {
     if (status < 2) advance(c, h);
     return status;
 }
-EXPORT int F(Terminate)(void *c) { return 0; }
+EXPORT int F(Terminate)(void *c) { while (BEHAVIOR == 61) {} return 0; }
 EXPORT void F(FreeInstance)(void *c) { release(c); }
 #else
 EXPORT void *F(InstantiateCoSimulation)(const char *name, const char *token, const char *resources, bool visible,
