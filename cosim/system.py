@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, PlainValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, model_validator
 
 from .channel import BusSettings
 from .figures import FigureSpec
@@ -62,13 +62,38 @@ class Experiment(FiniteModel):
     loop_tolerance: float = Field(default=1e-9, gt=0.0)
 
 
+class MapEntry(FileModel):
+    """The FMU's `variable` behind a name of the system; `unit`, if the FMU declares none or a wrong one;
+    `invert`, if its sign is the other one."""
+
+    variable: str
+    unit: str | None = None
+    invert: bool = False
+
+
+def _mapped(value: Any) -> Any:
+    return {"variable": value} if isinstance(value, str) else value
+
+
+Mapped = Annotated[MapEntry, BeforeValidator(_mapped)]
+
+
+class MapTables(FileModel):
+    """The variables of an FMU behind the names that the system uses (see `mapping.present`)."""
+
+    inputs: dict[str, Mapped] = {}
+    outputs: dict[str, Mapped] = {}
+    parameters: dict[str, Mapped] = {}
+
+
 class UnitEntry(FileModel):
     """One unit: its FMU (a built-in name or a path), parameters and starts, and how it is stepped.
 
     `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
     FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
     that evcosim built itself is in the master's); `step_timeout` [s] is what an answer of such a process may
-    take. `strict` refuses an FMU with defects that we could bear.
+    take. `strict` refuses an FMU with defects that we could bear. `map` gives its variables the names that
+    the system uses; `absent` are names of the system that it does not have.
     """
 
     fmu: str
@@ -79,6 +104,8 @@ class UnitEntry(FileModel):
     isolation: Isolation | None = None
     step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
     strict: bool = False
+    map: MapTables = MapTables()
+    absent: list[str] = []
 
 
 class BusEntry(FileModel):

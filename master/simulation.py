@@ -27,11 +27,14 @@ import numpy as np
 from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.files import DATA
+from ..cosim.interface import UnitInterface
+from ..cosim.mapping import present, without_absent
 from ..cosim.plan import Plan, UnitPlan
 from ..cosim.presentation import check_specs, figure_spec, metric_specs
 from ..cosim.resolve import Options, check_effect, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
+from ..cosim.swap import swapped
 from ..cosim.system import Algorithm, Isolation, System, Value, load_system
 from ..cosim.variation import BusVariation, varied
 from .algorithm import Engine
@@ -64,6 +67,7 @@ def prepare(
     options: Options | None = None,
     fmus: Mapping[str, str | Path] | None = None,
     bus: BusVariation | None = None,
+    swaps: Mapping[str, str | Path] | None = None,
 ) -> Prepared:
     """Read and check all that a run needs; the arguments are those of `Simulation`.
 
@@ -76,8 +80,17 @@ def prepare(
         if options.ideal:
             raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
         read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
+    read = swapped(read, swaps or {})
+    read, driven, left_out = without_absent(read, driven)
     loaded = _read_fmus(read, driven, fmus or {})
-    plan = resolve(read, driven, {unit: fmu.interface for unit, fmu in loaded.items()}, options)
+    interfaces = {
+        unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
+        for unit, fmu in loaded.items()
+    }
+    for unit, interface in interfaces.items():
+        _check_absent(read, unit, interface)
+    plan = _advised(lambda: resolve(read, driven, interfaces, options), swaps)
+    plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)
@@ -88,9 +101,10 @@ class Simulation:
 
     `system` and `scenario` are built-in names or paths of TOML files, a system also one made in memory;
     `parameters` ("unit.parameter" to value) override those of the files; `fmus` (unit to path) put other
-    FMUs in the place of the named ones; `ideal` leaves the buses out (unit conversion only); `bus` varies
-    all of them (BusVariation); `log_frames` keeps the frames for `write_can_log`; `isolation` puts all units
-    into processes of their own ("process") or none ("none"), whatever the system says.
+    FMUs in the place of the named ones, `swaps` (unit to swap file) FMUs with other names; `ideal` leaves the
+    buses out (unit conversion only); `bus` varies all of them (BusVariation); `log_frames` keeps the frames
+    for `write_can_log`; `isolation` puts all units into processes of their own ("process") or none ("none"),
+    whatever the system says.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -107,13 +121,15 @@ class Simulation:
         bus: BusVariation | None = None,
         log_frames: bool = False,
         isolation: Isolation | None = None,
+        swaps: Mapping[str, str | Path] | None = None,
     ) -> None:
         options = Options(parameters or {}, algorithm, stop_time, ideal)
-        prepared = prepare(system, scenario, options, fmus, bus)
+        prepared = prepare(system, scenario, options, fmus, bus, swaps)
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
         self.plan: Plan = prepared.plan
         self._fmus = prepared.fmus
+        self._interfaces = {unit.name: unit.interface for unit in self.plan.units}
         if log_frames:
             _check_frames(self.system)
         self.log_frames = log_frames
@@ -203,7 +219,7 @@ class Simulation:
             )
         if plan.driver or plan.mailbox is None:
             raise ConfigError(f"{name} is driven by {plan.driver}; use override() to take its place")
-        number = checked(value, self._fmus[unit].interface.variables[variable], f"set {name}")
+        number = checked(value, self._interfaces[unit].variables[variable], f"set {name}")
         self._engine.memory[plan.mailbox] = float(number)
 
     def override(self, name: str, value: float) -> None:
@@ -219,15 +235,14 @@ class Simulation:
         self._effect(name, "reset", None)
 
     def _effect(self, name: str, action: str, value: float | None) -> None:
-        interfaces = {unit: fmu.interface for unit, fmu in self._fmus.items()}
-        check_effect(name, action, value, interfaces, self.plan.inputs, action)
+        check_effect(name, action, value, self._interfaces, self.plan.inputs, action)
         self._engine.effect(name, action, value)
 
     def _split(self, name: str) -> tuple[str, str]:
         unit, _, variable = name.partition(".")
         if unit not in self._fmus:
             raise ConfigError(f"{name}: there is no unit '{unit}'{nearest(unit, self._fmus)}")
-        known = self._fmus[unit].interface.variables
+        known = self._interfaces[unit].variables
         if variable not in known:
             raise ConfigError(f"{name}: unit '{unit}' has no variable '{variable}'{nearest(variable, known)}")
         return unit, variable
@@ -296,6 +311,7 @@ class Simulation:
                     "period": unit.every * experiment.step_size,
                     "substeps": unit.substeps,
                     "isolation": self.isolation[unit.name],
+                    "map": self.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
                 }
                 for unit in plan.units
             },
@@ -355,6 +371,7 @@ def simulate(
     stop_time: float | None = None,
     bus: BusVariation | None = None,
     isolation: Isolation | None = None,
+    swaps: Mapping[str, str | Path] | None = None,
     progress: Progress | None = None,
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
@@ -372,6 +389,7 @@ def simulate(
         stop_time=stop_time,
         bus=bus,
         isolation=isolation,
+        swaps=swaps,
     ) as simulation:
         try:
             simulation.run(progress)
@@ -398,6 +416,25 @@ def _check_frames(system: System) -> None:
                 f'{system.path}: buses.{name}.resolution = "ideal": values that are not quantized make no '
                 "frames that could be kept"
             )
+
+
+def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
+    for name in system.file.units[unit].absent:
+        if name in interface.variables:
+            raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
+
+
+def _advised(resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
+    """The plan; an error of a run with swapped units says what shows all that is missing."""
+    try:
+        return resolved()
+    except ConfigError as error:
+        if not swaps:
+            raise
+        unit, path = next(iter(swaps.items()))
+        raise ConfigError(
+            f"{error}\n'evcosim check {path} --as SYSTEM.{unit}' shows what the system needs and what fits"
+        ) from error
 
 
 def _defects(unit: str, fmu: Fmu) -> list[str]:

@@ -36,13 +36,13 @@ def scalar(text: str) -> Value:
         return text
 
 
-def parse_fmus(options: Sequence[str]) -> dict[str, str]:
-    """`--fmu` options as unit to path (or built-in name). Raises ConfigError."""
+def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, str]:
+    """Options unit=PATH (or built-in name) as unit to path. Raises ConfigError."""
     paths = {}
-    for option in options:
-        unit, _, path = (part.strip() for part in option.partition("="))
+    for text in given:
+        unit, _, path = (part.strip() for part in text.partition("="))
         if not (unit and path):
-            raise ConfigError(f"--fmu {option}: it is written unit=PATH, as in vehicle=my/Vehicle.fmu")
+            raise ConfigError(f"{option} {text}: it is written unit=PATH, as in vehicle={example}")
         paths[unit] = path
     return paths
 

@@ -45,11 +45,11 @@ def budget(
     """
     from ...cosim.budget import as_data
     from ..budget import budget as measured
-    from .arguments import as_typed, parse_fmus, parse_settings
+    from .arguments import as_typed, parse_files, parse_settings
     from .console import print_json, progress_bar
     from .outputs import prepared
 
-    parameters, others = parse_settings(settings or []), parse_fmus(fmus or [])
+    parameters, others = parse_settings(settings or []), parse_files("--fmu", fmus or [], "my/Vehicle.fmu")
     folder = prepared(output or _default_folder(system, scenario))
     with as_typed(settings or []), progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measured(

@@ -80,7 +80,7 @@ def identify(
     """Identify gain and pole from an input to an output."""
     from ...cosim.errors import ConfigError
     from .. import identify as library
-    from .arguments import parse_fmus
+    from .arguments import parse_files
     from .outputs import prepared
 
     given: dict[str, Any] = {
@@ -93,7 +93,7 @@ def identify(
     if ideal and library.is_fmu(target):
         raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
     options: dict[str, Any] = {
-        "fmus": parse_fmus(fmus or []),
+        "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
         "ideal": ideal,
         "algorithm": algorithm.value if algorithm else None,
         "step_size": step_size,

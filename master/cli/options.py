@@ -43,6 +43,10 @@ FmusOption = Annotated[
     list[str] | None,
     typer.Option("--fmu", metavar="UNIT=PATH", help="Put another FMU in; can be given again."),
 ]
+SwapsOption = Annotated[
+    list[str] | None,
+    typer.Option("--swap", metavar="UNIT=FILE", help="Put an FMU in by its swap file; can be given again."),
+]
 IdealOption = Annotated[bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")]
 AlgorithmOption = Annotated[
     Algorithm | None, typer.Option(help="The order of steps; default: the system's own.", show_default=False)

@@ -20,6 +20,7 @@ from .options import (
     ScenarioOption,
     SettingsOption,
     StopTimeOption,
+    SwapsOption,
     SystemArgument,
 )
 
@@ -38,6 +39,7 @@ def run(
     scenario: ScenarioOption = None,
     settings: SettingsOption = None,
     fmus: FmusOption = None,
+    swaps: SwapsOption = None,
     ideal: IdealOption = False,
     algorithm: AlgorithmOption = None,
     isolation: IsolationOption = None,
@@ -59,6 +61,7 @@ def run(
         scenario=scenario,
         settings=settings or [],
         fmus=fmus or [],
+        swaps=swaps or [],
         ideal=ideal,
         algorithm=algorithm,
         isolation=isolation,
@@ -79,6 +82,7 @@ class Order:
     scenario: str | None
     settings: list[str]
     fmus: list[str]
+    swaps: list[str]
     ideal: bool
     algorithm: Algorithm | None
     isolation: Isolation | None
@@ -125,11 +129,11 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
 def _run(order: Order) -> Outcome:
     """Prepare everything, then step: what goes wrong in the steps is an outcome, before them it is raised."""
     from ...cosim.errors import ConfigError, RunError
-    from .arguments import as_typed, parse_fmus, parse_settings
+    from .arguments import as_typed, parse_files, parse_settings
     from .interrupts import Interrupts
     from .outputs import prepared_for_results
 
-    parameters, fmus = parse_settings(order.settings), parse_fmus(order.fmus)
+    parameters, fmus = parse_settings(order.settings), parse_files("--fmu", order.fmus, "my/Vehicle.fmu")
     if order.can_log and order.ideal:
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
@@ -150,12 +154,14 @@ def _run(order: Order) -> Outcome:
 
 def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Simulation:
     from ..simulation import Simulation
+    from .arguments import parse_files
 
     return Simulation(
         order.system,
         order.scenario,
         parameters=parameters,
         fmus=fmus,
+        swaps=parse_files("--swap", order.swaps, "my/swap.toml"),
         ideal=order.ideal,
         algorithm=order.algorithm.value if order.algorithm else None,
         stop_time=order.stop_time,

@@ -135,3 +135,45 @@ def _mixed_3() -> str:
 <CoSimulation modelIdentifier="mixed"/>
 <ModelVariables>{"".join(lines)}</ModelVariables>
 <ModelStructure>{"".join(outputs)}</ModelStructure></fmiModelDescription>"""
+
+
+_VEHICLE = [
+    # name, value reference, causality, unit of measure, start, description
+    ("pedal", 0, "input", "1", "0", "Throttle, 0 to 1"),
+    ("F_brake", 1, "input", "N", "0", "Brake force, negative when it brakes"),
+    ("slope", 2, "input", "rad", "0", "Angle of the road"),
+    ("v", 10, "output", "", "0", "Speed"),
+    ("a", 11, "output", "m/s2", "", "Acceleration"),
+    ("P", 12, "output", "W", "", "Electrical power"),
+    ("s", 13, "local", "m", "0", "Distance"),
+    ("m_total", 20, "parameter", "kg", "200", "Mass of vehicle and rider"),
+]
+
+
+def vehicle_fmu(path: Path, fmi: int) -> Path:
+    """The vehicle of sources/vehicle.c as an FMU at `path`, in FMI 2.0 or 3.0: a stranger to our system."""
+    variables, structure = [], []
+    for i, (name, reference, causality, unit, start, text) in enumerate(_VEHICLE, 1):
+        real = (f' unit="{unit}"' if unit else "") + (f' start="{start}"' if start else "")
+        about = f'name="{name}" valueReference="{reference}" causality="{causality}" description="{text}"'
+        variability = "fixed" if causality == "parameter" else "continuous"
+        initial = ' initial="exact"' if start and causality in ("output", "local") else ""
+        about += f' variability="{variability}"{initial}'
+        if fmi == 3:
+            variables.append(f"<Float64 {about}{real}/>")
+            structure.append(
+                f'<Output valueReference="{reference}" dependencies=""/>' if causality == "output" else ""
+            )
+        else:
+            variables.append(f"<ScalarVariable {about}><Real{real}/></ScalarVariable>")
+            structure.append(f'<Unknown index="{i}" dependencies=""/>' if causality == "output" else "")
+    if fmi == 3:
+        variables.append('<Float64 name="time" valueReference="31" causality="independent"/>')
+    body = "".join(structure) if fmi == 3 else f"<Outputs>{''.join(structure)}</Outputs>"
+    token = 'instantiationToken="v"' if fmi == 3 else 'guid="v"'
+    description = (
+        f'<fmiModelDescription fmiVersion="{fmi}.0" modelName="Vehicle" {token}>'
+        f'<CoSimulation modelIdentifier="vehicle"/><ModelVariables>{"".join(variables)}</ModelVariables>'
+        f"<ModelStructure>{body}</ModelStructure></fmiModelDescription>"
+    )
+    return compile_fmu(path, SOURCES / "vehicle.c", description, "vehicle", fmi, [f"-DFMI={fmi}"])
