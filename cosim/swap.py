@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from .errors import ConfigError, nearest
 from .files import read_toml
+from .fit import Row
 from .system import System, UnitEntry
+from .writing import replacing
 
 
 class SwapFile(UnitEntry):
@@ -43,3 +48,35 @@ def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEn
     period = before.period if file.period is None else file.period
     given = {name: getattr(file, name) for name in UnitEntry.model_fields}
     return UnitEntry(**{**given, "fmu": fmu, "period": period})
+
+
+def written(path: Path, fmu: str, place: str, rows: Sequence[Row]) -> None:
+    """Write a swap file from the rows of a check, with the reason beside each. Raises ConfigError."""
+    lines = [
+        f"# {Path(fmu).name} in the place of {place}; made by evcosim check, to be edited.",
+        f"fmu = {json.dumps(os.path.relpath(fmu, path.parent or Path('.')))}",
+        f'replaces = "{place}"',
+    ]
+    missing = [row.need for row in rows if row.verdict == "missing" and row.need]
+    lines.append("# names of the system that the FMU does not have; what needs them is left out")
+    lines.append(f"absent = {json.dumps(missing)}")
+    for role in ("input", "output", "parameter"):
+        lines += ["", f"[map.{role}s]"]
+        lines += [line for row in rows if row.role == role for line in _line(row)]
+    with replacing(path) as file:
+        file.write(("\n".join(lines) + "\n").encode())
+
+
+def _line(row: Row) -> list[str]:
+    others = [name for name in row.candidates if name != row.variable]
+    comment = f"# {row.reason}" + (f"; others: {', '.join(others)}" if others else "")
+    if row.verdict == "unused":
+        return [f"# {row.variable}: {row.reason}"]
+    if not row.variable:
+        return [f"# {row.need} = ?  {comment}"]
+    name = row.need if re.fullmatch(r"[A-Za-z0-9_-]+", row.need) else json.dumps(row.need)
+    if "declares no unit" in row.reason:
+        unit = row.reason.rpartition("[")[2].rstrip("]")
+        entry = f"{{ variable = {json.dumps(row.variable)}, unit = {json.dumps(unit)} }}"
+        return [f"{name} = {entry}  {comment}: assumed"]
+    return [f"{name} = {json.dumps(row.variable)}  {comment}"]

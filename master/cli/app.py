@@ -9,6 +9,7 @@ import typer
 
 from .budget import budget
 from .build import build
+from .check import check
 from .compare import compare
 from .identify import identify
 from .info import info
@@ -33,6 +34,7 @@ def command() -> Any:
         "run": run,
         "list": list_,
         "info": info,
+        "check": check,
         "plot": plot,
         "compare": compare,
         "identify": identify,
