@@ -1,7 +1,7 @@
 """What is measured: a ring of equal units, and the reference solution that every result is compared with.
 
 Unit i receives the outputs of unit i - 1. The first one has gain -1, so that the loop is a stable oscillation
-round the constant that the biases make: all values stay in a range of a few units and never fade to denormals.
+round the constant that the biases make: values stay in a range of a few units and never fade to denormals.
 """
 
 from __future__ import annotations

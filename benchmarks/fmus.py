@@ -44,16 +44,12 @@ def c_fmu(folder: Path, signals: int) -> Path:
 
 def _description(name: str, signals: int) -> str:
     """The model description of Node<signals>; value references as node.c says."""
-    variables, structure = [], []
-    for i in range(signals):
-        variables.append(_scalar(f"u{i}", i, "input", "continuous", '<Real start="0"/>'))
-    for i in range(signals):
-        variables.append(_scalar(f"y{i}", signals + i, "output", "continuous", "<Real/>", 'initial="exact" '))
-        structure.append(f'<Unknown index="{signals + i + 1}" dependencies=""/>')
-        variables[-1] = variables[-1].replace("<Real/>", '<Real start="0"/>')
-    variables.append(_scalar("gain", 2 * signals, "parameter", "fixed", '<Real start="1"/>'))
-    for i in range(signals):
-        variables.append(_scalar(f"bias{i}", 2 * signals + 1 + i, "parameter", "fixed", '<Real start="0"/>'))
+    real, n = '<Real start="0"/>', signals
+    variables = [_scalar(f"u{i}", i, "input", "continuous", real) for i in range(n)]
+    variables += [_scalar(f"y{i}", n + i, "output", "continuous", real, 'initial="exact" ') for i in range(n)]
+    variables.append(_scalar("gain", 2 * n, "parameter", "fixed", '<Real start="1"/>'))
+    variables += [_scalar(f"bias{i}", 2 * n + 1 + i, "parameter", "fixed", real) for i in range(n)]
+    structure = [f'<Unknown index="{n + i + 1}" dependencies=""/>' for i in range(n)]
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{{{name}}}" numberOfEventIndicators="0">
 <CoSimulation modelIdentifier="{name}" canHandleVariableCommunicationStepSize="true"/>
@@ -65,9 +61,7 @@ def _description(name: str, signals: int) -> str:
 """
 
 
-def _scalar(
-    name: str, reference: int, causality: str, variability: str, kind: str, more: str = ""
-) -> str:
+def _scalar(name: str, reference: int, causality: str, variability: str, kind: str, more: str = "") -> str:
     return (
         f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" '
         f'variability="{variability}" {more}>{kind}</ScalarVariable>'

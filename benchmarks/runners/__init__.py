@@ -21,7 +21,8 @@ class Measured:
     """One run: wall seconds of the stepping loop alone, and the outputs that prove what it did.
 
     `outputs` has shape (units, signals) after the last step, or (steps, units, signals) where they were
-    recorded, which may differ from the reference by `digits`. `order` is the order in which the master passes values on.
+    recorded, which may differ from the reference by `digits`. `order` is that in which the master passes
+    values on.
     """
 
     seconds: float

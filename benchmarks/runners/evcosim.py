@@ -1,4 +1,4 @@
-"""This project, with either engine."""
+"""This project."""
 
 from __future__ import annotations
 
@@ -20,15 +20,14 @@ def version() -> str:
     return importlib.metadata.version("evcosim")
 
 
-def measure(case: Case, folder: Path, engine: str) -> Measured:
-    """Run a case with the engine of that name."""
+def measure(case: Case, folder: Path) -> Measured:
+    """Run a case, all units in this process."""
     system = _write_system(case, folder)
-    with Simulation(system, engine=engine) as simulation:
+    with Simulation(system) as simulation:
         simulation.step(1)  # what is made in the first step is no cost of a step
         before = simulation.loop_seconds
         simulation.run()
         seconds = simulation.loop_seconds - before
-        results = simulation.results
         outputs = _outputs(case, simulation)
     return Measured(seconds * case.steps / (case.steps - 1), outputs, "jacobi")
 
@@ -45,6 +44,7 @@ def _outputs(case: Case, simulation: Simulation) -> NDArray[np.float64]:
 def _write_system(case: Case, folder: Path) -> Path:
     fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
     lines = ['name = "ring"', "[experiment]", f"step_size = {STEP_SIZE}", 'algorithm = "jacobi"']
+    lines.append('algebraic_loops = "iterate"')  # pythonfmu declares no dependencies
     lines.append(f"stop_time = {case.steps * STEP_SIZE!r}")
     for i in range(case.units):
         lines += [f"[units.n{i}]", f'fmu = "{fmu}"', 'isolation = "none"', f"[units.n{i}.parameters]"]
@@ -55,7 +55,11 @@ def _write_system(case: Case, folder: Path) -> Path:
         lines += ["[buses.can0]", f'dbc = "{folder / "ring.dbc"}"']
     for i in range(case.units):
         for s in range(case.signals):
-            lines += ["[[connect]]", f'from = "n{i - 1 if i else case.units - 1}.y{s}"', f'to = ["n{i}.u{s}"]']
+            lines += [
+                "[[connect]]",
+                f'from = "n{i - 1 if i else case.units - 1}.y{s}"',
+                f'to = ["n{i}.u{s}"]',
+            ]
             if case.channel:
                 lines.append(f'via = "can0.M{i}_{s // 4}.S{i}_{s}"')
     if not case.record:
@@ -66,7 +70,7 @@ def _write_system(case: Case, folder: Path) -> Path:
 
 
 def _write_dbc(case: Case, path: Path) -> None:
-    """Four signals of 16 bits to a message, one message for each unit and four signals, sent at every step."""
+    """Four signals of 16 bits to a message, one for each unit and four signals, sent at every step."""
     lines = ['VERSION ""', "", "BU_: N", ""]
     cycle = round(1000 * STEP_SIZE)
     messages = []

@@ -79,7 +79,8 @@ def _write_ssp(case: Case, folder: Path) -> Path:
             f'<ssd:Connector name="{name}" kind="{kind}"><ssc:Real/></ssd:Connector>' for kind, name in kinds
         )
         parts.append(
-            f'<ssd:Component name="{_name(i)}" type="application/x-fmu-sharedlibrary" source="resources/{fmu.name}">'
+            f'<ssd:Component name="{_name(i)}" type="application/x-fmu-sharedlibrary" '
+            f'source="resources/{fmu.name}">'
             f"<ssd:Connectors>{connectors}</ssd:Connectors></ssd:Component>"
         )
     wires = "".join(

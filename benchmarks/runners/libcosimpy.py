@@ -36,9 +36,7 @@ def measure(case: Case, folder: Path) -> Measured:
         execution.real_initial_value(slave, references["gain"], case.gain(i))
         for s in range(case.signals):
             execution.real_initial_value(slave, references[f"bias{s}"], case.bias(i, s))
-            execution.connect_real_variables(
-                slaves[i - 1], references[f"y{s}"], slave, references[f"u{s}"]
-            )
+            execution.connect_real_variables(slaves[i - 1], references[f"y{s}"], slave, references[f"u{s}"])
     outputs = [references[f"y{s}"] for s in range(case.signals)]
     observer = _observer(case, execution, slaves, outputs)
     begin = time.perf_counter()

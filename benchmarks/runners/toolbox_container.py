@@ -1,4 +1,4 @@
-"""The container FMU of fmu-manipulation-toolbox, in its default (parallel) schedule, stepped by raw FMI calls."""
+"""The container FMU of fmu-manipulation-toolbox, in its default (parallel) schedule."""
 
 from __future__ import annotations
 
@@ -49,7 +49,11 @@ def measure(case: Case, folder: Path) -> Measured:
     slave.enterInitializationMode()
     slave.exitInitializationMode()
     step = ctypes.CDLL(None, handle=slave.dll._handle).fmi2DoStep
-    arguments = ctypes.c_void_p(slave.component), ctypes.c_double(0.0), ctypes.c_double(case.steps * STEP_SIZE)
+    arguments = (
+        ctypes.c_void_p(slave.component),
+        ctypes.c_double(0.0),
+        ctypes.c_double(case.steps * STEP_SIZE),
+    )
     begin = time.perf_counter()
     status = step(*arguments, ctypes.c_int(1))
     seconds = time.perf_counter() - begin
@@ -68,9 +72,7 @@ def _container(case: Case, folder: Path) -> Path:
     for name in names:
         (inner / name).write_bytes(fmu.read_bytes())
     signals = range(case.signals)
-    links = [
-        [names[i - 1], f"y{s}", names[i], f"u{s}"] for i in range(case.units) for s in signals
-    ]
+    links = [[names[i - 1], f"y{s}", names[i], f"u{s}"] for i in range(case.units) for s in signals]
     outputs = [[names[i], f"y{s}", f"n{i}_y{s}"] for i in range(case.units) for s in signals]
     parameters = [
         [f"n{i}_{name}", names[i], name]
