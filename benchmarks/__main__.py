@@ -1,9 +1,9 @@
 """Measure this project and the peers that are installed: python -m benchmarks, from the project's folder.
 
-Every master runs the same ring of units in turn, several rounds over, each in a process of its own; its result
-must be the reference solution's before its time counts. What is printed is the least time a step of each, as a
-Markdown table, with the reason where there is no number. Needs a C compiler; peers: pip install libcosimpy
-ecospy tbb fmu-manipulation-toolbox.
+Every master runs the same ring of units in turn, several rounds over, each in a process of its own; its
+result must be the reference solution's before its time counts. What is printed is the least time a step of
+each, as a Markdown table, with the reason where there is no number. Needs a C compiler; the peers come with
+pip install libcosimpy ecospy tbb fmu-manipulation-toolbox.
 """
 
 from __future__ import annotations
