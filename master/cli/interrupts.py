@@ -2,7 +2,8 @@
 
 Python would raise KeyboardInterrupt wherever it happens to be, which can be inside a model that runs on
 pythonfmu: its native library turns that into a failed step. Python's own handler also waits for a native
-step to end; the thread here does not, since the signal writes into a socket by itself.
+step to end; the thread here does not, since the signal writes into a socket by itself. While the master waits
+for a unit in a process of its own, the first one breaks the wait off.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import threading
 from types import FrameType, TracebackType
 from typing import Any
 
+from ..isolation.waiting import waits
 from .failures import INTERRUPTED
 
 
@@ -51,6 +53,8 @@ class Interrupts:
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         self._count += 1
+        if waits():
+            raise KeyboardInterrupt
 
     @staticmethod
     def _watch(reader: socket.socket) -> None:

@@ -24,6 +24,7 @@ from ...cosim.plan import UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..unit import UnitError, Value, floats
 from . import wire
+from .waiting import waiting
 
 _LOADING = 60.0  # s: some FMUs start a simulator
 _ENDING = 2.0
@@ -43,7 +44,7 @@ class IsolatedUnit:
         self._timeout = timeout
         self._process: subprocess.Popen[bytes] | None = None
         self._asked = "loading"
-        self._fresh = False
+        self._fresh = self._pending = False
         self._folder = tempfile.mkdtemp(prefix="evcosim-")
         self._output: IO[bytes] = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `free`
         self._shared = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `free`
@@ -84,8 +85,11 @@ class IsolatedUnit:
 
     def _answer(self, timeout: float | None = None) -> dict[str, Any]:
         self._connection.settimeout(self._timeout if timeout is None else timeout)
+        self._pending = True
         try:
-            content = wire.receive(self._connection)
+            with waiting():
+                content = wire.receive(self._connection)
+            self._pending = False
             if content == wire.DONE:
                 return {}
             answer = json.loads(content)
@@ -218,7 +222,7 @@ class IsolatedUnit:
     def free(self) -> None:
         """See `unit.Unit`. A unit that does not let go is ended."""
         if self._process is not None:
-            if self._process.poll() is None:
+            if self._process.poll() is None and not self._pending:  # one that still works hears nothing
                 with contextlib.suppress(UnitError, ConfigError):  # what fails now changes no result
                     self._call("free", timeout=_ENDING)
             self._kill()

@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 SOURCES = Path(__file__).with_name("sources")
+_CACHE = Path(tempfile.gettempdir()) / f"evcosim-tests-{os.getuid()}"
 PLATFORM = {1: "linux64", 2: "linux64", 3: "x86_64-linux"}
 
 
@@ -29,9 +30,8 @@ def compiled(source: Path, flags: tuple[str, ...] = ()) -> bytes:
         pytest.skip("there is no C compiler (cc) on this machine")
     command = ["cc", "-O1", "-fPIC", "-shared", "-w", *flags]
     content = source.read_bytes() + " ".join(command).encode()
-    cache = Path(tempfile.gettempdir()) / f"evcosim-tests-{os.getuid()}"
-    cache.mkdir(exist_ok=True)
-    path = cache / f"{hashlib.sha256(content).hexdigest()[:24]}.so"
+    _CACHE.mkdir(exist_ok=True)
+    path = _CACHE / f"{hashlib.sha256(content).hexdigest()[:24]}.so"
     if not path.exists():
         made = path.with_suffix(f".{os.getpid()}")  # several test processes may compile it at once
         subprocess.run([*command, str(source), "-o", str(made), "-lm"], check=True)

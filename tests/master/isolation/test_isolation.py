@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -123,6 +124,22 @@ def test_children_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
             break
         time.sleep(0.05)
     assert not runs(process)
+
+
+def test_ctrl_c_does_not_wait_for_a_unit_that_hangs(tmp_path: Path) -> None:
+    path = pair(tmp_path, 54)
+    path.write_text(path.read_text().replace("step_timeout = 1.0", "step_timeout = 60.0"))
+    start = "import sys; from evcosim.master.cli import main; sys.exit(main())"
+    command = [sys.executable, "-c", start, "run", str(path), "-o", str(tmp_path / "out"), "--no-plot"]
+    running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    time.sleep(4.0)  # it has started, and hangs at t = 0.5 s
+    begin = time.monotonic()
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=20)
+    assert time.monotonic() - begin < 3.0
+    assert running.returncode == 130, said
+    assert "interrupted at t = 0.5 s" in said
+    assert len((tmp_path / "out" / "results.csv").read_text().splitlines()) == 51
 
 
 def test_nothing_is_left_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
