@@ -31,6 +31,7 @@ stop_time = 1.0
 [units.clock]
 fmu = "Clock.fmu"
 [units.picky]
+isolation = "none" # so that its end is that of the process that measures
 fmu = "Picky.fmu"
 [buses.can0]
 dbc = "line.dbc"
