@@ -10,8 +10,9 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
-from ...cosim.interface import VariableInfo
+from ...cosim.interface import UnitInterface, VariableInfo
 from ..unit import Value
+from .fmu import Fmu
 from .instance import Instance
 from .library import Library
 
@@ -26,9 +27,14 @@ class Fmi1Unit(Instance):
     """See `Instance`."""
 
     fmi = "fmi"
+    _true = _TRUE
+
+    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
+        self._given: dict[str, Value] = {}
+        super().__init__(fmu, name, interface)
 
     def _prefix(self) -> str:
-        return f"{self.fmu.description.coSimulation.modelIdentifier}_"
+        return f"{self.fmu.kind.modelIdentifier}_"
 
     def _instantiate(self, folder: Path) -> int | None:
         self._callbacks = self.log.callbacks_1()
@@ -52,16 +58,24 @@ class Fmi1Unit(Instance):
         return f"fmi{direction}{kind}", _C_TYPES[kind]
 
     def get(self, name: str) -> Value:
-        """See `unit.Unit`; before the initialization, the start value."""
+        """See `unit.Unit`; before the initialization, the value that was set, else the start value."""
         if self._initialized:
             return super().get(name)
+        if name in self._given:
+            return self._given[name]
         variable = self.interface.variables[name]
         return _NOTHING.get(variable.type, 0) if variable.start is None else variable.start
+
+    def set(self, name: str, value: Value) -> None:
+        """See `unit.Unit`."""
+        super().set(name, value)
+        if not self._initialized:
+            self._given[name] = value
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """See `unit.Unit`."""
         known = _FALSE if stop_time is None else _TRUE
-        self._experiment = ctypes.c_double(start_time), known, ctypes.c_double(stop_time or 0.0)
+        self._experiment: Any = ctypes.c_double(start_time), known, ctypes.c_double(stop_time or 0.0)
 
     def exit_initialization(self) -> None:
         """See `unit.Unit`."""
@@ -77,7 +91,10 @@ class Fmi1Unit(Instance):
             self._time.value = time + i * step_size
             status = self._do_step(self._component, self._time, self._step_size, _TRUE)
             if status:
-                self._judge("fmiDoStep", status)
+                self._judge_step("fmiDoStep", status)
+
+    def _listen_to_trouble(self) -> None:
+        """FMI 1.0 has no log categories to choose from."""
 
     def terminate(self) -> None:
         """See `unit.Unit`."""

@@ -63,4 +63,4 @@ class Fmi2Unit(Instance):
             self._time.value = time + i * step_size
             status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
             if status:
-                self._judge("fmi2DoStep", status)
+                self._judge_step("fmi2DoStep", status)

@@ -24,6 +24,8 @@ class Fmi3Unit(Instance):
     """See `Instance`."""
 
     fmi = "fmi3"
+    _true = _TRUE
+    _statuses = 5
 
     def _instantiate(self, folder: Path) -> int | None:
         description = self.fmu.description
@@ -98,7 +100,3 @@ class Fmi3Unit(Instance):
             f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though early "
             f"return is not allowed{self._said()}"
         )
-
-    def _said(self) -> str:
-        said = self.log.last()
-        return f"\n{said}" if said else ""

@@ -16,7 +16,7 @@ from ...cosim.units import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
 
-__all__ = ["Fmu", "FmuError", "check_runnable", "read_fmu"]
+__all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
 
 _DESCRIPTION = "modelDescription.xml"
 _SHOWN_DEFECTS = 5
@@ -61,7 +61,18 @@ class Fmu:
         from fmpy import platform, platform_tuple, sharedLibraryExtension
 
         folder = platform if self.description.fmiVersion[0] in "12" else platform_tuple
-        return f"binaries/{folder}/{self.description.coSimulation.modelIdentifier}{sharedLibraryExtension}"
+        return f"binaries/{folder}/{self.kind.modelIdentifier}{sharedLibraryExtension}"
+
+    @property
+    def kind(self) -> Any:
+        """The interface that is used: FMPy's CoSimulation where there is one, else its ModelExchange.
+
+        Raises FmuError for an FMU that has neither.
+        """
+        found = self.description.coSimulation or self.description.modelExchange
+        if found is None:
+            raise FmuError(f"{self.path}: has neither a Co-Simulation nor a Model Exchange interface")
+        return found
 
     @property
     def holds_python(self) -> bool:
@@ -118,6 +129,11 @@ def check_runnable(fmu: Fmu) -> None:
             f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "
             f"{', '.join(fmu.platforms) or 'no platform'}"
         )
+
+
+def is_true(kind: Any, capability: str) -> bool:
+    """Whether an interface (`Fmu.kind`) declares a capability; FMPy leaves some as text."""
+    return str(getattr(kind, capability, None)).strip().lower() in ("true", "1")
 
 
 def _interface(fmu: Fmu) -> UnitInterface:

@@ -1,9 +1,17 @@
 """What the units of all FMI versions share: the transfers of a step, single values, statuses, the end.
 
-A subclass names the library and its C functions: FMI 1.0, 2.0 and 3.0 differ in the names of types, in the
-order of the calls before the first step, and in what a step answers. In a step we call the function pointers
-with arguments made once: value references, counts, and buffers that are parts of the run's memory where the
-FMI type is that of the memory.
+FMI 1.0, 2.0 and 3.0 differ in the names of types, in the order of the calls before the first step, and in
+what a step answers. In a step we call the function pointers with arguments made once: value references,
+counts, and buffers that are parts of the run's memory where the FMI type is that of the memory.
+
+A class for a version or a kind (Co-Simulation, Model Exchange) defines, see there:
+  `fmi`               what the names of its C functions begin with; `_prefix`: what stands before that
+  `_instantiate`      the one call that makes the component
+  `_access`           function and C type for a variable; `_arguments`, where they are not those of FMI 2.0
+  `enter_initialization`, `exit_initialization`, `start_step`; `_free_instance`, where it has another name
+and has for its own C functions `_call` (once or seldom), `function` with `_judge` (in a step) and `_fail`.
+A class that does more around a transfer wraps the calls that `bind` makes: `set_inputs`, `get_feedthrough`,
+`get_outputs`.
 """
 
 from __future__ import annotations
@@ -11,7 +19,7 @@ from __future__ import annotations
 import ctypes
 import os
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,13 +29,27 @@ from numpy.typing import NDArray
 from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
-from .fmu import Fmu, FmuError, check_runnable
+from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
+from .refusal import why_refused
+from .step_status import beside
+from .transfer import (
+    Call,
+    Item,
+    copying,
+    getting,
+    getting_booleans,
+    limits,
+    one_after_the_other,
+    setting,
+    setting_booleans,
+)
 
 _WARNING = 1
-_WHOLE = 2.0**53  # beyond it a double does not hold every whole number
-Call = Callable[[], None]
+_TROUBLE = ("warn", "discard", "error", "fatal", "pending")
+_alone: dict[str, Instance] = {}
+"""The units in this process whose FMU can be there only once, by the digest of the FMU."""
 
 
 class Instance:
@@ -39,6 +61,10 @@ class Instance:
 
     fmi: str
     """What the names of the C functions begin with."""
+    _true: Any = ctypes.c_int(1)
+    """True as an argument of a C function."""
+    _statuses = 6
+    """How many statuses the version knows."""
 
     def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
         check_runnable(fmu)
@@ -50,24 +76,51 @@ class Instance:
         self._component: Any = None
         self._library: Any = None
         self._initialized = False
-        self._single: dict[tuple[str, str], Any] = {}
-        folder = fmu.extract()
-        self._folder: Path | None = folder
+        self._folder: Path | None = None
         try:
+            self._take_place()
+            folder = self._folder = fmu.extract()
             self._library = self._load(folder)
             with self.log.instantiating():
                 component = self._instantiate(folder)
             if not component:
-                said = self.log.last()
-                raise FmuError(f"{fmu.path}: cannot be instantiated{_because(said)}")
+                reason = why_refused(fmu, folder / fmu.binary, self.log.last())
+                raise FmuError(f"{fmu.path}: cannot be instantiated{reason}")
             self._component = ctypes.c_void_p(component)
+            self._listen_to_trouble()
         except BaseException:
             self.free()
             raise
         # the calls of a turn (see `unit.Unit`), which `bind` makes
-        self.set_inputs: Call = _one_after_the_other()
-        self.get_feedthrough: Call = _one_after_the_other()
-        self.get_outputs: Call = _one_after_the_other()
+        self.set_inputs: Call = one_after_the_other()
+        self.get_feedthrough: Call = one_after_the_other()
+        self.get_outputs: Call = one_after_the_other()
+
+    def _take_place(self) -> None:
+        """Raise FmuError where the FMU can be instantiated once in a process, and is."""
+        if not is_true(self.fmu.kind, "canBeInstantiatedOnlyOncePerProcess"):
+            return
+        if (other := _alone.setdefault(self.fmu.digest, self)) is not self:
+            raise FmuError(
+                f"{self.fmu.path}: can be instantiated only once in a process "
+                f"(canBeInstantiatedOnlyOncePerProcess), and unit '{other.name}' is it already: unit "
+                f"'{self.name}' needs isolation = \"process\""
+            )
+
+    def _leave_place(self) -> None:
+        if _alone and _alone.get(self.fmu.digest) is self:
+            del _alone[self.fmu.digest]
+
+    def _listen_to_trouble(self) -> None:
+        """Leave out the log categories that tell of each call: they cost more than steps, and drown the
+        reason of a failure. An FMU that declares no category of trouble goes on telling all."""
+        names = [c.name or "" for c in self.fmu.description.logCategories]
+        chosen = [name for name in names if any(word in name.lower() for word in _TROUBLE)]
+        function = f"{self.fmi}SetDebugLogging"
+        if chosen and len(chosen) < len(names) and self._library.has(function):
+            texts = (ctypes.c_char_p * len(chosen))(*(name.encode() for name in chosen))
+            # an FMU that refuses goes on telling all
+            self.function(function)(self._component, self._true, ctypes.c_size_t(len(chosen)), texts)
 
     # ---- what differs between the versions
 
@@ -121,15 +174,15 @@ class Instance:
             else:
                 outputs += self._transfers("Get", memory, block.variables, block.latest)
                 through += self._feedthrough(memory, block)
-        self.set_inputs = _one_after_the_other(*inputs)
-        self.get_feedthrough = _one_after_the_other(*through)
-        self.get_outputs = _one_after_the_other(*outputs)
+        self.set_inputs = one_after_the_other(*inputs)
+        self.get_feedthrough = one_after_the_other(*through)
+        self.get_outputs = one_after_the_other(*outputs)
 
     def _feedthrough(self, memory: NDArray[np.float64], block: Block) -> list[Call]:
         if not block.feedthrough:
             return []
         transfers = self._transfers("Get", memory, block.variables[: block.feedthrough], block.latest)
-        return [*transfers, _copy(memory, block.latest, block.slot, block.feedthrough)]
+        return [*transfers, copying(floats(memory), block.latest, block.slot, block.feedthrough)]
 
     def _transfers(
         self, direction: str, memory: NDArray[np.float64], variables: Sequence[VariableInfo], slot: int
@@ -138,11 +191,13 @@ class Instance:
 
         One for each function: what is one type in a plan may be several in FMI 3.0.
         """
-        groups: dict[tuple[str, Any], list[int]] = {}
-        for i, variable in enumerate(variables):
-            groups.setdefault(self._access(direction, variable), []).append(i)
+        groups: dict[tuple[str, Any], list[tuple[int, VariableInfo]]] = {}
+        for place, variable in enumerate(variables, slot):
+            groups.setdefault(self._access(direction, variable), []).append((place, variable))
         return [
-            self._transfer(direction, name, c_type, memory, slot, [(i, variables[i]) for i in members])
+            self._transfer(
+                direction, name, c_type, memory, [slot for slot, _ in members], [v for _, v in members]
+            )
             for (name, c_type), members in groups.items()
         ]
 
@@ -152,46 +207,46 @@ class Instance:
         name: str,
         c_type: Any,
         memory: NDArray[np.float64],
-        slot: int,
-        members: list[tuple[int, VariableInfo]],
+        slots: list[int],
+        variables: list[VariableInfo],
     ) -> Call:
-        n = len(members)
-        references = (ctypes.c_uint * n)(*(self._reference(v.name) for _, v in members))
-        places = [slot + i for i, _ in members]
-        first = places[0]
-        together = places == list(range(first, first + n))
-        in_place = c_type is ctypes.c_double and together and not any(v.inverted for _, v in members)
-        part = memory[first : first + n] if together else memory
-        values = (c_type * n).from_buffer(part.data) if in_place else (c_type * n)()
-        function, arguments = self.function(name), self._arguments(references, n, values)
+        n, first = len(slots), slots[0]
+        references = (ctypes.c_uint * n)(*(self._reference(v.name) for v in variables))
+        in_order = slots == list(range(first, first + n)) and not any(v.inverted for v in variables)
+        if c_type is ctypes.c_double and in_order:
+            values = (c_type * n).from_buffer(memory[first : first + n].data)
+            return self._caller(name, references, n, values)
+        values = (c_type * n)()
+        call, view = self._caller(name, references, n, values), floats(memory)
+        items = [Item(i, slots[i], -1.0 if v.inverted else 1.0) for i, v in enumerate(variables)]
+        if variables[0].type == "Boolean":
+            return (setting_booleans if direction == "Set" else getting_booleans)(call, view, values, items)
+
+        def refuse(place: int, value: float) -> NoReturn:
+            self._refuse(variables[place], value, name)
+
+        return (setting if direction == "Set" else getting)(call, view, values, items, c_type, refuse)
+
+    def _caller(self, name: str, references: Any, count: int, values: Any) -> Call:
+        function, arguments = self.function(name), self._arguments(references, count, values)
 
         def call() -> None:
             status = function(*arguments)
             if status:
                 self._judge(name, status)
 
-        if in_place:
-            return call
-        at: Any = slice(None) if together else np.array(places)
-        signs = np.array([-1.0 if v.inverted else 1.0 for _, v in members])
-        own = np.frombuffer(values, dtype=c_type)
-        return _through_buffer(direction, call, part, at, own, signs, self._whole(direction, name, members))
+        return call
 
-    def _whole(
-        self, direction: str, name: str, members: list[tuple[int, VariableInfo]]
-    ) -> Callable[[NDArray[Any]], None] | None:
-        """What checks 64-bit integers: those that a double does not hold would come out as others."""
-        if direction != "Get" or not name.endswith("Int64"):
-            return None
-
-        def check(values: NDArray[Any]) -> None:
-            for (_, variable), value in zip(members, values.tolist(), strict=True):
-                if abs(value) > _WHOLE:
-                    raise UnitError(
-                        f"unit '{self.name}': {variable.name} = {value} is more than a double holds (2^53)"
-                    )
-
-        return check
+    def _refuse(self, variable: VariableInfo, value: float, function: str) -> NoReturn:
+        name = variable.name
+        if "Get" in function:
+            raise UnitError(f"unit '{self.name}': {name} = {value} is more than a double holds (2^53)")
+        kind = str(self._declared[variable.declared_name].type)
+        low, high = limits(self._access("Set", variable)[1])
+        raise UnitError(
+            f"unit '{self.name}': {name} cannot be set to {value:.17g}: it is of type {kind}, "
+            f"from {low:.17g} to {high:.17g}"
+        )
 
     def _reference(self, name: str) -> int:
         """The value reference of a variable, by the name that the system uses."""
@@ -205,11 +260,11 @@ class Instance:
         function, c_type = self._access("Get", variable)
         buffer = (c_type * 1)()
         self._call(function, *self._arguments((ctypes.c_uint * 1)(self._reference(name)), 1, buffer), of=name)
-        if c_type is ctypes.c_char_p:
-            return str((buffer[0] or b"").decode("utf-8", "replace"))
         value = buffer[0]
+        if variable.type == "String":
+            return str((value or b"").decode("utf-8", "replace"))
         if variable.type == "Boolean":
-            return bool(value if not isinstance(value, bytes) else value[0])
+            return bool(value)
         number = float(value) if variable.type == "Real" else int(value)
         return -number if variable.inverted else number
 
@@ -219,8 +274,13 @@ class Instance:
         function, c_type = self._access("Set", variable)
         if isinstance(value, str):
             buffer = (c_type * 1)(value.encode())
+        elif variable.type == "Boolean":
+            buffer = (c_type * 1)(bool(value))
         else:
             number = -value if variable.inverted else value
+            low, high = limits(c_type)
+            if not low <= number <= high:
+                self._refuse(variable, number, function)
             buffer = (c_type * 1)(number)
         self._call(function, *self._arguments((ctypes.c_uint * 1)(self._reference(name)), 1, buffer), of=name)
 
@@ -244,6 +304,7 @@ class Instance:
                 self._free_instance(library, component)
             library.close()
         self.log.close()
+        self._leave_place()
         folder, self._folder = self._folder, None
         if folder is not None:
             shutil.rmtree(folder, ignore_errors=True)
@@ -264,65 +325,26 @@ class Instance:
             self._fail(what, status)
         self.log.warnings += 1
 
-    def _fail(self, what: str, status: int) -> NoReturn:
+    def _judge_step(self, what: str, status: int) -> None:
+        """`_judge`, with what FMI 1.0 and 2.0 tell of a step that was not done."""
+        also = beside(status, self.fmi, self._library, self._component)
+        if also:
+            self._fail(what, status, also)
+        self._judge(what, status)
+
+    def _fail(self, what: str, status: int, also: str = "") -> NoReturn:
+        """Raise UnitError; `also` is what is known beyond the status, with what joins it to that."""
         if self.fmu.holds_python and "KeyboardInterrupt" in self.log.last(1):
             raise KeyboardInterrupt  # Ctrl-C reached the interpreter while it was inside the model
-        word = STATUS[status] if 0 <= status < len(STATUS) else "no FMI status"
+        word = STATUS[status] if 0 <= status < self._statuses else "no FMI status"
+        raise UnitError(f"unit '{self.name}': {what} returned {word} ({status}){also}{self._said()}")
+
+    def _said(self) -> str:
+        """The unit's last words on lines of their own; "" where it said nothing."""
         said = self.log.last()
-        raise UnitError(
-            f"unit '{self.name}': {what} returned {word} ({status})" + (f"\n{said}" if said else "")
-        )
+        return f"\n{said}" if said else ""
 
 
 def resources_path(folder: Path) -> bytes:
     """FMI 3.0's resourcePath: the path of the resources with a separator behind it."""
     return os.fsencode(folder / "resources") + os.sep.encode()
-
-
-def _because(said: str) -> str:
-    return f":\n{said}" if said else ": its instantiate function returned nothing and no message"
-
-
-def _one_after_the_other(*calls: Call) -> Call:
-    if len(calls) == 1:
-        return calls[0]
-
-    def all_of_them() -> None:
-        for call in calls:
-            call()
-
-    return all_of_them
-
-
-def _through_buffer(
-    direction: str,
-    call: Call,
-    part: NDArray[np.float64],
-    at: Any,
-    own: NDArray[Any],
-    signs: NDArray[np.float64],
-    check: Callable[[NDArray[Any]], None] | None,
-) -> Call:
-    """The call between values of another type or sign, `own`, and those of the memory, `part[at]`."""
-
-    def set_own() -> None:
-        np.multiply(part[at], signs, out=own, casting="unsafe")
-        call()
-
-    def get_own() -> None:
-        call()
-        if check is not None:
-            check(own)
-        part[at] = own * signs
-
-    return set_own if direction == "Set" else get_own
-
-
-def _copy(memory: NDArray[np.float64], source: int, target: int, count: int) -> Call:
-    view = floats(memory)
-    values, place = view[source : source + count], slice(target, target + count)
-
-    def copy() -> None:
-        view[place] = values
-
-    return copy

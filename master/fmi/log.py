@@ -19,6 +19,7 @@ from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 _KEPT = 100
+_RECENT = 20
 _LONGEST = 2000  # characters of a message that are kept
 _queues: dict[int, UnitLog] = {}
 _instantiating: list[
@@ -80,8 +81,13 @@ class UnitLog:
         self.warnings += status == 1
 
     def last(self, count: int = 3) -> str:
-        """The last messages, one in a line; empty when there is none."""
-        return "\n".join(list(self.messages)[-count:])
+        """The last messages, one in a line; empty when there is none.
+
+        Of the last 20 those that are not of status OK, where there are any: they are the reason.
+        """
+        recent = list(self.messages)[-_RECENT:]
+        trouble = [text for text in recent if not text.startswith("[OK]")]
+        return "\n".join((trouble or recent)[-count:])
 
     def close(self) -> None:
         """Receive no more messages."""
