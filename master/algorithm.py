@@ -1,26 +1,10 @@
-"""The python engine: one communication step after the other, in the order that a reader would write.
-
-Time is a count: t_k = start + k * step_size. What step k does, under `gauss_seidel`:
-
-1. stimuli and the messages that are due and carry outputs valid at t_k are written to the inputs' side;
-2. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
-   biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
-   once; the continuous ones of a unit whose period is longer than a step only from the communication
-   point on at which they are valid. A message with discrete signals is sent right after its sender's turn.
-   On a bus with a delay, what was sent that long ago arrives where a message would be sent;
-3. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k.
-
-Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
-one communication step to arrive.
-"""
+"""The python engine: one communication step after the other, each the actions of `schedule` in order."""
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,41 +13,40 @@ from ..cosim.channel import ChannelError, MessageChannel
 from ..cosim.errors import RunError
 from ..cosim.plan import MessagePlan, Plan, Route, UnitPlan
 from ..cosim.rows import RowStore, Table
+from .schedule import Action, Waiting, schedule, waiting
 from .unit import Unit, floats
+
+Act = Callable[[int, float], None]
+"""What is done in step k, which starts at t_k [s]."""
 
 _CHUNK = 256
 """Steps between two looks at progress and Ctrl-C; stimuli are evaluated for so many steps at once."""
 
 
-def compile_routes(routes: Sequence[Route]) -> Callable[[memoryview[float]], None]:
+def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
     """A function that writes all inputs of a unit from their routes: one assignment for each."""
     lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
-    scope: dict[str, Callable[[memoryview[float]], None]] = {}
-    exec("def take(m):\n" + "\n".join(lines), scope)
-    return scope["take"]
+    scope: dict[str, Any] = {"memory": memory}
+    exec("def take(k, time, m=memory):\n" + "\n".join(lines), scope)
+    return cast(Act, scope["take"])
 
 
-class _Turn:
+class Turn:
     """One unit in the schedule, with what happens round its step."""
 
-    def __init__(self, unit: Unit, plan: UnitPlan, run: Engine) -> None:
-        self.unit = unit
-        self.every = plan.every
-        self.take = compile_routes(plan.routes)
-        self.set_inputs, self.get_feedthrough = unit.set_inputs, unit.get_feedthrough
-        self.start_step, self.finish_step = unit.start_step, unit.finish_step
-        self.get_outputs = unit.get_outputs
-        self.step_size = run.plan.experiment.step_size * plan.every / plan.substeps
+    def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], step_size: float) -> None:
+        self.unit, self.plan, self.memory = unit, plan, memory
+        self.take = compile_routes(plan.routes, memory)
+        self.step_size = step_size * plan.every / plan.substeps
         self.substeps = plan.substeps
         outputs = [b for b in plan.blocks if b.kind != "input"]
-        self.continuous = [
-            (slice(b.slot, b.slot + n), run.view[b.latest : b.latest + n])
-            for b in outputs
-            if b.kind == "continuous"
-            for n in [len(b.variables)]
+        self.continuous = [b for b in outputs if b.kind == "continuous"]
+        self.published = [
+            (slice(b.slot, b.slot + len(b.variables)), memory[b.latest : b.latest + len(b.variables)])
+            for b in self.continuous
         ]
         self.read = [
-            (run.view[f : f + len(b.variables)], b)
+            (memory[f : f + len(b.variables)], b)
             for b in outputs
             if b.type == "Real"
             for f in [b.latest if b.kind == "continuous" else b.slot]
@@ -71,9 +54,30 @@ class _Turn:
         self.has_feedthrough = any(b.feedthrough for b in outputs)
         self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
 
-    def apply_effects(self, memory: memoryview[float]) -> None:
+    def begin(self, k: int, time: float) -> None:
+        """Apply what events do to the inputs, give them to the unit, and begin its step."""
+        if self.effects:
+            self.apply_effects()
+        self.unit.set_inputs()
+        if self.has_feedthrough:
+            self.unit.get_feedthrough()
+        self.unit.start_step(time, self.step_size, self.substeps)
+
+    def end(self, k: int, time: float) -> None:
+        """Wait for the step and read the outputs. Raises RunError when one is NaN or infinite."""
+        self.unit.finish_step()
+        self.unit.get_outputs()
+        self.check_finite()
+
+    def publish(self, k: int, time: float) -> None:
+        """The continuous outputs after the step become those valid at the next communication point."""
+        for valid, latest in self.published:
+            self.memory[valid] = latest
+
+    def apply_effects(self) -> None:
+        """Override and bias inputs."""
         for slot, (action, value) in self.effects.items():
-            memory[slot] = value if action == "override" else memory[slot] + value
+            self.memory[slot] = value if action == "override" else self.memory[slot] + value
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
@@ -86,43 +90,36 @@ class _Turn:
                         raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
 
 
-@dataclasses.dataclass
-class _Sender:
-    """A message in the schedule."""
+class Sender:
+    """A message in the schedule; `waiting` is where its values wait, if its bus has a delay."""
 
-    plan: MessagePlan
-    channel: MessageChannel
+    def __init__(
+        self, plan: MessagePlan, channel: MessageChannel, memory: memoryview[float], waiting: Waiting | None
+    ) -> None:
+        self.plan, self.channel, self.memory, self.waiting = plan, channel, memory, waiting
 
-    def send(self, memory: memoryview[float], k: int) -> None:
-        if k >= self.plan.first and (k - self.plan.first) % self.plan.every == 0:
-            self.sample(memory, k)
-
-    def sample(self, memory: memoryview[float], k: int) -> None:
+    def send(self, k: int, time: float) -> None:
+        """Sample all signals. Raises RunError naming sender and signal where one cannot be sent."""
         try:
-            self.channel.transmit(memory, k)
+            self.channel.transmit(self.memory, k)
         except ChannelError as error:
-            name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
-            sender = self.plan.senders.get(error.signal, "")
-            raise RunError(f"{sender} via {name}: {error.rule}") from error
+            raise self.failed(error) from error
+        if self.waiting is not None:
+            row = self.waiting.row((k - self.plan.first) // self.plan.every)
+            for i, (slot, _) in enumerate(self.plan.arrivals, row):
+                self.memory[i] = self.memory[slot]
 
+    def failed(self, error: ChannelError) -> RunError:
+        """The error of a run for one of the channel."""
+        name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
+        return RunError(f"{self.plan.senders.get(error.signal, '')} via {name}: {error.rule}")
 
-@dataclasses.dataclass
-class _LateSender(_Sender):
-    """A message whose values reach the mailboxes `plan.delay` steps after they were sampled."""
-
-    under_way: deque[tuple[int, list[float]]] = dataclasses.field(default_factory=deque)
-
-    def send(self, memory: memoryview[float], k: int) -> None:
-        while self.under_way and self.under_way[0][0] <= k:
-            _, values = self.under_way.popleft()
-            for (_, mailbox), value in zip(self.plan.arrivals, values, strict=True):
-                memory[mailbox] = value
-        super().send(memory, k)
-
-    def sample(self, memory: memoryview[float], k: int) -> None:
-        super().sample(memory, k)
-        values = [memory[slot] for slot, _ in self.plan.arrivals]
-        self.under_way.append((k + self.plan.delay, values))
+    def deliver(self, k: int, time: float) -> None:
+        """What was sampled `delay` steps ago reaches the mailboxes."""
+        assert self.waiting is not None  # only messages with a delay are delivered
+        row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
+        for i, (_, mailbox) in enumerate(self.plan.arrivals, row):
+            self.memory[mailbox] = self.memory[i]
 
 
 class Engine:
@@ -135,26 +132,23 @@ class Engine:
         self.plan = plan
         self.k = 0
         self.whole = True
-        self.memory: NDArray[np.float64] = np.zeros(plan.memory_size)
-        self._columns = np.array(plan.column_slots, dtype=np.intp)
+        self.schedule = schedule(plan)
+        late, size = waiting(plan)
+        self.memory: NDArray[np.float64] = np.zeros(size)
         self.view = floats(self.memory)
+        self.columns = np.array(plan.column_slots, dtype=np.intp)
+        self._store = RowStore(len(self.columns))
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
-        self.turns = [_Turn(units[p.name], p, self) for p in plan.units]
+        h = plan.experiment.step_size
+        self.turns = [Turn(units[p.name], p, self.view, h) for p in plan.units]
         self.senders = [
-            (_LateSender if m.delay else _Sender)(m, self._channel(m, log_raw)) for m in plan.messages
+            Sender(m, MessageChannel(m.message, m.routes, m.settings, log_raw), self.view, late.get(i))
+            for i, m in enumerate(plan.messages)
         ]
-        self._at_start = [s for s in self.senders if s.plan.after is None]
-        self._after = [[s for s in self.senders if s.plan.after == i] for i in range(len(self.turns))]
         self._events = list(plan.events)
-        self._store = RowStore(len(self._columns))
-        self._step = self._gauss_seidel if plan.algorithm == "gauss_seidel" else self._jacobi
         self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
                          for b in p.blocks if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
-
-    @staticmethod
-    def _channel(plan: MessagePlan, log_raw: bool) -> MessageChannel:
-        return MessageChannel(plan.message, plan.routes, plan.settings, log_raw=log_raw)
 
     @property
     def time(self) -> float:
@@ -170,8 +164,8 @@ class Engine:
         for slot, value in self.plan.initial.items():
             self.memory[slot] = value
         for turn in self.turns:
-            turn.get_outputs()
-            self._publish(turn)
+            turn.unit.get_outputs()
+            turn.publish(0, self.time)
             turn.check_finite()
 
     # ---- stepping
@@ -190,81 +184,67 @@ class Engine:
 
     def _advance_chunk(self, count: int) -> None:
         times = np.array([self.time_at(k) for k in range(self.k, self.k + count)])
-        drives = [(d.sink, (d.map.scale * d.signal(times) + d.map.offset).tolist()) for d in self.plan.drives]
-        width = int(self._columns.max(initial=-1)) + 1
-        rows = np.empty((count, width))
-        first, view, row = self.k, self.view, self.memory[:width]
+        drives = np.array([d.map.scale * d.signal(times) + d.map.offset for d in self.plan.drives])
+        rows, first = np.empty((count, len(self.columns))), self.k
         try:
-            for i in range(count):
-                while self._events and self._events[0][0] <= self.k:
-                    self._happen()
-                for slot, values in drives:
-                    view[slot] = values[i]
-                self._step(self.k, self.time_at(self.k))
-                rows[i] = row
-                self._publish_all(self.k)
-                self.k += 1
+            self._run(count, drives, rows)
         except RunError as error:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         finally:
             self.whole = self.k == first + count
-            self._store.append(rows[: self.k - first, self._columns])
+            self._store.append(rows[: self.k - first])
 
-    def _gauss_seidel(self, k: int, time: float) -> None:
-        memory = self.view
-        for sender in self._at_start:
-            sender.send(memory, k)
-        for turn, messages in zip(self.turns, self._after, strict=True):
-            if k % turn.every == 0:
-                turn.take(memory)
-                self._begin(turn, time)
-                self._end(turn)
-            for sender in messages:
-                sender.send(memory, k)
+    def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
+        """Do `count` steps, each counted in `k` when it is done.
 
-    def _jacobi(self, k: int, time: float) -> None:
-        memory = self.view
-        for sender in self.senders:
-            sender.send(memory, k)
-        due = [turn for turn in self.turns if k % turn.every == 0]
-        for turn in due:
-            turn.take(memory)
-        for (
-            turn
-        ) in due:  # all begin before any is waited for: units in processes of their own step side by side
-            self._begin(turn, time)
-        for turn in due:
-            self._end(turn)
+        `drives` are the values of the stimuli, shape (drives, count); `rows` gets those of the recorded
+        slots, shape (count, recorded).
+        """
+        first, width = self.k, int(self.columns.max(initial=-1)) + 1
+        wide, memory = np.empty((count, width)), self.memory[:width]
+        stimuli, view = [values.tolist() for values in drives], self.view
 
-    def _begin(self, turn: _Turn, time: float) -> None:
-        if turn.effects:
-            turn.apply_effects(self.view)
-        turn.set_inputs()
-        if turn.has_feedthrough:
-            turn.get_feedthrough()
-        turn.start_step(time, turn.step_size, turn.substeps)
+        def drive(slot: int, values: list[float]) -> Act:
+            def act(k: int, time: float) -> None:
+                view[slot] = values[k - first]
 
-    @staticmethod
-    def _end(turn: _Turn) -> None:
-        turn.finish_step()
-        turn.get_outputs()
-        turn.check_finite()
+            return act
 
-    def _publish_all(self, k: int) -> None:
-        for turn in self.turns:
-            if (k + 1) % turn.every == 0:
-                self._publish(turn)
+        def record(k: int, time: float) -> None:
+            wide[k - first] = memory
 
-    def _publish(self, turn: _Turn) -> None:
-        """The continuous outputs after the step become those valid at the next communication point."""
-        for valid, latest in turn.continuous:
-            self.view[valid] = latest
+        acts = [
+            _when_due(action, record if action.kind == "record" else
+                      drive(self.plan.drives[action.index].sink, stimuli[action.index])
+                      if action.kind == "drive" else self.act(action))
+            for action in self.schedule
+        ]  # fmt: skip
+        try:
+            for k in range(first, first + count):
+                self.happen()
+                time = self.time_at(k)
+                for act in acts:
+                    act(k, time)
+                self.k = k + 1
+        finally:
+            np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])
+
+    def act(self, action: Action) -> Act:
+        """What does an action of a message or a unit."""
+        if action.kind in ("send", "deliver"):
+            sender = self.senders[action.index]
+            return sender.send if action.kind == "send" else sender.deliver
+        turn = self.turns[action.index]
+        acts = {"take": turn.take, "begin": turn.begin, "end": turn.end, "publish": turn.publish}
+        return acts[action.kind]
 
     # ---- events and results
 
-    def _happen(self) -> None:
-        _, event = self._events.pop(0)
-        self.effect(event.variable, event.action, event.value)
+    def happen(self) -> None:
+        """The events whose time has come."""
+        while self._events and self._events[0][0] <= self.k:
+            _, event = self._events.pop(0)
+            self.effect(event.variable, event.action, event.value)
 
     def effect(self, name: str, action: str, value: float | None = None) -> None:
         """Override or bias what an input receives from now on, or reset it (see `resolve.check_effect`)."""
@@ -280,4 +260,16 @@ class Engine:
 
         In that one the inputs and the discrete outputs are those of the last step.
         """
-        return self._store.table(self.memory[None, self._columns] if self.whole else None)
+        return self._store.table(self.memory[None, self.columns] if self.whole else None)
+
+
+def _when_due(action: Action, act: Act) -> Act:
+    if action.always:
+        return act
+    every, first = action.every, action.first
+
+    def when_due(k: int, time: float) -> None:
+        if k >= first and (k - first) % every == 0:
+            act(k, time)
+
+    return when_due
