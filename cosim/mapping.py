@@ -66,16 +66,14 @@ def _mapped(
         _check_unit(mapped.unit, interface, place)
     if mapped.invert and variable.type not in ("Real", "Integer"):
         raise ConfigError(f"{place}: {mapped.variable} is a {variable.type}: it has no sign to invert")
-    return _inverted(
-        dataclasses.replace(
-            variable,
-            name=name,
-            declared=mapped.variable,
-            causality=causality,
-            unit=variable.unit if mapped.unit is None else mapped.unit,
-            inverted=mapped.invert,
-        )
+    known = dataclasses.replace(
+        variable,
+        name=name,
+        declared=mapped.variable,
+        causality=causality,
+        unit=variable.unit if mapped.unit is None else mapped.unit,
     )
+    return _inverted(known) if mapped.invert else known
 
 
 def _check_unit(unit: str, interface: UnitInterface, place: str) -> None:
@@ -86,12 +84,10 @@ def _check_unit(unit: str, interface: UnitInterface, place: str) -> None:
 
 
 def _inverted(v: VariableInfo) -> VariableInfo:
-    """The variable with range and start in the system's sign."""
-    if not v.inverted:
-        return v
+    """The variable with the other sign, range and start with it."""
     start = -v.start if isinstance(v.start, int | float) else v.start
     low, high = (None if x is None else -x for x in (v.max, v.min))
-    return dataclasses.replace(v, start=start, min=low, max=high)
+    return dataclasses.replace(v, start=start, min=low, max=high, inverted=not v.inverted)
 
 
 def _with_names(v: VariableInfo, names: Mapping[str, str]) -> VariableInfo:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .archive import FmuError
+from .supplement import negated_aliases, supplement
 
 _VERSIONS = ("1.0", "2.0", "3.0")
 _SCALAR_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration")
@@ -21,8 +22,8 @@ _FLOATS = ("Real", "Float32", "Float64")
 _NUMBERS_ONLY = re.compile(r"[+-]?\d+")
 
 
-def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...]]:
-    """FMPy's ModelDescription and the defects that were mended. Raises FmuError."""
+def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], frozenset[str]]:
+    """FMPy's ModelDescription, the defects that were mended, and the negated aliases. Raises FmuError."""
     from fmpy.model_description import read_model_description
 
     root = _parsed(path, xml)
@@ -33,9 +34,11 @@ def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...]]:
     with zipfile.ZipFile(packed, "w") as archive:
         archive.writestr("modelDescription.xml", etree.tostring(root))
     try:
-        return read_model_description(packed, validate=False), tuple(defects)
+        description = read_model_description(packed, validate=False)
     except Exception as error:  # FMPy raises five unrelated types for broken descriptions
         raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
+    supplement(description, root)
+    return description, tuple(defects), negated_aliases(root)
 
 
 def _parsed(path: Path, xml: bytes) -> Any:

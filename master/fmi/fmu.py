@@ -27,7 +27,8 @@ class Fmu:
     """An FMU file that was read: `description` is FMPy's ModelDescription.
 
     `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are what is wrong with
-    the description and was tolerated, one sentence each with what was assumed.
+    the description and was tolerated, one sentence each with what was assumed;
+    `negated` the variables of FMI 1.0 whose value is that of their reference with the other sign.
     """
 
     path: Path
@@ -35,6 +36,7 @@ class Fmu:
     entries: tuple[str, ...]
     unpacked: int = 0
     defects: tuple[str, ...] = ()
+    negated: frozenset[str] = frozenset()
 
     @functools.cached_property
     def digest(self) -> str:
@@ -113,8 +115,8 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
     names = tuple(entry.filename for entry in entries)
     if _DESCRIPTION not in names:
         raise FmuError(f"{path}: is not an FMU: it has no {_DESCRIPTION}{nearest(_DESCRIPTION, names)}")
-    description, defects = read_description(path, read_entry(path, _DESCRIPTION))
-    fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects)
+    description, defects, negated = read_description(path, read_entry(path, _DESCRIPTION))
+    fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects, negated)
     if strict and defects:
         raise FmuError(f"{path}: strict: {len(defects)} defects: " + "; ".join(defects[:_SHOWN_DEFECTS]))
     return fmu
@@ -140,9 +142,11 @@ def _interface(fmu: Fmu) -> UnitInterface:
     md = fmu.description
     depends = {u.variable.name: _names(u.dependencies) for u in md.outputs}
     initially = {u.variable.name: _names(u.dependencies) for u in md.initialUnknowns}
-    unusable = {v.name: reason for v in md.modelVariables if (reason := _why_unusable(v))}
+    unusable = _unusable(fmu)
     variables = {
-        v.name: _variable(v, depends, initially) for v in md.modelVariables if v.name not in unusable
+        v.name: _variable(v, depends, initially, v.name in fmu.negated)
+        for v in md.modelVariables
+        if v.name not in unusable
     }
     units = {u.name: _unit_of_measure(u) for u in md.unitDefinitions}
     return UnitInterface(str(fmu.path), variables, units, unusable)
@@ -157,15 +161,35 @@ _KINDS |= {"Enumeration": "Enumeration", "Integer": "Integer"}
 _KINDS |= {f"{sign}Int{bits}": "Integer" for sign in ("", "U") for bits in (8, 16, 32, 64)}
 
 
-def _why_unusable(v: Any) -> str:
+def _unusable(fmu: Fmu) -> dict[str, str]:
+    """The variables that no one can ask for, with the reason."""
+    found: dict[str, str] = {}
+    inputs: dict[tuple[str, int], str] = {}
+    shared = fmu.description.fmiVersion.startswith("3")  # all types share the value references
+    for v in fmu.description.modelVariables:
+        reason = _why_unusable(v, v.name in fmu.negated)
+        if not reason and v.causality == "input":
+            kind = "" if shared else {"Enumeration": "Integer"}.get(v.type, v.type)
+            first = inputs.setdefault((kind, int(v.valueReference)), v.name)
+            reason = f"is an alias of the input {first}: connect that one" if first != v.name else ""
+        if reason:
+            found[v.name] = reason
+    return found
+
+
+def _why_unusable(v: Any, negated: bool) -> str:
     """Why no value of a variable can be asked for ("": it can)."""
+    if negated and v.type not in ("Real", "Integer"):
+        return f"is a negated alias of type {v.type}, which is not supported"
+    if v.clocks:
+        return "belongs to a clock; clocks are not supported"
     if v.dimensions:
         size = ", ".join(str(n) for n in v.shape or ())
         return f"is an array, {v.type}[{size}]; arrays are not supported"
     return "" if str(v.type) in _KINDS else f"is of type {v.type}, which is not supported"
 
 
-def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any]) -> VariableInfo:
+def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any], negated: bool) -> VariableInfo:
     declared = v.declaredType
     kind = _KINDS[str(v.type)]
     items = (
@@ -187,8 +211,9 @@ def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any]) -> Var
         max=_limit(_inherited(v, "max")),
         description=v.description or "",
         items=items,
-        depends=depends.get(v.name, ()),
-        depends_initially=initially.get(v.name, ()),
+        depends=depends.get((v.alias or v).name, ()),
+        depends_initially=initially.get((v.alias or v).name, ()),
+        inverted=negated,
     )
 
 

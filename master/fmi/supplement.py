@@ -1,0 +1,51 @@
+"""What FMPy's reader of descriptions leaves out: most of FMI 1.0, and the limits of FMI 3.0's UInts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_CAPABILITIES = (
+    "canHandleVariableCommunicationStepSize",
+    "canBeInstantiatedOnlyOncePerProcess",
+    "canNotUseMemoryManagementFunctions",
+    "canInterpolateInputs",
+)
+
+
+def supplement(description: Any, root: Any) -> None:
+    """Complete FMPy's ModelDescription from the root element that it was read from."""
+    if root.get("fmiVersion") == "1.0":
+        _capabilities(description, root)
+        _causalities(description)
+    else:
+        _limits(description, root)
+
+
+def _capabilities(description: Any, root: Any) -> None:
+    """Those of a slave of FMI 1.0; one of the type CoSimulation_Tool needs its tool."""
+    for found in root.findall("Implementation/*"):
+        if found.tag == "CoSimulation_Tool":
+            description.coSimulation.needsExecutionTool = True
+        for capabilities in found.findall("Capabilities"):
+            for name in _CAPABILITIES:
+                setattr(description.coSimulation, name, capabilities.get(name) in ("true", "1"))
+            order = capabilities.get("maxOutputDerivativeOrder", "")
+            description.coSimulation.maxOutputDerivativeOrder = int(order) if order.isdecimal() else 0
+
+
+def _causalities(description: Any) -> None:
+    for variable in description.modelVariables:
+        if variable.causality in ("none", "internal"):
+            variable.causality = "local"
+
+
+def _limits(description: Any, root: Any) -> None:
+    limits = {v.get("name"): v for v in root.find("ModelVariables") if str(v.tag).startswith("UInt")}
+    for variable in description.modelVariables if limits else ():
+        if (found := limits.get(variable.name)) is not None:
+            variable.min, variable.max = found.get("min"), found.get("max")
+
+
+def negated_aliases(root: Any) -> frozenset[str]:
+    """The variables of FMI 1.0 whose value is that of their reference with the other sign."""
+    return frozenset(v.get("name") for v in root.iter("ScalarVariable") if v.get("alias") == "negatedAlias")
