@@ -44,6 +44,10 @@ class Case:
         """The gain of a unit."""
         return -1.0 if unit == 0 else 1.0
 
+    def parameters(self, unit: int) -> dict[str, float]:
+        """All parameters of a unit."""
+        return {"gain": self.gain(unit)} | {f"bias{s}": self.bias(unit, s) for s in range(self.signals)}
+
     def bias(self, unit: int, signal: int) -> float:
         """The bias of a lag."""
         return 1.0 + 0.25 * unit / self.units + 0.125 * signal / self.signals

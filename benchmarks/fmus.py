@@ -10,6 +10,8 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+from .case import Case
+
 SOURCES = Path(__file__).with_name("sources")
 _FLAGS = ("-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-w")
 
@@ -79,3 +81,8 @@ def python_fmu(folder: Path) -> Path:
         if not path.exists():
             raise CannotBuild(f"pythonfmu cannot build {source}: {made.stderr.strip()[-500:]}")
     return path
+
+
+def fmu_of(case: Case, folder: Path) -> Path:
+    """The FMU of which all units of a case are."""
+    return c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)

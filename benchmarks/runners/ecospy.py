@@ -19,7 +19,7 @@ with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # without th
 from ecospy import EcosSimulation, EcosSimulationStructure
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured, Unable
 
 
@@ -32,14 +32,13 @@ def measure(case: Case, folder: Path) -> Measured:
     """Run a case; what is recorded goes into its CSV writer, the only way that it has."""
     if case.channel:
         raise Unable("has no CAN channel")
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     structure = EcosSimulationStructure()
     parameters: dict[str, float] = {}
     for i in range(case.units):
         structure.add_model(f"n{i}", str(fmu))
-        parameters[f"n{i}::gain"] = case.gain(i)
+        parameters |= {f"n{i}::{name}": value for name, value in case.parameters(i).items()}
         for s in range(case.signals):
-            parameters[f"n{i}::bias{s}"] = case.bias(i, s)
             before = i - 1 if i else case.units - 1
             structure.make_real_connection(f"n{before}::y{s}", f"n{i}::u{s}")
     structure.add_parameter_set("initialValues", parameters)

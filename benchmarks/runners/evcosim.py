@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from evcosim.master.simulation import Simulation
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured
 
 
@@ -42,14 +42,13 @@ def _outputs(case: Case, simulation: Simulation) -> NDArray[np.float64]:
 
 
 def _write_system(case: Case, folder: Path) -> Path:
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     lines = ['name = "ring"', "[experiment]", f"step_size = {STEP_SIZE}", 'algorithm = "jacobi"']
     lines.append('algebraic_loops = "iterate"')  # pythonfmu declares no dependencies
     lines.append(f"stop_time = {case.steps * STEP_SIZE!r}")
     for i in range(case.units):
         lines += [f"[units.n{i}]", f'fmu = "{fmu}"', 'isolation = "none"', f"[units.n{i}.parameters]"]
-        lines += [f"gain = {case.gain(i)!r}"]
-        lines += [f"bias{s} = {case.bias(i, s)!r}" for s in range(case.signals)]
+        lines += [f"{name} = {value!r}" for name, value in case.parameters(i).items()]
     if case.channel:
         _write_dbc(case, folder / "ring.dbc")
         lines += ["[buses.can0]", f'dbc = "{folder / "ring.dbc"}"']

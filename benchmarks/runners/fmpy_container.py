@@ -17,7 +17,7 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, ModelVariable
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured, Unable
 
 
@@ -54,7 +54,7 @@ def measure(case: Case, folder: Path) -> Measured:
 
 
 def _container(case: Case, folder: Path) -> Path:
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     inner = read_model_description(str(fmu))
     known = {v.name: v for v in inner.modelVariables}
     # each unit from a file of its own: the container extracts them by the names of their files
@@ -65,8 +65,7 @@ def _container(case: Case, folder: Path) -> Path:
         parts.append(Component(name=f"n{i}", filename=copy, modelDescription=inner))
     mappings: dict[ModelVariable, list[tuple[Component, ModelVariable]]] = {}
     for i, part in enumerate(parts):
-        values = {"gain": case.gain(i)} | {f"bias{s}": case.bias(i, s) for s in range(case.signals)}
-        for name, value in values.items():
+        for name, value in case.parameters(i).items():
             mappings[_variable(f"n{i}_{name}", "parameter", str(value))] = [(part, known[name])]
         for s in range(case.signals):
             mappings[_variable(f"n{i}_y{s}", "output", None)] = [(part, known[f"y{s}"])]

@@ -12,7 +12,7 @@ import numpy as np
 from fmpy.ssp import simulation
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured, Unable
 
 
@@ -64,13 +64,14 @@ def _name(unit: int) -> str:
 def _parameters(case: Case) -> SimpleNamespace:
     parameters = []
     for i in range(case.units):
-        values = {"gain": case.gain(i)} | {f"bias{s}": case.bias(i, s) for s in range(case.signals)}
-        parameters += [SimpleNamespace(name=f"{_name(i)}.{name}", value=x) for name, x in values.items()]
+        parameters += [
+            SimpleNamespace(name=f"{_name(i)}.{name}", value=x) for name, x in case.parameters(i).items()
+        ]
     return SimpleNamespace(parameters=parameters)
 
 
 def _write_ssp(case: Case, folder: Path) -> Path:
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     parts = []
     for i in range(case.units):
         kinds = [("input", f"u{s}") for s in range(case.signals)]

@@ -14,7 +14,7 @@ from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured, Unable
 
 
@@ -27,15 +27,15 @@ def measure(case: Case, folder: Path) -> Measured:
     """Run a case; what is recorded goes into a time-series observer in memory."""
     if case.channel:
         raise Unable("has no CAN channel")
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     log_output_level(CosimLogLevel.ERROR)
     execution = CosimExecution.from_step_size(round(STEP_SIZE * 1e9))
     slaves = [execution.add_local_slave(CosimLocalSlave(str(fmu), f"n{i}")) for i in range(case.units)]
     references = {v.name.decode(): v.reference for v in execution.slave_variables(slaves[0])}
     for i, slave in enumerate(slaves):
-        execution.real_initial_value(slave, references["gain"], case.gain(i))
+        for name, value in case.parameters(i).items():
+            execution.real_initial_value(slave, references[name], value)
         for s in range(case.signals):
-            execution.real_initial_value(slave, references[f"bias{s}"], case.bias(i, s))
             execution.connect_real_variables(slaves[i - 1], references[f"y{s}"], slave, references[f"u{s}"])
     outputs = [references[f"y{s}"] for s in range(case.signals)]
     observer = _observer(case, execution, slaves, outputs)

@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
 from ..case import STEP_SIZE, Case
-from ..fmus import c_fmu, python_fmu
+from ..fmus import fmu_of
 from . import Measured, Unable
 
 
@@ -43,8 +43,7 @@ def measure(case: Case, folder: Path) -> Measured:
     slave.setupExperiment(startTime=0.0)
     references = {v.name: v.valueReference for v in description.modelVariables}
     for i in range(case.units):
-        values = {"gain": case.gain(i)} | {f"bias{s}": case.bias(i, s) for s in range(case.signals)}
-        for name, value in values.items():
+        for name, value in case.parameters(i).items():
             slave.setReal([references[f"n{i}_{name}"]], [value])
     slave.enterInitializationMode()
     slave.exitInitializationMode()
@@ -65,7 +64,7 @@ def measure(case: Case, folder: Path) -> Measured:
 
 
 def _container(case: Case, folder: Path) -> Path:
-    fmu = c_fmu(folder, case.signals) if case.kind == "c" else python_fmu(folder)
+    fmu = fmu_of(case, folder)
     inner = folder / "inner"
     inner.mkdir()
     names = [f"n{i}.fmu" for i in range(case.units)]
