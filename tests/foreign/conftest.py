@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import shutil
 import subprocess
 import sys
@@ -13,20 +12,16 @@ from pathlib import Path
 
 import pytest
 
+from support.needs import give_up, need_c_compiler
+
 EXAMPLES = Path(__file__).parents[2] / "examples" / "modelica"
 SHIPPED = "gemseo-fmu==3.1.1"
-
-
-def _give_up(reason: str) -> None:
-    """Skip for want of a tool or a network; fail where CI says that it has them."""
-    (pytest.fail if os.environ.get("CI") else pytest.skip)(reason)
 
 
 @pytest.fixture(scope="session")
 def modelica(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Path]:
     """(model, "fmi2" or "fmi3") -> its swap file of examples/modelica, copied beside the FMU just made."""
-    if shutil.which("cc") is None:
-        _give_up("there is no C compiler (cc)")
+    need_c_compiler()
     spec = importlib.util.spec_from_file_location("compile_modelica", EXAMPLES / "compile.py")
     assert spec is not None and spec.loader is not None
     script = importlib.util.module_from_spec(spec)
@@ -54,7 +49,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     command = [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", str(folder), SHIPPED]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        _give_up(f"{SHIPPED} cannot be downloaded: {done.stderr.strip()[-300:]}")
+        give_up(f"{SHIPPED} cannot be downloaded: {done.stderr.strip()[-300:]}")
     with zipfile.ZipFile(next(folder.glob("*.whl"))) as wheel:
         names = [n for n in wheel.namelist() if "/fmu_files/linux/" in n and n.endswith(".fmu")]
         for name in names:

@@ -9,14 +9,13 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
-import shutil
 import subprocess
 import tempfile
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-import pytest
+from support.needs import need_c_compiler
 
 SOURCES = Path(__file__).with_name("sources")
 _CACHE = Path(tempfile.gettempdir()) / f"evcosim-tests-{os.getuid()}"
@@ -26,8 +25,7 @@ PLATFORM = {1: "linux64", 2: "linux64", 3: "x86_64-linux"}
 @functools.cache
 def compiled(source: Path, flags: tuple[str, ...] = ()) -> bytes:
     """The shared library of a C source, from a cache of this user where it has been."""
-    if shutil.which("cc") is None:
-        pytest.skip("there is no C compiler (cc) on this machine")
+    need_c_compiler()
     command = ["cc", "-O1", "-fPIC", "-shared", "-w", *flags]
     content = source.read_bytes() + " ".join(command).encode()
     _CACHE.mkdir(exist_ok=True)
@@ -60,7 +58,7 @@ def compile_fmu(
 _WIDE = ("Int8", "UInt8", "Int16", "UInt16", "UInt32", "Int64", "UInt64")
 
 
-def mixed_fmu(path: Path, fmi: int, behavior: int = 0, gain_unit: str = "") -> Path:
+def mixed_fmu(path: Path, fmi: int, behavior: int = 0) -> Path:
     """The unit of sources/mixed.c as an FMU at `path`, in FMI 1.0, 2.0 or 3.0."""
     description = {1: _mixed_1, 2: _mixed_2, 3: _mixed_3}[fmi]()
     flags = (f"-DFMI={fmi}", f"-DBEHAVIOR={behavior}", "-DMODEL=mixed")

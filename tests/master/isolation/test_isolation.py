@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import RunError
+from evcosim.cosim.system import Algorithm
 from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu
 
@@ -49,9 +50,9 @@ def runs(process: int) -> bool:
 
 @pytest.mark.parametrize("system", ["scooter", "lane_keeping", "braking", "multi_drive"])
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
-def test_isolated_units_give_the_same_results(system: str, algorithm: str) -> None:
-    here = simulate(system, stop_time=0.5, algorithm=algorithm)  # type: ignore[arg-type] # one of the two
-    apart = simulate(system, stop_time=0.5, algorithm=algorithm, isolation="process")  # type: ignore[arg-type]
+def test_isolated_units_give_the_same_results(system: str, algorithm: Algorithm) -> None:
+    here = simulate(system, stop_time=0.5, algorithm=algorithm)
+    apart = simulate(system, stop_time=0.5, algorithm=algorithm, isolation="process")
     assert np.array_equal(here.data, apart.data)
     assert {unit["isolation"] for unit in apart.manifest["units"].values()} == {"process"}
 

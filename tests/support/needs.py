@@ -1,0 +1,21 @@
+"""What a test needs of the machine beside Python."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from typing import NoReturn
+
+import pytest
+
+
+def give_up(reason: str) -> NoReturn:
+    """Skip for want of a tool or a network; fail where CI says that it has them."""
+    (pytest.fail if os.environ.get("CI") else pytest.skip)(reason)
+    raise AssertionError(reason)
+
+
+def need_c_compiler() -> None:
+    """Give up where there is no `cc`."""
+    if shutil.which("cc") is None:
+        give_up("there is no C compiler (cc) on this machine")
