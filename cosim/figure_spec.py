@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -56,6 +56,16 @@ class FigureSpec(FileModel):
     shade: str | None = None
     panels: list[PanelSpec] = Field(min_length=1)
     note: str | None = None
+
+    def without(self, gone: Callable[[str], bool]) -> FigureSpec | None:
+        """The figure without the signals that are `gone`; None when no panel is left."""
+        panels = [
+            panel.model_copy(update={"signals": [s for s in panel.signals if not gone(s.name)]})
+            for panel in self.panels
+        ]
+        shade = None if self.shade is None or gone(self.shade) else self.shade
+        panels = [panel for panel in panels if panel.signals]
+        return self.model_copy(update={"panels": panels, "shade": shade}) if panels else None
 
 
 def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:

@@ -48,13 +48,18 @@ class Row:
     reason: str
     candidates: tuple[str, ...] = ()
 
+    @property
+    def others(self) -> list[str]:
+        """The candidates that were not taken."""
+        return [name for name in self.candidates if name != self.variable]
+
 
 def fit(needs: Sequence[Requirement], offer: UnitInterface, entry: UnitEntry | None = None) -> list[Row]:
     """The rows for all needs, then one for each input of the FMU that nothing drives.
 
     `entry` is a mapping that is there already: what it maps is looked at as it is.
     """
-    mapped = _mapped(entry)
+    mapped = entry.map.by_causality if entry else {}
     rows: list[Row] = []
     for role in ("input", "output", "parameter"):
         wanted = [need for need in needs if need.role == role]
@@ -65,12 +70,6 @@ def fit(needs: Sequence[Requirement], offer: UnitInterface, entry: UnitEntry | N
             start = "its start value" if v.start is None else f"{v.start} {v.unit}".strip()
             rows.append(Row("", "input", v.name, "unused", f"nothing drives it: it keeps {start}"))
     return rows
-
-
-def _mapped(entry: UnitEntry | None) -> dict[str, Mapping[str, MapEntry]]:
-    if entry is None:
-        return {}
-    return {"input": entry.map.inputs, "output": entry.map.outputs, "parameter": entry.map.parameters}
 
 
 def _of_role(

@@ -31,7 +31,7 @@ def present(interface: UnitInterface, entry: UnitEntry, place: str) -> UnitInter
     A variable that is mapped is known by the system's name alone. Raises ConfigError, which begins with
     `place`, for names that the FMU has not, causalities that do not fit and unknown units of measure.
     """
-    tables = {"input": entry.map.inputs, "output": entry.map.outputs, "parameter": entry.map.parameters}
+    tables = entry.map.by_causality
     if not any(tables.values()):
         return interface
     renamed: dict[str, VariableInfo] = {}
@@ -148,8 +148,7 @@ def _connection(connection: Connection, absent: set[str], left_out: list[str]) -
 def _metrics(specs: Iterable[MetricSpec], absent: set[str], left_out: list[str]) -> list[MetricSpec]:
     kept = []
     for spec in specs:
-        parts = (spec, spec.per) if spec.per else (spec,)
-        if absent & {name for part in parts for name in (part.signal, part.minus) if name}:
+        if absent.intersection(spec.all_signals):
             left_out.append(f"metric '{spec.name}'")
         else:
             kept.append(spec)
@@ -161,13 +160,7 @@ def _figure(spec: FigureSpec | None, absent: set[str], left_out: list[str]) -> F
         return None
     gone = [s.name for panel in spec.panels for s in panel.signals if s.name in absent]
     left_out += [f"{name} in the figure" for name in gone]
-    panels = [
-        panel.model_copy(update={"signals": [s for s in panel.signals if s.name not in absent]})
-        for panel in spec.panels
-    ]
-    panels = [panel for panel in panels if panel.signals]
-    shade = None if spec.shade in absent else spec.shade
-    return spec.model_copy(update={"panels": panels, "shade": shade}) if panels else None
+    return spec.without(absent.__contains__)
 
 
 def _known(

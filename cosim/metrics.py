@@ -78,6 +78,11 @@ class Reduction(FileModel):
     value: bool | int | float | str | None = None
     after: float | None = Field(default=None, allow_inf_nan=False)
 
+    @property
+    def signals(self) -> list[str]:
+        """The names of the signals that it is of."""
+        return [name for name in (self.signal, self.minus) if name is not None]
+
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Reduction:
         for key, reductions in _TAKES.items():
@@ -95,6 +100,16 @@ class MetricSpec(Reduction):
     name: str
     unit: str = "1"
     per: Reduction | None = None
+
+    @property
+    def reductions(self) -> tuple[Reduction, ...]:
+        """What is computed: itself, and `per`."""
+        return (self, self.per) if self.per else (self,)
+
+    @property
+    def all_signals(self) -> list[str]:
+        """The names of all signals that it needs."""
+        return [name for part in self.reductions for name in part.signals]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,7 +142,7 @@ def check(specs: Sequence[MetricSpec], variables: Mapping[str, ResultVariable], 
         if spec.name in seen:
             raise ConfigError(f"{here} is there twice")
         seen.add(spec.name)
-        for part in (spec, spec.per) if spec.per else (spec,):
+        for part in spec.reductions:
             _check_reduction(part, variables, here)
         try:
             _scale(spec, variables)
@@ -163,7 +178,7 @@ def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, Result
 
     if not len(results):
         return without("the run has no communication point")
-    parts = (spec, spec.per) if spec.per else (spec,)
+    parts = spec.reductions
     try:
         scale = _scale(spec, variables)
         numbers = [_reduce(_window(results, part), part) for part in parts]
@@ -264,7 +279,7 @@ def _window(results: Results, part: Reduction) -> Results:
         kept = results.time >= part.after
         if not kept.any():
             raise _NoValueError(f"the run ends before {part.after:g} s")
-        results = results.part(kept, [name for name in (part.signal, part.minus) if name is not None])
+        results = results.part(kept, part.signals)
     if part.reduce in _NEEDS_DURATION and _duration(results) == 0.0:
         raise _NoValueError("the run has no duration")
     return results
@@ -272,7 +287,7 @@ def _window(results: Results, part: Reduction) -> Results:
 
 def _reduce(results: Results, part: Reduction) -> float:
     """The number of a reduction, in the unit of the signal and s."""
-    variables = {name: results.variable(name) for name in (part.signal, part.minus) if name is not None}
+    variables = {name: results.variable(name) for name in part.signals}
     other, threshold = _to_signal(part, variables)
     x = results.column(part.signal)
     if part.minus is not None:

@@ -18,7 +18,7 @@ def metric_specs(system: System, scenario: Scenario) -> list[MetricSpec]:
     A metric of the scenario takes the place of the system's of the same name.
     """
     own = {spec.name for spec in scenario.file.metrics}
-    kept = [s for s in system.file.metrics if s.name not in own and not _needs(_signals(s), scenario)]
+    kept = [s for s in system.file.metrics if s.name not in own and not _needs(s.all_signals, scenario)]
     return [*kept, *scenario.file.metrics]
 
 
@@ -30,13 +30,7 @@ def figure_spec(system: System, scenario: Scenario) -> FigureSpec | None:
     spec = system.file.figure
     if scenario.file.figure is not None or spec is None:
         return scenario.file.figure
-    panels = [
-        panel.model_copy(update={"signals": [s for s in panel.signals if not _needs([s.name], scenario)]})
-        for panel in spec.panels
-    ]
-    shade = None if spec.shade is None or _needs([spec.shade], scenario) else spec.shade
-    panels = [panel for panel in panels if panel.signals]
-    return spec.model_copy(update={"panels": panels, "shade": shade}) if panels else None
+    return spec.without(lambda name: _needs([name], scenario))
 
 
 def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:
@@ -51,11 +45,6 @@ def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVa
     if spec is not None:
         place = system.path if scenario.file.figure is None else scenario.path
         figures.check(spec, recorded, f"{place}: figure")
-
-
-def _signals(spec: MetricSpec) -> list[str]:
-    parts = (spec, spec.per) if spec.per else (spec,)
-    return [name for part in parts for name in (part.signal, part.minus) if name is not None]
 
 
 def _needs(signals: Iterable[str], scenario: Scenario) -> bool:

@@ -81,5 +81,4 @@ def _shown(system: System, scenario: Scenario) -> Iterable[str]:
         if file.figure is not None:
             yield from (s.name for panel in file.figure.panels for s in panel.signals)
         for spec in file.metrics:
-            for part in (spec, spec.per) if spec.per else (spec,):
-                yield from (name for name in (part.signal, part.minus) if name)
+            yield from spec.all_signals

@@ -86,8 +86,7 @@ class Results:
         metrics: Sequence[MetricSpec] = (),
     ) -> None:
         self.time: Array = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
-        given = hasattr(data, "whole")
-        self._table: Table = data if given else _table(data)  # type: ignore[assignment, arg-type] # one or the other
+        self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
         self.figure = figure

@@ -9,7 +9,7 @@ from __future__ import annotations
 import tempfile
 import weakref
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ MEMORY = 64 * 2**20  # bytes of rows that stay in memory: half an hour of 40 var
 _STRETCH = 2**20  # bytes that are read at a time to take a column
 
 
+@runtime_checkable
 class Table(Protocol):
     """Numbers in rows and columns."""
 

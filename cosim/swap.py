@@ -68,8 +68,7 @@ def written(path: Path, fmu: str, place: str, rows: Sequence[Row]) -> None:
 
 
 def _line(row: Row) -> list[str]:
-    others = [name for name in row.candidates if name != row.variable]
-    comment = f"# {row.reason}" + (f"; others: {', '.join(others)}" if others else "")
+    comment = f"# {row.reason}" + (f"; others: {', '.join(row.others)}" if row.others else "")
     if row.verdict == "unused":
         return [f"# {row.variable}: {row.reason}"]
     if not row.variable:

@@ -85,6 +85,11 @@ class MapTables(FileModel):
     outputs: dict[str, Mapped] = {}
     parameters: dict[str, Mapped] = {}
 
+    @property
+    def by_causality(self) -> dict[str, dict[str, MapEntry]]:
+        """The tables by the causality that their names have in the system."""
+        return {"input": self.inputs, "output": self.outputs, "parameter": self.parameters}
+
 
 class UnitEntry(FileModel):
     """One unit: its FMU (a built-in name or a path), parameters and starts, and how it is stepped.

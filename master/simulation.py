@@ -150,7 +150,7 @@ class Simulation:
     def _load(self, plan: UnitPlan, wanted: Isolation | None) -> Unit:
         fmu, entry = self._fmus[plan.name], self.system.file.units[plan.name]
         own = fmu.description.modelName
-        isolation = wanted or entry.isolation or ("none" if is_builtin(own, fmu.digest) else "process")
+        isolation = wanted or entry.isolation or ("none" if is_builtin(own, fmu.path) else "process")
         self.isolation[plan.name] = isolation
         if isolation == "none":
             return load_unit(fmu, plan.name, plan.interface)

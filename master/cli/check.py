@@ -76,9 +76,8 @@ def _compared(file: str, place: str, scenario: str | None) -> tuple[str, list[Ro
 
 
 def _reason(row: Row) -> str:
-    others = [name for name in row.candidates if name != row.variable]
-    told = row.verdict in ("your choice", "missing") and others
-    return f"{row.reason}; others: {', '.join(others)}" if told else row.reason
+    told = row.verdict in ("your choice", "missing") and row.others
+    return f"{row.reason}; others: {', '.join(row.others)}" if told else row.reason
 
 
 def _conclude(complete: bool, rows: Sequence[Row], file: str, place: str, write: Path | None) -> None:

@@ -67,9 +67,7 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
         raise FmuError(f"{path}: there is no such file") from error
     except OSError as error:
         raise FmuError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except (
-        Exception
-    ) as error:  # zipfile raises BadZipFile, NotImplementedError, UnicodeDecodeError, struct.error
+    except Exception as error:  # zipfile raises four unrelated types for damaged archives
         raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
     _check(path, found, limits())
     return found

@@ -46,10 +46,6 @@ class Library:
         """Whether the library has a function."""
         return hasattr(self._library, self.prefix + name)
 
-    def address(self, name: str) -> int:
-        """The address of a C function."""
-        return ctypes.cast(self.function(name), ctypes.c_void_p).value or 0
-
     def close(self) -> None:
         """Unload the library."""
         freeLibrary(self._library._handle)

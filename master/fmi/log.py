@@ -22,9 +22,8 @@ _KEPT = 100
 _RECENT = 20
 _LONGEST = 2000  # characters of a message that are kept
 _queues: dict[int, UnitLog] = {}
-_instantiating: list[
-    UnitLog
-] = []  # FMI 1.0 tells units apart by their component, which comes at the end of it
+# FMI 1.0 tells units apart by their component, which is known only when instantiation ends
+_instantiating: list[UnitLog] = []
 _ids = itertools.count(1)
 
 

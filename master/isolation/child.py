@@ -57,10 +57,10 @@ class _Server:
         try:
             while True:
                 request = wire.receive(self.connection)
-                if len(request) == wire.TURN.size:
-                    self._turn(*wire.TURN.unpack(request))
+                if request[:1] == wire.CALL:
+                    self._answer(*pickle.loads(request[1:]))
                 else:
-                    self._answer(*pickle.loads(request))
+                    self._turn(*wire.TURN.unpack(request))
         except (EOFError, OSError):
             os._exit(0)
 
@@ -77,7 +77,7 @@ class _Server:
                 unit.get_feedthrough()
             else:
                 unit.get_outputs()
-        except Exception as error:
+        except Exception as error:  # whatever it is, the master raises it
             wire.send(self.connection, self._failure(error))
         else:
             wire.send(self.connection, wire.DONE)
@@ -86,7 +86,7 @@ class _Server:
         try:
             value = getattr(self, f"do_{name}", None) or getattr(self.unit, name)
             answer = json.dumps({"value": value(*arguments), "warnings": self._warnings()}).encode()
-        except Exception as error:
+        except Exception as error:  # as above
             answer = self._failure(error)
         wire.send(self.connection, answer)
 

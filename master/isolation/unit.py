@@ -76,7 +76,7 @@ class IsolatedUnit:
         """Ask for something that happens once or seldom."""
         self._asked = name + (f" of {arguments[0]}" if name in ("get", "set") else "")
         try:
-            wire.send(self._connection, pickle.dumps((name, arguments)))
+            wire.send(self._connection, wire.CALL + pickle.dumps((name, arguments)))
         except OSError as error:
             self._ended(error)
         answer = self._answer(timeout)

@@ -18,7 +18,7 @@ LONGEST = 1 << 20  # bytes of an answer
 
 TURN = struct.Struct("<cddi")
 """A turn: what is asked for (see below), time [s], step size [s], number of steps."""
-STEP, OUTPUTS, FEEDTHROUGH = b"s", b"o", b"f"
+CALL, STEP, OUTPUTS, FEEDTHROUGH = b"c", b"s", b"o", b"f"
 DONE = b"+"
 """The answer to a turn that went well; any other one is a frame of JSON."""
 
