@@ -1,81 +1,142 @@
 """Measure this project and the peers that are installed: python -m benchmarks, from the project's folder.
 
-Every master runs the same ring of units in turn, several rounds over, each in a process of its own; its
-result must be the reference solution's before its time counts. What is printed is the least time a step of
-each, as a Markdown table, with the reason where there is no number. Needs a C compiler; the peers come with
+Every master runs the same ring of units in turn, several rounds over, each in a process of its own, with all
+processors and with one; its result must be the reference solution's before its time counts. What is printed
+is the least time a step of the whole loop, beside it the ratio to this project's, and the reason where there
+is no number. Needs a C compiler; the peers come with
 pip install libcosimpy ecospy tbb fmu-manipulation-toolbox.
 """
 
 from __future__ import annotations
 
 import argparse
-import dataclasses
-import json
-import os
-import platform
-import subprocess
 import sys
-from typing import Any
+from collections.abc import Sequence
+from pathlib import Path
 
-from .case import Case
+from . import figures, machine, page
+from .asking import Figure, measured
+from .case import Case, Kind
 
-RUNNERS = ("direct", "evcosim", "fmpy_ssp", "fmpy_container", "toolbox_container", "ecospy", "libcosimpy")
-_TIMEOUT = 300.0  # s
+MASTERS = (
+    "direct", "evcosim", "evcosim_python", "ecospy", "fmpy_loop", "fmpy_ssp", "libcosimpy", "fmpy_container",
+    "toolbox_container",
+)  # fmt: skip # one list
+NAMES = {
+    "direct": "bare C calls (lower bound)",
+    "evcosim": "evcosim, compiled engine",
+    "evcosim_python": "evcosim, python engine",
+    "ecospy": "ecospy {}",
+    "fmpy_loop": "FMPy {}, a loop of raw calls",
+    "fmpy_ssp": "FMPy {} simulate_ssp",
+    "libcosimpy": "libcosimpy {}",
+    "fmpy_container": "FMPy {} container FMU",
+    "toolbox_container": "fmu-manipulation-toolbox {} container FMU",
+}
+_OWN = "evcosim"
+_UNIT_STEPS = {"c": 40_000, "python": 20_000}
+"""Steps of all units together, where a run has many units: so long that a step's time is steady."""
+
+Group = tuple[Kind, bool, bool]
+"""Kind of FMU, whether connections cross a CAN bus, whether every output is recorded."""
+GROUPS: tuple[Group, ...] = (
+    ("c", False, True), ("c", True, True), ("c", False, False),
+    ("python", False, True), ("python", True, True), ("python", False, False),
+)  # fmt: skip # one table
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure and print, and keep what was measured in the docs if asked."""
+    arguments = _arguments()
+    print(machine.about(), file=sys.stderr)
+    found = []
+    for group in GROUPS:
+        for units in arguments.units:
+            found.append(measured(MASTERS, case(group, units, arguments.steps), arguments.rounds))
+            print(f"{found[-1][0].case.name}: {_in_short(found[-1])}", file=sys.stderr, flush=True)
+    text = report(found)
+    print(text)
+    if arguments.write is not None:
+        page.put(arguments.write, "masters", text)
+        figures.masters(found, NAMES, arguments.write.parent / "img" / "performance-masters.png")
+
+
+def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks", description=(__doc__ or "").split("\n\n")[0]
     )
     parser.add_argument("--rounds", type=int, default=3, help="how often each is measured (default: 3)")
     parser.add_argument("--steps", type=int, default=10_000, help="steps of a run (default: 10000)")
-    parser.add_argument("--units", type=int, nargs="+", default=[2, 5, 20], help="units in the ring")
-    arguments = parser.parse_args()
-    print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}; us a step\n")
-    print("| case | " + " | ".join(RUNNERS) + " |")
-    print("|---" * (1 + len(RUNNERS)) + "|")
-    reasons: dict[str, None] = {}
-    for case in cases(arguments.units, arguments.steps):
-        best = measured(case, arguments.rounds, reasons)
-        print(f"| {case.name} | " + " | ".join(best[name] for name in RUNNERS) + " |", flush=True)
-    print("\n" + "\n".join(f"- {reason}" for reason in reasons))
+    parser.add_argument("--units", type=int, nargs="+", default=[2, 5, 20, 100], help="units in the ring")
+    parser.add_argument(
+        "--write", type=Path, metavar="PAGE", help="put tables and figure into it: docs/performance.md"
+    )
+    return parser.parse_args()
 
 
-def cases(units: list[int], steps: int) -> list[Case]:
-    """What is measured."""
-    found = [
-        Case(kind, n, steps, record=record)
-        for kind in ("c", "python")
-        for n in units
-        for record in (True, False)
+def case(group: Group, units: int, steps: int) -> Case:
+    """A case of a group; with many units it has fewer steps."""
+    kind, channel, record = group
+    return Case(kind, units, min(steps, _UNIT_STEPS[kind] // units), channel=channel, record=record)
+
+
+def _in_short(figures: Sequence[Figure]) -> str:
+    return ", ".join(
+        f"{f.master} {page.short(f.microseconds)}" for f in figures if f.microseconds is not None
+    )
+
+
+def report(found: Sequence[Sequence[Figure]]) -> str:
+    """All tables, and below them why there are no numbers where there are none."""
+    parts = [f"Measured on: {machine.about()}.\n"]
+    for group in GROUPS:
+        rows = [figures for figures in found if _group(figures[0].case) == group]
+        if rows:
+            parts += [f"{_title(group)}:\n", _table(rows), ""]
+    reasons = dict.fromkeys(
+        f"- {_named(f)}: {f.reason}" for row in found for f in row if f.microseconds is None
+    )
+    return "\n".join([*parts, "Where there is no number:\n", *reasons])
+
+
+def _group(case: Case) -> Group:
+    return case.kind, case.channel, case.record
+
+
+def _title(group: Group) -> str:
+    kind, channel, record = group
+    parts = [
+        "C FMUs" if kind == "c" else "pythonfmu FMUs",
+        "every connection over a CAN bus" if channel else "",
     ]
-    return [*found, Case("c", 2, steps, channel=True)]
+    parts.append("every output recorded at every step" if record else "nothing recorded")
+    return "**" + ", ".join(part for part in parts if part) + "**, µs a step of the whole loop"
 
 
-def measured(case: Case, rounds: int, reasons: dict[str, None]) -> dict[str, str]:
-    """The least microseconds a step of each master, in turn; "-" with a reason where there is none."""
-    times: dict[str, list[float]] = {name: [] for name in RUNNERS}
-    for _ in range(rounds):
-        for name in RUNNERS:
-            answer = _ask(name, case)
-            if "microseconds" in answer:
-                times[name].append(answer["microseconds"])
-            else:
-                reasons[f"{name} {answer.get('version', '')}: {answer['error']}"] = None
-    return {name: f"{min(found):.3g}" if found else "-" for name, found in times.items()}
+def _table(rows: Sequence[Sequence[Figure]]) -> str:
+    """A line for each master that has a number, a column for each number of units."""
+    lines = []
+    for i, figure in enumerate(rows[0]):
+        column = [figures[i] for figures in rows]
+        if any(f.microseconds is not None for f in column):
+            lines.append(
+                [_named(figure), *(_cell(f, figures) for f, figures in zip(column, rows, strict=True))]
+            )
+    return page.table(["master", *(f"{figures[0].case.units} units" for figures in rows)], lines)
 
 
-def _ask(name: str, case: Case) -> dict[str, Any]:
-    command = [sys.executable, "-m", "benchmarks.worker", name, json.dumps(dataclasses.asdict(case))]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
-        answer: dict[str, Any] = json.loads(done.stdout)
-        return answer
-    except subprocess.TimeoutExpired:
-        return {"error": f"took more than {_TIMEOUT:g} s"}
-    except ValueError:
-        return {"error": f"its process ended with code {done.returncode}"}
+def _cell(figure: Figure, all_of_case: Sequence[Figure]) -> str:
+    """The time, and how many times that of this project's it is."""
+    if figure.microseconds is None:
+        return "-"
+    star = "\\*" if figure.one_core else ""
+    own = next((f.microseconds for f in all_of_case if f.master == _OWN), None)
+    ratio = "" if own is None or figure.master == _OWN else f" ({page.short(figure.microseconds / own)} x)"
+    return f"{page.short(figure.microseconds)}{star}{ratio}"
+
+
+def _named(figure: Figure) -> str:
+    return " ".join(NAMES[figure.master].format(figure.version).split())
 
 
 if __name__ == "__main__":

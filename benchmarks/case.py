@@ -77,5 +77,5 @@ def reference(case: Case, order: Literal["jacobi", "gauss_seidel"]) -> Array:
 
 
 def quantized(x: Array) -> Array:
-    """What the bus makes of a value: saturated to [-30, 30], rounded to 2^-10."""
-    return np.rint(np.clip(x, -30.0, 30.0) * 1024.0) / 1024.0
+    """What the bus makes of a value: saturated to [-30, 30], rounded to 2^-10, a half away from zero."""
+    return np.copysign(np.floor(np.abs(np.clip(x, -30.0, 30.0)) * 1024.0 + 0.5) / 1024.0, x)
