@@ -46,7 +46,7 @@ def _lines(axis: Any, rows: Sequence[Sequence[Figure]], names: Mapping[str, str]
     for i, first in enumerate(rows[0] if rows else ()):
         points = [(r[i].case.units, r[i].microseconds) for r in rows if r[i].microseconds is not None]
         name = names[first.master].replace(" {}", "")
-        if points:
+        if points:  # no line in the legend for a master that cannot do it
             handles[name] = _series(axis, points, first.master, name)
     logarithmic(axis, [r[0].case.units for r in rows])
     return handles
@@ -57,6 +57,7 @@ def logarithmic(axis: Any, ticks: Sequence[int]) -> None:
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xticks(ticks, [str(n) for n in ticks])
+    axis.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axis.minorticks_off()
     axis.grid(True, color="0.9", linewidth=0.8)
     axis.spines[["top", "right"]].set_visible(False)
@@ -75,6 +76,8 @@ def scaling(units: Sequence[Sequence[Figure]], signals: Sequence[Sequence[Figure
     names = {"evcosim": "compiled engine", "evcosim_python": "python engine"}
     for i, first in enumerate(units[0]):
         points = [(r[i].case.units, r[i].microseconds / r[i].case.units) for r in units if r[i].microseconds]
+        if not points:
+            continue
         _series(left, points, first.master, names[first.master])
         for channel in (False, True):
             rows = [r for r in signals if r[0].case.channel == channel]
@@ -96,9 +99,9 @@ def scaling(units: Sequence[Sequence[Figure]], signals: Sequence[Sequence[Figure
 def _series(
     axis: Any, points: Sequence[tuple[float, float]], master: str, label: str, full: bool = True
 ) -> Any:
-    """Draw the measured points of a master, if there are any; the line that stands for them in a legend."""
+    """Draw the measured points of a master; the line that stands for them in a legend."""
     color, line, marker = _STYLES[master]
-    x, y = zip(*points, strict=True) if points else ((), ())
+    x, y = zip(*points, strict=True)
     (handle,) = axis.plot(x, y, color=color, linestyle=line, marker=marker, label=label)
     handle.set(markersize=4, linewidth=1.4, markerfacecolor=color if full else "white")
     return handle
