@@ -97,8 +97,9 @@ class UnitEntry(FileModel):
     `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
     FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
     that evcosim built itself is in the master's); `step_timeout` [s] is what an answer of such a process may
-    take. `strict` refuses an FMU with defects that we could bear. `map` gives its variables the names that
-    the system uses; `absent` are names of the system that it does not have.
+    take, `load_timeout` [s] the first: some FMUs start a simulator. `strict` refuses an FMU with defects that
+    we could bear. `map` gives its variables the names that the system uses; `absent` are names of the system
+    that it does not have.
     """
 
     fmu: str
@@ -108,6 +109,7 @@ class UnitEntry(FileModel):
     substeps: int = Field(default=1, ge=1)
     isolation: Isolation | None = None
     step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
+    load_timeout: float = Field(default=60.0, gt=0.0, allow_inf_nan=False)
     strict: bool = False
     map: MapTables = MapTables()
     absent: list[str] = []

@@ -154,7 +154,7 @@ class Simulation:
         self.isolation[plan.name] = isolation
         if isolation == "none":
             return load_unit(fmu, plan.name, plan.interface)
-        return IsolatedUnit(fmu, plan.name, plan.interface, entry.step_timeout)
+        return IsolatedUnit(fmu, plan.name, plan.interface, entry.step_timeout, entry.load_timeout)
 
     # ---- a loop of one's own
 

@@ -26,18 +26,17 @@ from ..unit import UnitError, Value, floats
 from . import wire
 from .waiting import waiting
 
-_LOADING = 60.0  # s: some FMUs start a simulator
 _ENDING = 2.0
 _SAID = 2000  # characters of its output that are shown
 
 
 class IsolatedUnit:
-    """See `unit.Unit`; `timeout` [s] is what an answer to a call in the run may take.
+    """See `unit.Unit`; `timeout` [s] is what an answer to a call in the run may take, `loading` to the first.
 
     Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
     """
 
-    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface, timeout: float) -> None:
+    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface, timeout: float, loading: float) -> None:
         check_runnable(fmu)
         self.name, self.fmu, self.interface = name, fmu, interface
         self.warnings = 0
@@ -52,7 +51,7 @@ class IsolatedUnit:
         try:
             with theirs:
                 self._process = self._start(theirs)
-            self._call("load", str(fmu.path.resolve()), name, interface, timeout=max(_LOADING, timeout))
+            self._call("load", str(fmu.path.resolve()), name, interface, timeout=loading)
         except BaseException:
             self.free()
             raise
@@ -112,7 +111,8 @@ class IsolatedUnit:
         """Raise UnitError that says how the process ended, or that it did not answer and was ended."""
         limit = self._timeout if timeout is None else timeout
         if isinstance(error, TimeoutError):
-            how = f"did not answer for {limit:g} s (step_timeout) and was ended"
+            setting = "step_timeout" if timeout is None else "load_timeout"
+            how = f"did not answer for {limit:g} s ({setting}) and was ended"
         else:
             how = _ending(self._wait())
         self._kill()
