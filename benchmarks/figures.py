@@ -76,8 +76,6 @@ def scaling(units: Sequence[Sequence[Figure]], signals: Sequence[Sequence[Figure
     names = {"evcosim": "compiled engine", "evcosim_python": "python engine"}
     for i, first in enumerate(units[0]):
         points = [(r[i].case.units, r[i].microseconds / r[i].case.units) for r in units if r[i].microseconds]
-        if not points:
-            continue
         _series(left, points, first.master, names[first.master])
         for channel in (False, True):
             rows = [r for r in signals if r[0].case.channel == channel]
@@ -101,7 +99,7 @@ def _series(
 ) -> Any:
     """Draw the measured points of a master; the line that stands for them in a legend."""
     color, line, marker = _STYLES[master]
-    x, y = zip(*points, strict=True)
+    x, y = zip(*points, strict=True) if points else ((), ())
     (handle,) = axis.plot(x, y, color=color, linestyle=line, marker=marker, label=label)
     handle.set(markersize=4, linewidth=1.4, markerfacecolor=color if full else "white")
     return handle

@@ -1,0 +1,76 @@
+"""The benchmarks: our runs are those of the reference, and what is printed says what was measured."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks import __main__ as ring
+from benchmarks import worker
+from benchmarks.asking import Figure, ask
+from benchmarks.case import Case, quantized, reference
+from benchmarks.page import put
+from benchmarks.runners import Measured
+from support.needs import need_c_compiler
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("case", [
+    Case("c", 3, 200, signals=5, channel=True), Case("c", 1, 200), Case("python", 2, 200, channel=True),
+])  # fmt: skip # one table
+def test_our_outputs_are_the_reference(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    figure = ask("evcosim", case)
+    assert figure.reason == ""
+    assert figure.microseconds is not None
+    assert figure.microseconds > 0.0
+
+
+def test_a_result_that_is_not_the_reference_has_no_time() -> None:
+    """The reference of the other order of units is off by a step."""
+    case = Case("c", 2, 50)
+    wrong = Measured(1.0, reference(case, "gauss_seidel"), "jacobi")
+    assert "not timed" in worker._checked(case, wrong)["error"]
+    right = Measured(1.0, reference(case, "jacobi"), "jacobi")
+    assert worker._checked(case, right)["microseconds"] == 1e6 / 50
+
+
+def test_the_reference_quantizes_as_the_bus_does() -> None:
+    halves = np.array([0.5, 1.5, -0.5, -2.5, 40000.0]) / 1024.0
+    assert (1024.0 * quantized(halves)).tolist() == [1.0, 2.0, -1.0, -3.0, 30720.0]
+
+
+def test_a_peer_that_is_missing_is_a_line_that_says_so() -> None:
+    case = Case("c", 2, 100)
+    found = [Figure("evcosim", "0", case, 0.5), Figure("ecospy", "", case, reason="not installed (ecospy)")]
+    text = ring.report([found])
+    assert "| evcosim, compiled engine | 0.5 |" in text
+    assert "- ecospy: not installed (ecospy)" in text
+
+
+def test_a_ratio_is_to_this_project() -> None:
+    case = Case("c", 2, 100)
+    found = [Figure("evcosim", "0", case, 0.5), Figure("ecospy", "1", case, 2.0, one_core=True)]
+    assert r"| ecospy 1 | 2\* (4 x) |" in ring.report([found])
+
+
+def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("a\n<!-- x -->\nold\n<!-- end x -->\nb\n")
+    put(page, "x", "new \\1")
+    assert page.read_text() == "a\n<!-- x -->\nnew \\1\n<!-- end x -->\nb\n"
+    with pytest.raises(ValueError, match="no place '<!-- y -->'"):
+        put(page, "y", "")
+
+
+def test_help_says_what_is_measured() -> None:
+    for module in ("benchmarks", "benchmarks.scaling"):
+        command = [sys.executable, "-m", module, "--help"]
+        said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        assert "--write" in said
