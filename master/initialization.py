@@ -10,6 +10,7 @@ first message a receiver sees its initial value.
 from __future__ import annotations
 
 import graphlib
+import math
 from collections.abc import Iterable, Mapping
 
 from ..cosim.errors import ConfigError
@@ -60,7 +61,7 @@ def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tu
 def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
     """Bring every unit from instantiated to ready for its first step.
 
-    Raises UnitError when a unit refuses, or a loop does not converge.
+    Raises UnitError when a unit refuses, an output is NaN or infinite, or a loop does not converge.
     """
     links, looped = ordered_links(plan)
     experiment = plan.experiment
@@ -94,7 +95,11 @@ def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
 
 
 def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
-    value = link.map(float(units[link.source[0]].get(link.source[1])))
+    unit, name = link.source
+    value = float(units[unit].get(name))
+    if not math.isfinite(value):
+        raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
+    value = link.map(value)
     _set_number(units, ".".join(link.sink), value)
     return value
 

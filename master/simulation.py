@@ -345,18 +345,30 @@ class Simulation:
         self.close(orderly=error is None and self._engine.whole)
 
     def close(self, orderly: bool = True) -> None:
-        """Terminate the units (not after an error) and release them. The results stay."""
+        """Terminate the units (not after an error) and release them. The results stay.
+
+        Raises the error of the first unit that cannot be terminated, after the others were.
+        """
         try:
             if orderly:
-                for unit in self._units.values():
-                    unit.terminate()
+                self._terminate()
         finally:
             self._free()
 
+    def _terminate(self) -> None:
+        failures: list[RunError] = []
+        for unit in self._units.values():
+            try:
+                unit.terminate()
+            except RunError as error:
+                failures.append(error)
+        if failures:
+            raise failures[0]
+
     def _free(self) -> None:
-        self._last_warnings = self._unit_warnings()
         for unit in self._units.values():
             unit.free()
+        self._last_warnings = self._unit_warnings()  # an isolated unit tells the last ones when it is freed
         self._units = {}
 
 
@@ -379,7 +391,7 @@ def simulate(
     Raises ConfigError before any step, RunError when a step fails; what a failed run has recorded is in
     the error's `results` (None where it failed before the first step).
     """
-    with Simulation(
+    simulation = Simulation(
         system,
         scenario,
         parameters=parameters,
@@ -390,13 +402,14 @@ def simulate(
         bus=bus,
         isolation=isolation,
         swaps=swaps,
-    ) as simulation:
-        try:
+    )
+    try:
+        with simulation:
             simulation.run(progress)
-        except RunError as error:
-            error.results = simulation.results
-            raise
-        return simulation.results
+    except RunError as error:
+        error.results = simulation.results
+        raise
+    return simulation.results
 
 
 def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
