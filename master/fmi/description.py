@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from .archive import FmuError
+from .attributes import mend_attributes
+from .structure import mend_structure
 from .supplement import negated_aliases, supplement
 
 _VERSIONS = ("1.0", "2.0", "3.0")
@@ -80,11 +82,12 @@ def _check_identifiers(place: str, root: Any) -> None:
 def _mend(path: Path, root: Any) -> list[str]:
     defects: list[str] = []
     variables = [v for v in root.find("ModelVariables") if isinstance(v.tag, str)]
+    places: dict[int, int] = {}
     scalar = root.get("fmiVersion")[0] in "12"
     types = {t.get("name") for t in root.iter("SimpleType", "Type")}
     types |= {t.get("name") for t in root.findall("TypeDefinitions/*")}
     seen: set[str] = set()
-    for v in variables:
+    for index, v in enumerate(variables, 1):
         value = next((c for c in v if c.tag in _SCALAR_TYPES), None) if scalar else v
         name = v.get("name")
         if name is None or value is None:
@@ -93,10 +96,10 @@ def _mend(path: Path, root: Any) -> list[str]:
                 f"line {v.sourceline}: a variable without {'a type' if name else 'a name'} is left out"
             )
             continue
+        places[index] = len(places) + 1
         _require(path, v, name, seen)
         defects += _mend_variable(v, value, name, types)
-    defects += _mend_structure(root, len(variables))
-    return defects
+    return defects + mend_attributes(root) + mend_structure(root, places)
 
 
 def _require(path: Path, v: Any, name: str, seen: set[str]) -> None:
@@ -122,6 +125,7 @@ def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> lis
         if given is not None and not v.findall("Dimension") and not _is_of_type(given, value.tag):
             del value.attrib[attribute]
             defects.append(f"{name}: {attribute} = {given!r} is no {value.tag}; it is ignored")
+    defects += _contradictions(value, name)
     if (wrong := _illegal_variability(v)) is not None:
         causality = v.get("causality", "local")
         assumed = _ALLOWED[causality][0]
@@ -130,6 +134,21 @@ def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> lis
             f"{name}: a {causality} of variability '{wrong}' is not allowed; '{assumed}' is assumed"
         )
     return defects
+
+
+def _contradictions(value: Any, name: str) -> list[str]:
+    """A minimum above the maximum bounds nothing; a start value outside is told, and stays."""
+    if (value.tag not in _FLOATS and "Int" not in value.tag) or value.findall("Dimension"):
+        return []
+    low, high, start = (None if (x := value.get(a)) is None else float(x) for a in ("min", "max", "start"))
+    if low is not None and high is not None and low > high:
+        del value.attrib["min"], value.attrib["max"]
+        return [f"{name}: min = {low:g} is above max = {high:g}; both are ignored"]
+    if start is not None and low is not None and start < low:
+        return [f"{name}: start = {start:g} is below min = {low:g}"]
+    if start is not None and high is not None and start > high:
+        return [f"{name}: start = {start:g} is above max = {high:g}"]
+    return []
 
 
 def _is_of_type(text: str, kind: str) -> bool:
@@ -160,18 +179,3 @@ def _illegal_variability(v: Any) -> str | None:
     if version == "1.0" or variability is None or allowed is None or variability in allowed:
         return None
     return variability
-
-
-def _mend_structure(root: Any, count: int) -> list[str]:
-    """Unknowns of FMI 2.0 that name no variable are left out."""
-    defects: list[str] = []
-    if root.get("fmiVersion") != "2.0":
-        return defects
-    for unknown in list(root.iter("Unknown")):
-        numbers = [unknown.get("index") or "", *(unknown.get("dependencies") or "").split()]
-        bad = [n for n in numbers if not (_NUMBERS_ONLY.fullmatch(n) and 1 <= int(n) <= count)]
-        if bad:
-            unknown.getparent().remove(unknown)
-            place = f"ModelStructure, line {unknown.sourceline}"
-            defects.append(f"{place}: {bad[0]!r} is the index of none of {count} variables; it is left out")
-    return defects

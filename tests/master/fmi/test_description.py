@@ -58,6 +58,16 @@ DEFECTS = [
     (('index="2"', 'index="9"'),
      "ModelStructure, line 11: '9' is the index of none of 3 variables; it is left out"),
     (('name="u" ', ""), "line 6: a variable without a name is left out"),
+    (('start="1.5"', 'min="2" max="1"'), "u: min = 2 is above max = 1; both are ignored"),
+    (('start="1.5"', 'start="1.5" max="1"'), "u: start = 1.5 is above max = 1"),
+    (('start="3"', 'start="3" min="4"'), "n: start = 3 is below min = 4"),
+    (('<CoSimulation ', '<CoSimulation maxOutputDerivativeOrder="many" '),
+     "CoSimulation: maxOutputDerivativeOrder = 'many' is no number; it is ignored"),
+    (("<TypeDefinitions>", '<UnitDefinitions><Unit name="km/h"><BaseUnit factor="x"/></Unit>'
+      "</UnitDefinitions><TypeDefinitions>"), "unit of measure 'km/h': factor = 'x' is no number; its definition is ignored"),
+    (("<TypeDefinitions>", '<TypeDefinitions><SimpleType name="Nothing"/>'),
+     "type 'Nothing' says nothing; it is left out"),
+    (('unit="km/h"', 'derivative="7"'), "u: derivative = '7' is the index of no variable; it is ignored"),
 ]  # fmt: skip # pairs
 
 
@@ -72,6 +82,17 @@ def test_defects_are_mended_and_told(tmp_path: Path, change: tuple[str, str], to
     assert "y" in found.interface.variables
     with pytest.raises(FmuError, match=r"a.fmu: strict: 1 defects: "):
         read_fmu(path, strict=True)
+
+
+def test_the_indices_of_the_others_stay_right_when_a_variable_is_left_out(tmp_path: Path) -> None:
+    text = changed(
+        ("<ModelVariables>", '<ModelVariables><ScalarVariable valueReference="9"><Real/></ScalarVariable>'),
+        ('index="2" dependencies="1"', 'index="3" dependencies="2"'),
+        ('unit="km/h"', 'derivative="3"'),
+    )
+    found = read_fmu(fmu(tmp_path, text))
+    assert found.interface.variables["y"].depends == ("u",)
+    assert [v.derivative.name for v in found.description.modelVariables if v.derivative] == ["y"]
 
 
 def test_a_parameter_whose_variability_was_wrong_is_fixed(tmp_path: Path) -> None:

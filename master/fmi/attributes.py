@@ -1,0 +1,74 @@
+"""The parts of a description beside its variables: what FMPy would not read is left out and told."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+_WHOLE = r"\s*[+-]?\d+\s*"
+_COUNTED = ("numberOfEventIndicators", "numberOfContinuousStates")
+_CAPABILITIES = {
+    "maxOutputDerivativeOrder": _WHOLE,
+    "recommendedIntermediateInputSmoothness": _WHOLE,
+    "fixedInternalStepSize": "",
+}
+_OF_TYPES = {"name", "description", "quantity", "unit", "displayUnit", "relativeQuantity", "min", "max"}
+_OF_TYPES |= {"nominal", "unbounded", "value"}
+_EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+
+def mend_attributes(root: Any) -> list[str]:
+    """Mend what stands in a description beside its variables; a sentence for each defect."""
+    defects = []
+    if root.get("fmiVersion") == "1.0" and root.get("numberOfContinuousStates") is None:
+        root.set("numberOfContinuousStates", "0")
+    for name in _COUNTED:
+        if root.get(name) is not None and not _is_number(root.get(name), _WHOLE):
+            defects.append(f"{name} = {root.get(name)!r} is no number; 0 is assumed")
+            root.set(name, "0")
+    for name, pattern in _CAPABILITIES.items():
+        for kind in root.findall(f"*[@{name}]"):
+            if not _is_number(kind.get(name), pattern):
+                defects.append(f"{kind.tag}: {name} = {kind.get(name)!r} is no number; it is ignored")
+                del kind.attrib[name]
+    return defects + _mend_units(root) + _mend_types(root)
+
+
+def _mend_units(root: Any) -> list[str]:
+    """A unit of measure whose factor is no number has no definition: any other factor would be a guess."""
+    defects = []
+    for base in root.findall("UnitDefinitions/Unit/BaseUnit"):
+        wrong = [n for n in _EXPONENTS if not _is_number(base.get(n, "0"), _WHOLE)]
+        wrong += [n for n in ("factor", "offset") if not _is_number(base.get(n, "1"))]
+        if wrong:
+            unit = base.getparent()
+            unit.remove(base)
+            given = f"{wrong[0]} = {base.get(wrong[0])!r}"
+            defects.append(
+                f"unit of measure '{unit.get('name')}': {given} is no number; its definition is ignored"
+            )
+    displayed = "UnitDefinitions/Unit/DisplayUnit", "UnitDefinitions/BaseUnit/DisplayUnitDefinition"
+    for element in [e for path in displayed for e in root.findall(path)]:
+        if not all(_is_number(element.get(n, "1")) for n in ("factor", "offset", "gain")):
+            element.getparent().remove(element)  # nothing here shows values in it
+    return defects
+
+
+def _mend_types(root: Any) -> list[str]:
+    """Types without content are left out, and attributes that no type has."""
+    defects = []
+    for declared in [*root.findall("TypeDefinitions/SimpleType"), *root.findall("TypeDefinitions/Type")]:
+        if not [child for child in declared if isinstance(child.tag, str)]:
+            defects.append(f"type '{declared.get('name')}' says nothing; it is left out")
+            declared.getparent().remove(declared)
+    for content in [e for path in ("*", "*/*", "*/*/Item") for e in root.findall(f"TypeDefinitions/{path}")]:
+        for name in set(content.attrib) - _OF_TYPES:
+            del content.attrib[name]
+    return defects
+
+
+def _is_number(text: str, pattern: str = "") -> bool:
+    try:
+        return float(text) == float(text) and (not pattern or re.fullmatch(pattern, text) is not None)
+    except ValueError:
+        return False
