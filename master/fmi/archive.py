@@ -14,7 +14,9 @@ import re
 import shutil
 import stat
 import tempfile
+import unicodedata
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
@@ -24,6 +26,12 @@ _VARIABLE = "EVCOSIM_FMU_LIMITS"
 _BLOCK = 1 << 20
 _RATIO_FROM = 1 << 20  # bytes: a small file of equal characters packs as well as a bomb
 _DESCRIPTION = 64 << 20  # bytes of modelDescription.xml
+_LONGEST_NAME, _LONGEST_PATH = 255, 2000  # bytes; systems take 4096 with the folder that it is extracted to
+_LONGEST_SHOWN = 60
+_WINDOWS = os.name == "nt"
+_NOT_IN_WINDOWS = re.compile(
+    r'[\x00-\x1f<>:"|?*]|[. ]$|^(con|prn|aux|nul|com\d|lpt\d)(\..*)?$', re.IGNORECASE
+)
 
 
 class FmuError(ConfigError):
@@ -69,6 +77,8 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
         raise FmuError(f"{path}: cannot be read: {error.strerror or error}") from error
     except Exception as error:  # zipfile raises four unrelated types for damaged archives
         raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
+    for entry in found:  # some tools for Windows separate folders as no archive should
+        entry.filename = entry.filename.replace("\\", "/")
     _check(path, found, limits())
     return found
 
@@ -90,13 +100,30 @@ def _check(path: Path, entries: tuple[zipfile.ZipInfo, ...], allowed: Limits) ->
             f"{path}: unpacked it has {total:.3g} bytes, more than {allowed.size:.3g} ({_VARIABLE})"
         )
     seen: dict[str, str] = {}
+    files = {_folded(entry) for entry in entries if not entry.is_dir()}
     for entry in entries:
         if problem := _problem(entry, allowed):
-            raise FmuError(f"{path}: entry {entry.filename!r} {problem}")
-        folded = entry.filename.rstrip("/").casefold()
+            raise FmuError(f"{path}: entry {_shown(entry.filename)} {problem}")
+        folded = _folded(entry)
         if folded in seen and not entry.is_dir():
-            raise FmuError(f"{path}: entries {seen[folded]!r} and {entry.filename!r} are the same file")
-        seen[folded] = entry.filename
+            raise FmuError(f"{path}: entries {seen[folded]} and {_shown(entry.filename)} are the same file")
+        seen[folded] = _shown(entry.filename)
+        if file := next((p for p in _folders(folded) if p in files), None):
+            raise FmuError(f"{path}: entry {_shown(entry.filename)} stands in {file!r}, which is a file")
+
+
+def _folded(entry: zipfile.ZipInfo) -> str:
+    """An entry's name as a file system that ignores case sees it."""
+    return unicodedata.normalize("NFC", entry.filename.rstrip("/")).casefold()
+
+
+def _folders(name: str) -> Iterator[str]:
+    return (name[: found.start()] for found in re.finditer("/", name))
+
+
+def _shown(name: str) -> str:
+    """A name in a message."""
+    return repr(name if len(name) <= _LONGEST_SHOWN else name[:_LONGEST_SHOWN] + "...")
 
 
 def _problem(entry: zipfile.ZipInfo, allowed: Limits) -> str:
@@ -105,6 +132,10 @@ def _problem(entry: zipfile.ZipInfo, allowed: Limits) -> str:
     parts = re.split(r"[/\\]", name)
     if not name or "\0" in name or name[0] in "/\\" or ".." in parts or re.match(r"[A-Za-z]:", name):
         return "would be written outside the FMU's folder"
+    if len(name.encode()) > _LONGEST_PATH or max(len(part.encode()) for part in parts) > _LONGEST_NAME:
+        return "has a name that is too long for a file system"
+    if _WINDOWS and any(_NOT_IN_WINDOWS.search(part) for part in parts):
+        return "has a name that no file can have in Windows"
     mode = entry.external_attr >> 16
     if mode and stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
         return "is a link or a device, not a file"
@@ -137,10 +168,11 @@ def extract(path: Path) -> Path:
     """
     entries = entries_of(path)
     folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
-    left = limits().size
+    left, place = limits().size, ""
     try:
         with zipfile.ZipFile(path) as archive:
             for entry in entries:
+                place = f"entry {_shown(entry.filename)} "
                 target = folder / entry.filename
                 if entry.is_dir():
                     target.mkdir(parents=True, exist_ok=True)
@@ -152,7 +184,8 @@ def extract(path: Path) -> Path:
         shutil.rmtree(folder, ignore_errors=True)
         if isinstance(error, FmuError) or not isinstance(error, Exception):
             raise
-        raise FmuError(f"{path}: cannot be extracted: {error}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise FmuError(f"{path}: {place}cannot be extracted: {reason}") from error
     return folder
 
 

@@ -73,6 +73,8 @@ def _check_identifiers(place: str, root: Any) -> None:
     kinds = [root, *(root.find(k) for k in ("CoSimulation", "ModelExchange", "ScheduledExecution"))]
     for kind in kinds:
         name = None if kind is None else kind.get("modelIdentifier")
+        if name is None and kind is not None and (kind is not root or root.get("fmiVersion") == "1.0"):
+            raise FmuError(f"{place}: <{kind.tag}> has no modelIdentifier")
         if name is not None and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
             raise FmuError(
                 f"{place}: modelIdentifier is {name!r}, which is no plain name (letters, digits, _)"

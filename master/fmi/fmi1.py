@@ -100,7 +100,7 @@ class Fmi1Unit(Instance):
         """See `unit.Unit`."""
         if self._initialized:
             self._initialized = False
-            self._call("fmiTerminateSlave", self._component)
+            self._end("fmiTerminateSlave")
 
     def _free_instance(self, library: Library, component: Any) -> None:
         library.function("fmiFreeSlaveInstance", None)(component)

@@ -114,12 +114,23 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
     entries = entries_of(path)
     names = tuple(entry.filename for entry in entries)
     if _DESCRIPTION not in names:
-        raise FmuError(f"{path}: is not an FMU: it has no {_DESCRIPTION}{nearest(_DESCRIPTION, names)}")
+        raise FmuError(f"{path}: is not an FMU: it has no {_DESCRIPTION}{_elsewhere(names)}")
     description, defects, negated = read_description(path, read_entry(path, _DESCRIPTION))
+    if any("\\" in entry.orig_filename for entry in entries):
+        defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
     fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects, negated)
     if strict and defects:
         raise FmuError(f"{path}: strict: {len(defects)} defects: " + "; ".join(defects[:_SHOWN_DEFECTS]))
     return fmu
+
+
+def _elsewhere(names: tuple[str, ...]) -> str:
+    """Where the description stands instead."""
+    deeper = next((n for n in names if n.endswith(f"/{_DESCRIPTION}")), None)
+    if deeper is not None:
+        folder = deeper.removesuffix(_DESCRIPTION)
+        return f"; there is one in '{folder}': zip the content of that folder, not the folder"
+    return nearest(_DESCRIPTION, names)
 
 
 def check_runnable(fmu: Fmu) -> None:

@@ -16,6 +16,7 @@ A class that does more around a transfer wraps the calls that `bind` makes: `set
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import shutil
@@ -29,6 +30,7 @@ from numpy.typing import NDArray
 from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
+from . import binary
 from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
@@ -138,6 +140,8 @@ class Instance:
 
     def _load(self, folder: Path) -> Library:
         path = folder / self.fmu.binary
+        if reason := binary.problem(path):
+            raise FmuError(f"{self.fmu.path}: its library cannot be loaded: {self.fmu.binary}: {reason}")
         try:
             return Library(path, self._prefix(), keeps_lock=self.fmu.holds_python)
         except OSError as error:
@@ -293,7 +297,14 @@ class Instance:
         """See `unit.Unit`."""
         if self._initialized:
             self._initialized = False
-            self._call(f"{self.fmi}Terminate", self._component)
+            self._end(f"{self.fmi}Terminate")
+
+    def _end(self, name: str) -> None:
+        """Call the function that terminates; a library that lacks it is not kept from ending."""
+        if self._library.has(name):
+            self._call(name, self._component)
+        else:
+            self.log.add(_WARNING, f"the library lacks the function {name}")
 
     def free(self) -> None:
         """See `unit.Unit`."""
@@ -301,7 +312,8 @@ class Instance:
         library, self._library = self._library, None
         if library is not None:
             if component is not None and component.value:
-                self._free_instance(library, component)
+                with contextlib.suppress(AttributeError):  # a library that lacks the function frees nothing
+                    self._free_instance(library, component)
             library.close()
         self.log.close()
         self._leave_place()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import stat
 import tempfile
 import zipfile
@@ -105,8 +106,29 @@ def test_a_damaged_entry_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.Mo
     folder = tmp_path / "temporary"
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    with pytest.raises(FmuError, match=r"a.fmu: cannot be extracted: Bad CRC-32 for file 'second'"):
+    with pytest.raises(
+        FmuError, match=r"a.fmu: entry .second. cannot be extracted: Bad CRC-32 for file 'second'"
+    ):
         extract(path)
     assert list(folder.iterdir()) == []
     with pytest.raises(FmuError, match="entry 'second' cannot be read: Bad CRC-32"):
         read_entry(path, "second")
+
+
+def test_folders_of_an_archive_that_separates_them_otherwise(tmp_path: Path) -> None:
+    path = archive(tmp_path / "a.fmu", **{"resources/table/one.txt": b"1"})
+    path.write_bytes(path.read_bytes().replace(b"resources/table/one", b"resources\\table\\one"))
+    folder = extract(path)
+    assert (folder / "resources" / "table" / "one.txt").read_bytes() == b"1"
+    shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("name", ["resources/NUL", "aux.txt", "resources/a:b", "resources/a./b", "what?"])
+def test_names_that_windows_takes_for_something_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    path = archive(tmp_path / "a.fmu", **{name: b"x"})
+    assert entries_of(path)
+    monkeypatch.setattr("evcosim.master.fmi.archive._WINDOWS", True)
+    with pytest.raises(FmuError, match="has a name that no file can have in Windows"):
+        entries_of(path)

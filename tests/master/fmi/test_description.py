@@ -64,7 +64,8 @@ DEFECTS = [
     (('<CoSimulation ', '<CoSimulation maxOutputDerivativeOrder="many" '),
      "CoSimulation: maxOutputDerivativeOrder = 'many' is no number; it is ignored"),
     (("<TypeDefinitions>", '<UnitDefinitions><Unit name="km/h"><BaseUnit factor="x"/></Unit>'
-      "</UnitDefinitions><TypeDefinitions>"), "unit of measure 'km/h': factor = 'x' is no number; its definition is ignored"),
+      "</UnitDefinitions><TypeDefinitions>"),
+     "unit of measure 'km/h': factor = 'x' is no number; its definition is ignored"),
     (("<TypeDefinitions>", '<TypeDefinitions><SimpleType name="Nothing"/>'),
      "type 'Nothing' says nothing; it is left out"),
     (('unit="km/h"', 'derivative="7"'), "u: derivative = '7' is the index of no variable; it is ignored"),
