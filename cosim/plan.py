@@ -12,48 +12,17 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import Literal
 
 from .channel import BusSettings, SignalRoute
 from .dbc import Message
-from .interface import UnitInterface, VariableInfo
 from .results import ResultVariable
 from .scenario import EventEntry
 from .stimuli import Signal
-from .system import Algorithm, Experiment, Value
+from .system import Algorithm, Experiment
+from .unit_plan import Block, BlockKind, Route, UnitPlan
 from .units import Affine
 
-BlockKind = Literal["input", "discrete", "continuous"]
-
-
-@dataclasses.dataclass(frozen=True)
-class Block:
-    """Variables of one unit, FMI type and kind, in consecutive slots from `slot` on.
-
-    `latest`: the first slot of a continuous block's values after the step. Of a continuous block the
-    first `feedthrough` variables depend on an input at the same instant.
-    """
-
-    kind: BlockKind
-    type: str
-    variables: tuple[VariableInfo, ...]
-    slot: int
-    latest: int = -1
-    feedthrough: int = 0
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the variables."""
-        return tuple(v.name for v in self.variables)
-
-
-@dataclasses.dataclass(frozen=True)
-class Route:
-    """Before a unit's step the value in slot `source`, mapped, is written to the input slot `sink`."""
-
-    source: int
-    sink: int
-    map: Affine = Affine()  # noqa: RUF009 - Affine is frozen, so a shared default is safe
+__all__ = ["Block", "BlockKind", "Drive", "InputPlan", "Link", "MessagePlan", "Plan", "Route", "UnitPlan"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,24 +42,6 @@ class Drive:
     sink: int
     signal: Signal
     map: Affine
-
-
-@dataclasses.dataclass(frozen=True)
-class UnitPlan:
-    """One unit: what it is given before the start, its blocks, and its routes.
-
-    It steps at every communication step k with k % every == 0, `substeps` FMU steps each time.
-    """
-
-    name: str
-    fmu: str
-    interface: UnitInterface
-    parameters: dict[str, Value]
-    start: dict[str, Value]
-    every: int
-    substeps: int
-    blocks: tuple[Block, ...]
-    routes: tuple[Route, ...]
 
 
 @dataclasses.dataclass(frozen=True)

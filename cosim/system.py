@@ -96,10 +96,11 @@ class UnitEntry(FileModel):
 
     `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
     FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
-    that evcosim built itself is in the master's); `step_timeout` [s] is what an answer of such a process may
-    take, `load_timeout` [s] the first: some FMUs start a simulator. `strict` refuses an FMU with defects that
-    we could bear. `map` gives its variables the names that the system uses; `absent` are names of the system
-    that it does not have.
+    that evcosim built itself is in the master's). The limits of such a process: `step_timeout` [s] for an
+    answer in the run, `load_timeout` [s] for one before it, `memory_limit` [bytes] of address space,
+    `file_limit` [bytes] of each file that it writes. `strict` refuses an FMU with defects that we could bear.
+    `map` gives its variables the names that the system uses; `absent` are names of the system that it does
+    not have.
     """
 
     fmu: str
@@ -110,6 +111,8 @@ class UnitEntry(FileModel):
     isolation: Isolation | None = None
     step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
     load_timeout: float = Field(default=60.0, gt=0.0, allow_inf_nan=False)
+    memory_limit: float = Field(default=8e9, gt=0.0)
+    file_limit: float = Field(default=256e6, gt=0.0)
     strict: bool = False
     map: MapTables = MapTables()
     absent: list[str] = []

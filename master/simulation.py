@@ -38,9 +38,10 @@ from ..cosim.swap import swapped
 from ..cosim.system import Algorithm, Isolation, System, Value, load_system
 from ..cosim.variation import BusVariation, varied
 from .algorithm import Engine
-from .builtin import fmu_file, is_builtin
+from .builtin import fmu_file
 from .fmi.fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
+from .isolation.choice import chosen, limits
 from .isolation.unit import IsolatedUnit
 from .loading import load_unit
 from .unit import Unit
@@ -149,12 +150,10 @@ class Simulation:
 
     def _load(self, plan: UnitPlan, wanted: Isolation | None) -> Unit:
         fmu, entry = self._fmus[plan.name], self.system.file.units[plan.name]
-        own = fmu.description.modelName
-        isolation = wanted or entry.isolation or ("none" if is_builtin(own, fmu.path) else "process")
-        self.isolation[plan.name] = isolation
-        if isolation == "none":
+        self.isolation[plan.name] = chosen(plan.name, fmu, entry, wanted)
+        if self.isolation[plan.name] == "none":
             return load_unit(fmu, plan.name, plan.interface)
-        return IsolatedUnit(fmu, plan.name, plan.interface, entry.step_timeout, entry.load_timeout)
+        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry))
 
     # ---- a loop of one's own
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..cosim.errors import RunError
 from ..cosim.interface import UnitInterface
-from ..cosim.plan import UnitPlan
+from ..cosim.unit_plan import UnitPlan
 
 Value = float | int | bool | str
 
@@ -60,7 +60,10 @@ class Unit(Protocol):
         """Give the unit its inputs from the slots of its input blocks."""
 
     def get_feedthrough(self) -> None:
-        """Read the outputs that depend on inputs at the same instant into their slots, valid and latest."""
+        """Read the outputs that depend on inputs at the same instant into their slots, valid and latest.
+
+        A unit in a process of its own does so with the step that follows: they are there when that is done.
+        """
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
         """Begin `count` steps of `step_size`, the first from `time` on, both in s.

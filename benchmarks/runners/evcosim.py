@@ -22,7 +22,7 @@ def version() -> str:
 
 def measure(case: Case, folder: Path) -> Measured:
     """Run a case, all units in this process."""
-    system = _write_system(case, folder)
+    system = write_system(case, folder)
     with Simulation(system) as simulation:
         simulation.step(1)  # what is made in the first step is no cost of a step
         before = simulation.loop_seconds
@@ -41,13 +41,14 @@ def _outputs(case: Case, simulation: Simulation) -> NDArray[np.float64]:
     return np.stack([np.stack([results[name][1:] for name in row], axis=-1) for row in names], axis=1)
 
 
-def _write_system(case: Case, folder: Path) -> Path:
+def write_system(case: Case, folder: Path, algorithm: str = "jacobi", isolation: str = "none") -> Path:
+    """The system file of a case, in a folder that gets all that it needs."""
     fmu = fmu_of(case, folder)
-    lines = ['name = "ring"', "[experiment]", f"step_size = {STEP_SIZE}", 'algorithm = "jacobi"']
+    lines = ['name = "ring"', "[experiment]", f"step_size = {STEP_SIZE}", f'algorithm = "{algorithm}"']
     lines.append('algebraic_loops = "iterate"')  # pythonfmu declares no dependencies
     lines.append(f"stop_time = {case.steps * STEP_SIZE!r}")
     for i in range(case.units):
-        lines += [f"[units.n{i}]", f'fmu = "{fmu}"', 'isolation = "none"', f"[units.n{i}.parameters]"]
+        lines += [f"[units.n{i}]", f'fmu = "{fmu}"', f'isolation = "{isolation}"', f"[units.n{i}.parameters]"]
         lines += [f"{name} = {value!r}" for name, value in case.parameters(i).items()]
     if case.channel:
         _write_dbc(case, folder / "ring.dbc")

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, VariableInfo
-from ...cosim.plan import Block, UnitPlan
+from ...cosim.unit_plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
 from . import binary
 from .fmu import Fmu, FmuError, check_runnable, is_true

@@ -6,7 +6,8 @@ import collections
 import contextlib
 import ctypes
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import ClassVar
 
 from fmpy.fmi1 import fmi1CallbackAllocateMemoryTYPE as AllocateMemory1
 from fmpy.fmi1 import fmi1CallbackFreeMemoryTYPE as FreeMemory1
@@ -29,6 +30,9 @@ _ids = itertools.count(1)
 
 class UnitLog:
     """The last messages of one unit, and how many warnings it gave."""
+
+    listener: ClassVar[Callable[[int, str], None] | None] = None
+    """In the process of an isolated unit: told of each message at once, since the process may end with it."""
 
     def __init__(self) -> None:
         self.id = next(_ids)
@@ -77,6 +81,8 @@ class UnitLog:
         """Keep a message; one of status Warning is counted."""
         word = STATUS[status] if 0 <= status < len(STATUS) else str(status)
         self.messages.append(f"[{word}] {text[:_LONGEST]}")
+        if UnitLog.listener is not None:
+            UnitLog.listener(status, text[:_LONGEST])
         self.warnings += status == 1
 
     def last(self, count: int = 3) -> str:

@@ -1,118 +1,146 @@
-"""The process of one unit: python -m evcosim.master.isolation.child SOCKET MEMORY, two file descriptors.
+"""The process of one unit: python -m evcosim.master.isolation.child, with the file descriptors of the socket,
+of the shared memory and of the pipe that ends with the master, and the limits of memory and files in bytes.
 
 It does what the master asks for until the socket ends. Its limits hold before any code of the FMU runs.
 """
 
 from __future__ import annotations
 
-import ctypes
+import fcntl
 import json
-import mmap
 import os
 import pickle
+import resource
 import signal
 import socket
 import sys
+import threading
 from typing import Any
 
-from . import wire
-
-_FILE = 256 << 20  # bytes of a file that it writes
-_MEMORY = 8 << 30  # bytes of address space
-_PR_SET_PDEATHSIG = 1
+from . import shared, wire
+from .line import Line
+from .shared import Shared
 
 
 def main() -> None:
     """Serve one unit."""
-    _limit()
-    connection = socket.socket(fileno=int(sys.argv[1]))
-    _Server(connection, int(sys.argv[2])).serve()
+    connection, memory, life = map(int, sys.argv[1:4])
+    for descriptor in (connection, memory, life):
+        os.set_inheritable(descriptor, False)  # what the FMU starts shall not keep them open
+    _end_with_master(life)
+    _limit(resource.RLIMIT_CORE, 0.0)
+    _limit(resource.RLIMIT_AS, float(sys.argv[4]))
+    _limit(resource.RLIMIT_FSIZE, float(sys.argv[5]))
+    with open(wire.LOADING, "rb") as file:
+        arguments = pickle.load(file)  # the master's, and no code of the FMU has run
+    os.remove(wire.LOADING)
+    _Server(socket.socket(fileno=connection), Shared(memory)).serve(arguments)
 
 
-def _limit() -> None:
+def _end_with_master(life: int) -> None:
+    """End this process and those that it starts, as long as they stay in its group, when the pipe ends.
+
+    On Linux the system does it, whatever the FMU does then and whichever thread of the master started us.
+    """
     if sys.platform == "linux":
-        # ends us with the master, whatever ends it and whatever we do then
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
-    import resource
+        fcntl.fcntl(life, fcntl.F_SETOWN, -os.getpgrp())
+        fcntl.fcntl(life, fcntl.F_SETSIG, signal.SIGKILL)
+        fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC | os.O_NONBLOCK)
+        try:
+            if os.read(life, 1) == b"":  # it had ended before
+                os._exit(0)
+        except BlockingIOError:
+            return
+    threading.Thread(target=_watch, args=(life,), daemon=True).start()
 
-    for kind, most in (
-        (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_FSIZE, _FILE),
-        (resource.RLIMIT_AS, _MEMORY),
-    ):
-        _, hard = resource.getrlimit(kind)
-        limit = most if hard == resource.RLIM_INFINITY else min(most, hard)
+
+def _watch(life: int) -> None:
+    os.read(life, 1)
+    os.killpg(0, signal.SIGKILL)
+
+
+def _limit(kind: int, most: float) -> None:
+    _, hard = resource.getrlimit(kind)
+    if most != float("inf"):
+        limit = int(most) if hard == resource.RLIM_INFINITY else min(int(most), hard)
         resource.setrlimit(kind, (limit, limit))
 
 
 class _Server:
     """The unit, and what is asked of it."""
 
-    def __init__(self, connection: socket.socket, descriptor: int) -> None:
-        self.connection, self.descriptor = connection, descriptor
+    def __init__(self, connection: socket.socket, memory: Shared) -> None:
+        self.connection, self.memory, self.slots = connection, memory, memory.slots
+        mine, theirs = (shared.ANSWER, shared.CHILD_SLEEPS), (shared.REQUEST, shared.MASTER_SLEEPS)
+        self.line = Line(connection, memory.slots, mine, theirs, memory.slots[shared.SPIN])
         self.unit: Any = None
 
-    def serve(self) -> None:
-        """Answer until the master has gone."""
+    def serve(self, loading: tuple[Any, ...]) -> None:
+        """Load the unit, then answer until the master has gone."""
+        line, number = self.line, 1.0
         try:
+            self._answer(number, "load", loading)
             while True:
-                request = wire.receive(self.connection)
-                if request[:1] == wire.CALL:
-                    self._answer(*pickle.loads(request[1:]))
+                number += 1.0
+                frame = b"" if line.comes(number) else line.sleep_until(number, sys.maxsize)
+                if self.slots[shared.KIND] == shared.CALL:
+                    self._answer(number, *pickle.loads(frame or line.frame(sys.maxsize)))
                 else:
-                    self._turn(*wire.TURN.unpack(request))
+                    self._turn(number)
         except (EOFError, OSError):
             os._exit(0)
 
-    def _turn(self, what: bytes, time: float, step_size: float, count: int) -> None:
-        unit = self.unit
+    def _turn(self, number: float) -> None:
+        unit, slots = self.unit, self.slots
+        kind = slots[shared.KIND]
+        failure = b""
         try:
-            if what == wire.STEP:
+            if kind != shared.OUTPUTS:
                 unit.set_inputs()
-                unit.start_step(time, step_size, count)
+                if kind == shared.STEP_SHOWN:
+                    unit.get_feedthrough()
+                unit.start_step(slots[shared.TIME], slots[shared.STEP_SIZE], int(slots[shared.COUNT]))
                 unit.finish_step()
-                unit.get_outputs()
-            elif what == wire.FEEDTHROUGH:
-                unit.set_inputs()
-                unit.get_feedthrough()
-            else:
-                unit.get_outputs()
+            unit.get_outputs()
         except Exception as error:  # whatever it is, the master raises it
-            wire.send(self.connection, self._failure(error))
-        else:
-            wire.send(self.connection, wire.DONE)
+            failure = _failure(error)
+        self._post(number, failure)
 
-    def _answer(self, name: str, arguments: tuple[Any, ...]) -> None:
+    def _answer(self, number: float, name: str, arguments: tuple[Any, ...]) -> None:
         try:
             value = getattr(self, f"do_{name}", None) or getattr(self.unit, name)
-            answer = json.dumps({"value": value(*arguments), "warnings": self._warnings()}).encode()
+            answer = json.dumps({"value": value(*arguments)}).encode()
         except Exception as error:  # as above
-            answer = self._failure(error)
-        wire.send(self.connection, answer)
+            answer = _failure(error)
+        self._post(number, answer)
 
-    def _warnings(self) -> int:
-        return 0 if self.unit is None else int(self.unit.warnings)
+    def _post(self, number: float, frame: bytes) -> None:
+        """Say that a request is done, with a frame where there is more to say than that."""
+        slots = self.slots
+        if self.unit is not None:
+            slots[shared.WARNINGS] = self.unit.warnings
+        slots[shared.FRAME] = 1.0 if frame else 0.0
+        self.line.post(number)
+        if frame:
+            wire.send(self.connection, frame)
 
-    def _failure(self, error: Exception) -> bytes:
-        kind = type(error).__name__
-        said = str(error) if kind in ("FmuError", "UnitError", "ConfigError") else f"{kind}: {error}"
-        return json.dumps({"error": said[: wire.LONGEST // 8], "kind": kind}).encode()
-
-    def do_load(self, path: str, name: str, interface: Any) -> None:
-        """Read and instantiate the FMU."""
-        from pathlib import Path
-
-        from ..fmi.fmu import read_fmu
+    def do_load(self, fmu: Any, name: str, interface: Any) -> None:
+        """Instantiate the FMU."""
+        from ..fmi.log import UnitLog
         from ..loading import load_unit
 
-        self.unit = load_unit(read_fmu(Path(path)), name, interface)
+        UnitLog.listener = self.memory.hear
+        self.unit = load_unit(fmu, name, interface)
 
-    def do_bind(self, plan: Any, size: int) -> None:
+    def do_bind(self, plan: Any) -> None:
         """Bind the unit to the shared memory."""
-        import numpy as np
+        self.unit.bind(self.memory.values, plan)
 
-        self.memory = np.frombuffer(mmap.mmap(self.descriptor, 8 * max(1, size)), dtype=np.float64)
-        self.unit.bind(self.memory, plan)
+
+def _failure(error: Exception) -> bytes:
+    kind = type(error).__name__
+    said = str(error) if kind in ("FmuError", "UnitError", "ConfigError") else f"{kind}: {error}"
+    return json.dumps({"error": said[: wire.LONGEST // 8], "kind": kind}).encode()
 
 
 if __name__ == "__main__":

@@ -3,145 +3,161 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import json
-import mmap
 import os
 import pickle
-import shutil
-import signal
-import socket
-import subprocess
-import sys
-import tempfile
-from typing import IO, Any, NoReturn
+import time
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface
-from ...cosim.plan import UnitPlan
+from ...cosim.unit_plan import UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
+from ..fmi.log import UnitLog
 from ..unit import UnitError, Value, floats
-from . import wire
-from .waiting import waiting
+from . import line, shared, wire
+from .process import Limits, Process
+from .waiting import WAITING
 
-_ENDING = 2.0
-_SAID = 2000  # characters of its output that are shown
+_FREEING = 2.0  # s
+_OF_ONE_VARIABLE = ("get", "set")
 
 
 class IsolatedUnit:
-    """See `unit.Unit`; `timeout` [s] is what an answer to a call in the run may take, `loading` to the first.
+    """See `unit.Unit`. Its process starts at once and loads while the caller goes on; `bind` waits for it.
 
     Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
     """
 
-    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface, timeout: float, loading: float) -> None:
+    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface, limits: Limits) -> None:
         check_runnable(fmu)
         self.name, self.fmu, self.interface = name, fmu, interface
-        self.warnings = 0
-        self._timeout = timeout
-        self._process: subprocess.Popen[bytes] | None = None
-        self._asked = "loading"
-        self._fresh = self._pending = False
-        self._folder = tempfile.mkdtemp(prefix="evcosim-")
-        self._output: IO[bytes] = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `free`
-        self._shared = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `free`
-        self._connection, theirs = socket.socketpair()
+        self._limits = limits
+        self._asked, self._time, self._key = "loading", limits.loading, "load_timeout"
+        self._number, self._pending, self._loaded = 1.0, True, False
+        self._fresh = self._shows = self._freed = False
+        self._deadline = 0.0
+        there = dataclasses.replace(fmu, path=fmu.path.resolve())  # its working folder is another one
+        descriptor = shared.create(2 * len(interface.variables))
         try:
-            with theirs:
-                self._process = self._start(theirs)
-            self._call("load", str(fmu.path.resolve()), name, interface, timeout=loading)
-        except BaseException:
-            self.free()
-            raise
-
-    def _start(self, theirs: socket.socket) -> subprocess.Popen[bytes]:
-        descriptors = theirs.fileno(), self._shared.fileno()
-        return subprocess.Popen(
-            [sys.executable, "-m", "evcosim.master.isolation.child", *map(str, descriptors)],
-            stdin=subprocess.DEVNULL,
-            stdout=self._output,
-            stderr=subprocess.STDOUT,
-            pass_fds=descriptors,
-            cwd=self._folder,
-            start_new_session=True,  # Ctrl-C is the master's alone; what it starts ends with it
-            env=os.environ | {"TMPDIR": self._folder, "OPENBLAS_NUM_THREADS": "1"},
+            self._shared = shared.Shared(descriptor)
+            self._slots = self._shared.slots
+            self._slots[shared.SPIN] = line.spin_time()
+            self._process = Process((there, name, interface), descriptor, limits)
+        finally:
+            os.close(descriptor)
+        self._line = line.Line(
+            self._process.connection,
+            self._slots,
+            (shared.REQUEST, shared.MASTER_SLEEPS),
+            (shared.ANSWER, shared.CHILD_SLEEPS),
+            self._slots[shared.SPIN],
         )
 
-    # ---- calls
+    @property
+    def warnings(self) -> int:
+        """See `unit.Unit`."""
+        return self._shared.warnings()
 
-    def _call(self, name: str, *arguments: Any, timeout: float | None = None) -> Any:
+    # ---- requests
+
+    def _call(self, name: str, *arguments: Any) -> Any:
         """Ask for something that happens once or seldom."""
-        self._asked = name + (f" of {arguments[0]}" if name in ("get", "set") else "")
+        if not self._loaded:
+            self._answer(self._frame())
+            self._loaded = True
+        self._check_free()
+        self._asked = name + (f" of {arguments[0]}" if name in _OF_ONE_VARIABLE else "")
+        self._request(shared.CALL)
         try:
-            wire.send(self._connection, wire.CALL + pickle.dumps((name, arguments)))
+            wire.send(self._process.connection, pickle.dumps((name, arguments)), self._impatience)
         except OSError as error:
             self._ended(error)
-        answer = self._answer(timeout)
-        self.warnings = int(answer.get("warnings", self.warnings))
-        return answer.get("value")
+        return self._answer(self._frame())
 
-    def _answer(self, timeout: float | None = None) -> dict[str, Any]:
-        self._connection.settimeout(self._timeout if timeout is None else timeout)
+    def _check_free(self) -> None:
+        if self._pending:
+            raise UnitError(f"unit '{self.name}': was interrupted while it was asked for {self._asked}")
+
+    def _request(self, kind: float) -> None:
+        self._slots[shared.KIND] = kind
+        self._number += 1.0
         self._pending = True
         try:
-            with waiting():
-                content = wire.receive(self._connection)
-            self._pending = False
-            if content == wire.DONE:
-                return {}
-            answer = json.loads(content)
-        except (OSError, EOFError, ValueError) as error:
-            self._ended(error, timeout)
-        if not isinstance(answer, dict):
-            raise UnitError(f"unit '{self.name}': its process answers {answer!r}")
-        if "error" in answer:
-            of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
-            raise (FmuError if of_the_file else UnitError)(answer["error"])
-        return answer
-
-    def _turn(self, what: bytes, time: float = 0.0, step_size: float = 0.0, count: int = 0) -> None:
-        try:
-            wire.send(self._connection, wire.TURN.pack(what, time, step_size, count))
+            self._line.post(self._number)
         except OSError as error:
             self._ended(error)
 
-    def _ended(self, error: Exception, timeout: float | None = None) -> NoReturn:
-        """Raise UnitError that says how the process ended, or that it did not answer and was ended."""
-        limit = self._timeout if timeout is None else timeout
-        if isinstance(error, TimeoutError):
-            setting = "step_timeout" if timeout is None else "load_timeout"
-            how = f"did not answer for {limit:g} s ({setting}) and was ended"
-        else:
-            how = _ending(self._wait())
-        self._kill()
-        said = self._said()
-        raise UnitError(
-            f"unit '{self.name}': its process {how}, asked for {self._asked}" + (f"\n{said}" if said else "")
-        ) from error
+    def _finish(self) -> None:
+        """Wait until the request is done. Raises what the unit reports."""
+        with WAITING:
+            frame = b"" if self._line.comes(self._number) else self._sleep()
+        if frame or self._slots[shared.FRAME]:
+            self._answer(frame or self._frame())
+        self._pending = False
 
-    def _wait(self) -> int | None:
-        assert self._process is not None
+    def _sleep(self) -> bytes:
+        self._deadline = time.monotonic() + self._time
         try:
-            return self._process.wait(_ENDING)
-        except subprocess.TimeoutExpired:
-            return None
+            return self._line.sleep_until(self._number, wire.LONGEST, self._impatience)
+        except (OSError, EOFError) as error:
+            self._ended(error)
 
-    def _said(self) -> str:
-        """The end of what it printed."""
-        size = self._output.seek(0, os.SEEK_END)
-        self._output.seek(max(0, size - 4 * _SAID))
-        return self._output.read().decode("utf-8", "replace").strip()[-_SAID:]
+    def _frame(self) -> bytes:
+        self._deadline = time.monotonic() + self._time
+        try:
+            with WAITING:
+                return self._line.frame(wire.LONGEST, self._impatience)
+        except (OSError, EOFError) as error:
+            self._ended(error)
+
+    def _impatience(self) -> None:
+        self._process.check_alive()
+        if time.monotonic() > self._deadline:
+            raise TimeoutError
+
+    def _answer(self, frame: bytes) -> Any:
+        """The value in an answer. Raises FmuError or UnitError when it tells of one, or is none."""
+        self._pending = False
+        try:
+            answer = json.loads(frame)
+        except (ValueError, RecursionError):
+            answer = None
+        if not isinstance(answer, dict):
+            raise UnitError(f"unit '{self.name}': its process answers what is no answer to {self._asked}")
+        if "error" in answer:
+            of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
+            raise (FmuError if of_the_file else UnitError)(_printable(str(answer["error"])))
+        return answer.get("value")
+
+    def _ended(self, error: Exception) -> NoReturn:
+        """Raise UnitError that says how the process ended, or that it did not answer and was ended."""
+        if isinstance(error, TimeoutError):
+            how = f"did not answer for {self._time:g} s ({self._key}) and was ended"
+        else:
+            how = self._process.ending()
+        self._process.kill()
+        said = [f"unit '{self.name}': its process {how}, asked for {self._asked}"]
+        said += [f"{what}:\n{_printable(text)}" for what, text in self._last_words() if text]
+        raise UnitError("\n".join(said)) from error
+
+    def _last_words(self) -> list[tuple[str, str]]:
+        log = UnitLog()
+        for status, text in self._shared.heard():
+            log.add(status, text)
+        log.close()
+        return [("its last messages", log.last()), ("it printed", self._process.printed())]
 
     # ---- see `unit.Unit`
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        """See `unit.Unit`."""
-        theirs, size = wire.private(plan)
-        self._shared.truncate(8 * max(1, size))
-        ours = floats(np.frombuffer(mmap.mmap(self._shared.fileno(), 8 * max(1, size)), dtype=np.float64))
-        view = floats(memory)
+        """See `unit.Unit`. What an input or output passes through is a slice of one memory, at once."""
+        theirs, _ = shared.private(plan)
+        ours, view = floats(self._shared.values), floats(memory)
         pairs = list(zip(plan.blocks, theirs.blocks, strict=True))
         self._inputs = [
             (ours, slice(t.slot, t.slot + len(b.variables)), view[b.slot : b.slot + len(b.variables)])
@@ -152,15 +168,14 @@ class IsolatedUnit:
             (view, slice(place, place + len(b.variables)), ours[own : own + len(b.variables)])
             for b, t in pairs
             if b.kind != "input"
-            for place, own in [(wire.shown(b), wire.shown(t))]
+            for place, own in [(shared.shown(b), shared.shown(t))]
         ]
         self._through = [
-            (view, slice(first, first + b.feedthrough), ours[t.latest : t.latest + b.feedthrough])
+            (view, slice(b.slot, b.slot + b.feedthrough), ours[t.slot : t.slot + b.feedthrough])
             for b, t in pairs
             if b.feedthrough
-            for first in (b.slot, b.latest)
         ]
-        self._call("bind", theirs, size)
+        self._call("bind", theirs)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """See `unit.Unit`."""
@@ -169,12 +184,13 @@ class IsolatedUnit:
     def exit_initialization(self) -> None:
         """See `unit.Unit`."""
         self._call("exit_initialization")
+        self._time, self._key = self._limits.step, "step_timeout"
 
     def get(self, name: str) -> Value:
         """See `unit.Unit`."""
         value = self._call("get", name)
         if not isinstance(value, bool | int | float | str):
-            raise UnitError(f"unit '{self.name}': its process answers {value!r} for {name}")
+            raise UnitError(f"unit '{self.name}': its process answers no value for {name}")
         return value
 
     def set(self, name: str, value: Value) -> None:
@@ -187,30 +203,33 @@ class IsolatedUnit:
             target[place] = values
 
     def get_feedthrough(self) -> None:
-        """See `unit.Unit`."""
-        if self._through:
-            self._asked = "its outputs"
-            self._turn(wire.FEEDTHROUGH)
-            self._answer()
-            for target, place, values in self._through:
-                target[place] = values
+        """See `unit.Unit`; the unit shows them with the step that follows."""
+        self._shows = True
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
         """See `unit.Unit`: the process steps while the caller goes on."""
+        self._check_free()
+        slots = self._slots
+        slots[shared.TIME], slots[shared.STEP_SIZE], slots[shared.COUNT] = time, step_size, count
         self._asked = "a step"
-        self._turn(wire.STEP, time, step_size, count)
+        self._request(shared.STEP_SHOWN if self._shows else shared.STEP)
 
     def finish_step(self) -> None:
         """See `unit.Unit`."""
-        self._answer()
+        self._finish()
         self._fresh = True
+        if self._shows:
+            self._shows = False
+            for target, place, values in self._through:
+                target[place] = values
 
     def get_outputs(self) -> None:
         """See `unit.Unit`; after a step they are there already."""
         if not self._fresh:
+            self._check_free()
             self._asked = "its outputs"
-            self._turn(wire.OUTPUTS)
-            self._answer()
+            self._request(shared.OUTPUTS)
+            self._finish()
         self._fresh = False
         for target, place, values in self._outputs:
             target[place] = values
@@ -221,30 +240,15 @@ class IsolatedUnit:
 
     def free(self) -> None:
         """See `unit.Unit`. A unit that does not let go is ended."""
-        if self._process is not None:
-            if self._process.poll() is None and not self._pending:  # one that still works hears nothing
+        if not self._freed:
+            self._freed = True
+            if not self._pending:  # one that still works hears nothing
+                self._time = min(_FREEING, self._time)
                 with contextlib.suppress(UnitError, ConfigError):  # what fails now changes no result
-                    self._call("free", timeout=_ENDING)
-            self._kill()
-            self._process = None
-        self._connection.close()
-        self._output.close()
-        self._shared.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
-
-    def _kill(self) -> None:
-        assert self._process is not None
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+                    self._call("free")
+            self._process.close()
 
 
-def _ending(code: int | None) -> str:
-    if code is None:
-        return "closed its connection"
-    if code < 0:
-        with contextlib.suppress(ValueError):  # a signal that Python has no name for
-            return f"was killed by {signal.Signals(-code).name} ({signal.strsignal(-code)})"
-    if code == 0:
-        return "ended by itself with exit code 0: the FMU called exit()"
-    return f"ended by itself with exit code {code}"
+def _printable(text: str) -> str:
+    """The text without what steers a terminal."""
+    return "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -6,24 +6,22 @@ the unit's library.
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
-
 
 class _Waiting:
+    """A `with` block in which `waits` is true."""
+
     now = False
+
+    def __enter__(self) -> None:
+        self.now = True
+
+    def __exit__(self, *_: object) -> None:
+        self.now = False
+
+
+WAITING = _Waiting()
 
 
 def waits() -> bool:
     """Whether the main thread waits for such a unit at this moment."""
-    return _Waiting.now
-
-
-@contextlib.contextmanager
-def waiting() -> Iterator[None]:
-    """The time in which `waits` is true."""
-    _Waiting.now = True
-    try:
-        yield
-    finally:
-        _Waiting.now = False
+    return WAITING.now

@@ -7,13 +7,15 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from evcosim.cosim.errors import RunError
+from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system import Algorithm
+from evcosim.master.isolation import choice, line
 from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu
 
@@ -113,7 +115,7 @@ def test_children_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
         "import os, signal, sys\n"
         "from evcosim.master.simulation import Simulation\n"
         "s = Simulation(sys.argv[1]); s.step(10)\n"
-        "print(s._units['a']._process.pid, flush=True)\n"
+        "print(s._units['a']._process._process.pid, flush=True)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     path = str(pair(tmp_path, 0))
@@ -125,6 +127,72 @@ def test_children_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
             break
         time.sleep(0.05)
     assert not runs(process)
+
+
+def test_a_child_lives_on_when_the_thread_that_started_it_ends(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as pool:
+        simulation = pool.submit(Simulation, pair(tmp_path, 0)).result()
+    with simulation:
+        simulation.run()
+        assert simulation.finished
+
+
+@pytest.mark.parametrize("kill", [True, False])
+def test_what_a_unit_starts_ends_with_the_master(tmp_path: Path, kill: bool) -> None:
+    code = (
+        "import os, signal, sys\n"
+        "from evcosim.master.simulation import Simulation\n"
+        "s = Simulation(sys.argv[1]); s.run()\n"
+        f"os.kill(os.getpid(), signal.SIGKILL) if {kill} else s.close()\n"
+    )
+    noted = tmp_path / "process"
+    command = [sys.executable, "-c", code, str(pair(tmp_path, 65))]
+    subprocess.run(command, env=os.environ | {"EVCOSIM_TEST_CHILD": str(noted)}, check=False)
+    process = int(noted.read_text())
+    for _ in range(100):
+        if not runs(process):
+            break
+        time.sleep(0.05)
+    assert not runs(process)
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_the_last_messages_of_a_unit_that_crashes_reach_the_error(tmp_path: Path, fmi: int) -> None:
+    with pytest.raises(RunError, match=r"SIGSEGV .*\n.*its last messages:\n\[Error\] out of coffee"):
+        simulate(pair(tmp_path, 64, fmi))
+
+
+def test_warnings_are_counted_as_in_the_master(tmp_path: Path) -> None:
+    path = pair(tmp_path, 11)
+    apart, here = (simulate(path, isolation=isolation) for isolation in ("process", "none"))
+    assert apart.manifest["warnings"] == here.manifest["warnings"] != []
+
+
+def test_units_step_at_the_same_time_under_jacobi(tmp_path: Path) -> None:
+    fmu = mixed_fmu(tmp_path / "mixed.fmu", 2, 63)
+    units = "".join(f'[units.{name}]\nfmu = "{fmu}"\n' for name in "ab")
+    path = tmp_path / "two.toml"
+    path.write_text(f'name = "two"\n[experiment]\nstop_time = 0.2\nalgorithm = "jacobi"\n{units}')
+    with Simulation(path) as simulation:
+        simulation.run()
+        assert 20 * 0.05 < simulation.loop_seconds < 1.5 * 20 * 0.05
+
+
+def test_units_give_the_same_where_both_sides_only_sleep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = pair(tmp_path, 0)
+    looking = simulate(path)
+    monkeypatch.setattr(line, "SPIN", 0.0)
+    assert np.array_equal(simulate(path).data, looking.data)
+
+
+def test_no_processes_where_the_system_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = pair(tmp_path, 0)
+    monkeypatch.setattr(choice, "available", lambda: False)
+    with pytest.raises(ConfigError, match=r"unit 'a': evcosim did not build mixed.fmu, .*--isolation none"):
+        simulate(path)
+    assert simulate(path, isolation="none").manifest["units"]["a"]["isolation"] == "none"
 
 
 def test_ctrl_c_does_not_wait_for_a_unit_that_hangs(tmp_path: Path) -> None:

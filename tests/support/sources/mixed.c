@@ -6,6 +6,7 @@
    1     instantiate returns nothing                2     getReal gives NaN from t = 0.5 on
    50 on: from t = 0.5 s on, doStep 50 writes to address 0, 51 aborts, 52 and 53 call exit(0) and exit(3), 54 never
    returns, 55 recurses without end, 56 takes memory without end, 57 fills a file, 58 frees twice
+   63 sleeps for 50 ms in each doStep, 64 says "out of coffee" (Error) and writes to address 0, 65 starts a process
    60 instantiate writes to address 0               61 terminate never returns     62 prints a banner
    3     FMI 3.0: terminateSimulation at t = 0.5    4     FMI 3.0: early return at t = 0.5 */
 
@@ -16,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #ifndef BEHAVIOR
 #define BEHAVIOR 0
@@ -51,9 +53,19 @@ static int bad(Unit *u, int group) {
 }
 
 static void misbehave(void);
+static int *volatile nowhere; /* where the compiler cannot see that it is */
 
 static void advance(Unit *u, double h) {
     double *v = u->values;
+    if (BEHAVIOR == 63) usleep(50000);
+    if (BEHAVIOR == 64 && u->time >= 0.4999) {
+#if FMI == 3
+        u->log(u->environment, 3, "logStatusError", "out of coffee");
+#else
+        u->log(FMI == 1 ? (void *)u : u->environment, u->name, 3, "logStatusError", "out of %s", "coffee");
+#endif
+        *nowhere = 1;
+    }
     if (u->time >= 0.4999) misbehave();
     v[1] += h * (v[2] * v[0] - v[1]);
     if (BEHAVIOR == 2 && u->time >= 0.4999) v[1] = NAN;
@@ -69,8 +81,6 @@ static void advance(Unit *u, double h) {
     u->time += h;
 }
 
-static int *volatile nowhere; /* where the compiler cannot see that it is */
-
 static int deeper(volatile int n) { return n ? deeper(n + 1) + n : 0; }
 
 static void misbehave(void) {
@@ -83,6 +93,14 @@ static void misbehave(void) {
     case 55: deeper(1); break;
     case 56: for (;;) { char *p = malloc(1 << 28); if (!p) abort(); p[0] = 1; }
     case 57: { FILE *f = fopen("large", "w"); static char block[1 << 20]; for (;;) fwrite(block, 1, sizeof block, f); }
+    case 65: {
+        static int child = 0;
+        if (!child && !(child = fork())) for (;;) pause();
+        FILE *f = fopen(getenv("EVCOSIM_TEST_CHILD"), "w");
+        fprintf(f, "%d", child);
+        fclose(f);
+        break;
+    }
     case 58: { char *volatile p = malloc(100); free(p); free(p); }
     }
 }

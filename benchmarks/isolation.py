@@ -1,0 +1,95 @@
+"""What a process of its own costs a unit: python -m benchmarks.isolation, from the project's folder.
+
+A ring of equal units in C with ten signals each way is stepped with all units in the master's process and
+with each in its own, under both algorithms, in many short stretches that take turns. What is printed are
+microseconds for a unit and step: the median stretch of each, and the difference between the two, of the
+medians, of the 10th percentiles and of the fastest stretches. On a machine that does other things too the
+last two say more. Then, the share of a core that the processes take while nobody steps. Needs a C compiler.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from evcosim.master.simulation import Simulation
+
+from .case import Case
+from .runners.evcosim import write_system
+
+_SIGNALS = 10
+_STRETCH = 25  # steps
+_PAUSE = 2.0  # s
+_TICKS = os.sysconf("SC_CLK_TCK")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.isolation", description=(__doc__ or "").split("\n\n")[0]
+    )
+    parser.add_argument("--stretches", type=int, default=400, help="of 25 steps (default: 400)")
+    parser.add_argument("--units", type=int, nargs="+", default=[1, 2, 4], help="units in the ring")
+    arguments = parser.parse_args()
+    machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    print(f"{machine}, load {os.getloadavg()[0]:.1f}; us a unit and step\n")
+    print("| units | algorithm | in-process | isolated | cost, median | cost, p10 | cost, min | idle |")
+    print("|---" * 8 + "|")
+    for units in arguments.units:
+        for algorithm in ("gauss_seidel", "jacobi"):
+            print(row(units, algorithm, arguments.stretches), flush=True)
+
+
+def row(units: int, algorithm: str, stretches: int) -> str:
+    """One line of the table."""
+    case = Case("c", units, 1, _SIGNALS, record=False)
+    with tempfile.TemporaryDirectory() as folder:
+        system = write_system(case, Path(folder), algorithm)
+        with (
+            Simulation(system, isolation="none") as here,
+            Simulation(system, isolation="process") as apart,
+        ):
+            times = np.array([[_stretch(s) for s in (here, apart)] for _ in range(stretches)]) / units
+            idle = _idle()
+    medians, low = np.median(times, axis=0), np.percentile(times, 10, axis=0)
+    costs = [found[1] - found[0] for found in (medians, low, np.min(times, axis=0))]
+    cells = [f"{x:.1f}" for x in (*medians, *costs)]
+    return f"| {units} | {algorithm} | " + " | ".join(cells) + f" | {100 * idle:.1f} % |"
+
+
+def _stretch(simulation: Simulation) -> float:
+    """Microseconds a step."""
+    simulation.step(1)  # awakes the processes, which slept while the other simulation was stepped
+    before = simulation.loop_seconds
+    simulation.step(_STRETCH)
+    return 1e6 * (simulation.loop_seconds - before) / _STRETCH
+
+
+def _idle() -> float:
+    """The share of a core that the children take in a pause."""
+    before = _cpu_time()
+    time.sleep(_PAUSE)
+    return (_cpu_time() - before) / _PAUSE
+
+
+def _cpu_time() -> float:
+    """Seconds of processor time that this process and its children have taken."""
+    found = 0
+    for process in [os.getpid(), *_children()]:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+        found += int(fields[11]) + int(fields[12])
+    return found / _TICKS
+
+
+def _children() -> list[int]:
+    return [int(p) for p in Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+"""The process of an isolated unit as the master holds it: its start, what it printed, its end."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import os
+import pickle
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from . import wire
+
+_ENDING = 2.0  # s
+_SAID = 2000  # characters of its output that are shown
+_LOOK = 0.25  # s between two looks at a process that does not answer
+
+
+@dataclasses.dataclass(frozen=True)
+class Limits:
+    """What a process may take.
+
+    `memory` [bytes] of address space and `file` [bytes] of each file that it writes, both may be infinite;
+    `loading` [s] for an answer up to the first step, `step` [s] for one after it.
+    """
+
+    memory: float = 8e9
+    file: float = 256e6
+    loading: float = 60.0
+    step: float = 30.0
+
+
+class Process:
+    """A child that was started, and loads `loading` (see `child`) as soon as it is there.
+
+    `connection` is its socket; a call of it raises TimeoutError when a quarter of a second has passed.
+    """
+
+    def __init__(self, loading: tuple[Any, ...], memory: int, limits: Limits) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
+        self._output = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `close`
+        self.connection, theirs = socket.socketpair()
+        end, life = os.pipe()
+        self._life = os.fdopen(life, "wb", 0)
+        self.connection.settimeout(_LOOK)
+        try:
+            with theirs, os.fdopen(end, "rb", 0):
+                (self._folder / wire.LOADING).write_bytes(pickle.dumps(loading))
+                self._start((theirs.fileno(), memory, end), limits)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start(self, descriptors: tuple[int, ...], limits: Limits) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "evcosim.master.isolation.child"]
+            + [str(each) for each in (*descriptors, limits.memory, limits.file)],
+            stdin=subprocess.DEVNULL,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+            pass_fds=descriptors,
+            cwd=self._folder,
+            start_new_session=True,  # Ctrl-C is the master's alone; what it starts ends with it
+            env=os.environ | {"TMPDIR": str(self._folder), "OPENBLAS_NUM_THREADS": "1"},
+        )
+
+    def check_alive(self) -> None:
+        """Raise EOFError when it has ended, though something that it started may hold its socket open."""
+        if self._process is None or self._process.poll() is not None:
+            raise EOFError("the process ended")
+
+    def ending(self) -> str:
+        """How it ended, in words that follow "its process"."""
+        assert self._process is not None
+        try:
+            code = self._process.wait(_ENDING)
+        except subprocess.TimeoutExpired:
+            return "closed its connection and was ended"
+        if code < 0:
+            with contextlib.suppress(ValueError):  # a signal that Python has no name for
+                return f"was killed by {signal.Signals(-code).name} ({signal.strsignal(-code)})"
+        if code == 0:
+            return "ended by itself with exit code 0: the FMU called exit()"
+        return f"ended by itself with exit code {code}"
+
+    def printed(self) -> str:
+        """The end of what it printed."""
+        size = self._output.seek(0, os.SEEK_END)
+        self._output.seek(max(0, size - 4 * _SAID))
+        return self._output.read().decode("utf-8", "replace").strip()[-_SAID:]
+
+    def kill(self) -> None:
+        """End it and what it started."""
+        if self._process is not None:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+
+    def close(self) -> None:
+        """Kill it and release all that belongs to it."""
+        self.kill()
+        self._process = None
+        for each in (self.connection, self._life, self._output):
+            each.close()
+        shutil.rmtree(self._folder, ignore_errors=True)

@@ -1,0 +1,104 @@
+"""The memory that the master shares with one child: numbers of requests and answers, log messages, values.
+
+All of it is 8-byte slots that hold doubles, counts too (exact up to 2^53): a slot is written as a whole.
+Nobody else shares it, so that a unit that writes anywhere spoils nothing but its own values; and the child
+cannot make it smaller, which would end the master at its next look. What the child writes is no more than a
+claim: the master reads counts and lengths within their bounds.
+
+The last log messages stand here, and not in an answer, since a unit that ends its process answers nothing.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import mmap
+import os
+import tempfile
+
+import numpy as np
+
+from ...cosim.unit_plan import Block, UnitPlan
+from ..unit import floats
+
+# the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
+REQUEST, KIND, TIME, STEP_SIZE, COUNT, MASTER_SLEEPS, SPIN = range(7)
+# the child's side
+ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES = range(16, 21)
+
+CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
+"""Kinds of requests: a frame says what; steps; steps after the outputs that feed through; outputs alone."""
+
+_RING, _KEPT, _TEXT = 32, 20, 2048  # first slot, messages, bytes of one
+_RECORD = 2 + _TEXT // 8  # status, length, text
+_VALUES = -(-(_RING + _KEPT * _RECORD) // 16) * 16
+
+
+def create(count: int) -> int:
+    """A descriptor of a memory for `count` values. The caller closes it."""
+    size = 8 * (_VALUES + count)
+    import fcntl  # Windows has none, and needs none
+
+    if not hasattr(os, "memfd_create"):  # macOS
+        with tempfile.TemporaryFile(prefix="evcosim-") as file:
+            file.truncate(size)
+            return os.dup(file.fileno())
+    descriptor = os.memfd_create("evcosim", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+    os.ftruncate(descriptor, size)
+    fcntl.fcntl(descriptor, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL)
+    return descriptor
+
+
+class Shared:
+    """The memory behind a descriptor: `slots` are the first ones, `values` those of the unit's blocks."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
+        whole = np.frombuffer(self._memory, dtype=np.float64)
+        self.slots = floats(whole)
+        self.values = whole[_VALUES:]
+
+    def warnings(self) -> int:
+        """How many warnings the child counts."""
+        return _count(self.slots[WARNINGS])
+
+    def hear(self, status: int, text: str) -> None:
+        """The child's: keep a log message."""
+        number = _count(self.slots[_MESSAGES])
+        place = _RING + number % _KEPT * _RECORD
+        content = text.encode("utf-8", "replace")[:_TEXT]
+        self.slots[place], self.slots[place + 1] = status, len(content)
+        self._memory[8 * (place + 2) : 8 * (place + 2) + len(content)] = content
+        self.slots[_MESSAGES] = number + 1
+        self.slots[WARNINGS] += status == 1  # the exact number comes with the answer, if one comes
+
+    def heard(self) -> list[tuple[int, str]]:
+        """The last log messages: status and text."""
+        number = _count(self.slots[_MESSAGES])
+        found = []
+        for i in range(max(0, number - _KEPT), number):
+            place = _RING + i % _KEPT * _RECORD
+            length = min(_count(self.slots[place + 1]), _TEXT)
+            content = self._memory[8 * (place + 2) : 8 * (place + 2) + length]
+            found.append((_count(self.slots[place]), content.decode("utf-8", "replace")))
+        return found
+
+
+def _count(number: float) -> int:
+    """A count that stands in a slot; 0 for what is none."""
+    return int(number) if 0.0 <= number < 2.0**53 else 0
+
+
+def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
+    """The plan of a unit with its blocks at the start of a memory of their own, and their size."""
+    blocks, place = [], 0
+    for block in plan.blocks:
+        n = len(block.variables)
+        latest = place + n if block.kind == "continuous" else -1
+        blocks.append(dataclasses.replace(block, slot=place, latest=latest))
+        place += 2 * n if block.kind == "continuous" else n
+    return dataclasses.replace(plan, blocks=tuple(blocks), routes=()), place
+
+
+def shown(block: Block) -> int:
+    """The first slot into which a unit writes the outputs of a block after its step."""
+    return block.latest if block.kind == "continuous" else block.slot
