@@ -87,7 +87,7 @@ class MessageChannel:
     is only recorded: the caller knows when the message is due (`dbc.schedule`). All signals are read and
     checked before any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
 
-    With `log_raw` the raw values of each transmission are kept for `log`.
+    With `log_raw` the raw values of each transmission are kept for `log` (`logs` tells whether).
     Raises ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
     """
 
@@ -101,9 +101,12 @@ class MessageChannel:
         log_raw: bool = False,
     ) -> None:
         _check(message, routes)
-        self.message, self.routes = message, tuple(routes)
+        self.message, self.routes, self.logs = message, tuple(routes), log_raw
         self.operations = tuple(operation(route.signal, settings or BusSettings()) for route in routes)
         self._counts = [[0, 0] for _ in routes]  # how often out of range, and the first step
+        self._out = [
+            _out_of_range(op, counter) for op, counter in zip(self.operations, self._counts, strict=True)
+        ]
         self._log = bytearray()
         self._row = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
         self.source = _source(self.routes, self.operations, log_raw)
@@ -125,11 +128,31 @@ class MessageChannel:
         raws = {op.signal.name: rows[f"f{i}"] for i, op in enumerate(self.operations, start=1)}
         return RawLog(self.message, rows["f0"], raws)
 
+    # ---- for an engine that does the transmissions itself, with the constants in `operations`
+
+    def out_of_range(self, i: int, x: float, k: int) -> float:
+        """The raw value of signal i for a value outside [low, high], counted. Raises ChannelError."""
+        return self._out[i](x, k)
+
+    def count(self, i: int, times: int, first_step: int) -> None:
+        """Add to what is counted of signal i."""
+        counter = self._counts[i]
+        if not counter[0]:
+            counter[1] = first_step
+        counter[0] += times
+
+    def keep(self, steps: NDArray[np.int64], raws: NDArray[np.float64]) -> None:
+        """Add transmissions to the log: `raws` has a row for each and a column for each signal."""
+        rows = np.empty((len(steps), 1 + raws.shape[1]), dtype="<f8")
+        rows.view("<i8")[:, 0] = steps
+        rows[:, 1:] = raws
+        self._log.extend(rows.tobytes())
+
     def _names(self) -> dict[str, Any]:
         """What the source refers to: for signal i, what to do out of range and what doubles cannot do."""
         names: dict[str, Any] = {}
         for i, op in enumerate(self.operations):
-            names[f"out_{i}"] = _out_of_range(op, self._counts[i])
+            names[f"out_{i}"] = self._out[i]
             if op.kind == "exact":
                 names[f"raw_{i}"] = _exact_raw(op)
                 names[f"value_{i}"] = _exact_value(op)
@@ -257,8 +280,5 @@ def _receive(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
 
 def _value(r: str, op: SignalOperation) -> str:
     """r * scale + offset, without what does nothing."""
-    if op.scale == 1.0 and op.offset == 0.0:
-        return r
     product = f"{r} * {op.scale!r}" if op.scale != 1.0 else r
-    may_be_minus_zero = op.scale < 0 or op.kind != "integer"
-    return f"{product} + {op.offset!r}" if op.offset or may_be_minus_zero else product
+    return f"{product} + {op.offset!r}" if op.adds_offset else product

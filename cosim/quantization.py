@@ -174,6 +174,13 @@ class SignalOperation:
     raw_below: int | float | None
     raw_above: int | float | None
 
+    @property
+    def adds_offset(self) -> bool:
+        """Whether decoding adds the offset: one of 0.0 makes 0.0 of -0.0, where there can be one."""
+        if self.scale == 1.0 and self.offset == 0.0:
+            return False
+        return bool(self.offset) or self.scale < 0 or self.kind != "integer"
+
 
 def operation(signal: Signal, settings: BusSettings) -> SignalOperation:
     """Fold a signal and the settings of its bus. Raises ConfigError when no value at all can be sent."""

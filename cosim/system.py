@@ -17,6 +17,7 @@ from .metrics import MetricSpec
 Value = bool | int | float | str
 Algorithm = Literal["gauss_seidel", "jacobi"]
 Isolation = Literal["process", "none"]
+EngineName = Literal["compiled", "python"]
 
 
 def _identifier(name: str) -> str:
@@ -52,12 +53,16 @@ SignalName = Annotated[str, AfterValidator(_signal)]
 
 
 class Experiment(FiniteModel):
-    """The communication points and the order of the units. Times in s."""
+    """The communication points and the order of the units. Times in s.
+
+    `engine` is what does the steps (None: the compiled one where there is numba); results are the same.
+    """
 
     start_time: float = 0.0
     stop_time: float = 10.0
     step_size: float = Field(default=0.01, gt=0.0)
     algorithm: Algorithm = "gauss_seidel"
+    engine: EngineName | None = None
     algebraic_loops: Literal["refuse", "iterate"] = "refuse"
     loop_tolerance: float = Field(default=1e-9, gt=0.0)
 

@@ -17,6 +17,13 @@ def builtin_names() -> tuple[str, ...]:
     return build.names()
 
 
+def cache_folder() -> Path:
+    """Where evcosim keeps what it builds; the folder need not exist."""
+    from ..fmus import cache
+
+    return cache.folder()
+
+
 def builtin_text(name: str) -> str:
     """What a built-in FMU is, in one line."""
     from ..fmus import catalog

@@ -35,10 +35,10 @@ from ..cosim.resolve import Options, check_effect, checked, participating, resol
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
 from ..cosim.swap import swapped
-from ..cosim.system import Algorithm, Isolation, System, Value, load_system
+from ..cosim.system import Algorithm, EngineName, Isolation, System, Value, load_system
 from ..cosim.variation import BusVariation, varied
-from .algorithm import Engine
 from .builtin import fmu_file
+from .engines import engine_class
 from .fmi.fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
 from .isolation.choice import chosen, limits
@@ -105,7 +105,7 @@ class Simulation:
     FMUs in the place of the named ones, `swaps` (unit to swap file) FMUs with other names; `ideal` leaves the
     buses out (unit conversion only); `bus` varies all of them (BusVariation); `log_frames` keeps the frames
     for `write_can_log`; `isolation` puts all units into processes of their own ("process") or none ("none"),
-    whatever the system says.
+    whatever the system says; `engine` is "compiled" (needs numba) or "python", which give the same results.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -123,9 +123,11 @@ class Simulation:
         log_frames: bool = False,
         isolation: Isolation | None = None,
         swaps: Mapping[str, str | Path] | None = None,
+        engine: EngineName | None = None,
     ) -> None:
         options = Options(parameters or {}, algorithm, stop_time, ideal)
         prepared = prepare(system, scenario, options, fmus, bus, swaps)
+        made, self._notice = engine_class(engine or prepared.plan.experiment.engine)
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
         self.plan: Plan = prepared.plan
@@ -141,7 +143,7 @@ class Simulation:
         try:
             for unit in self.plan.units:
                 self._units[unit.name] = self._load(unit, isolation)
-            self._engine = Engine(self.plan, self._units, log_raw=log_frames)
+            self._engine = made(self.plan, self._units, log_raw=log_frames)
             initialize(self._units, self.plan)
             self._engine.start()
         except BaseException:
@@ -251,7 +253,8 @@ class Simulation:
         """What is not as it should be, one sentence each: missing units of measure, warnings of units."""
         from_units = [f"unit '{name}' gave {n} warnings" for name, n in self._unit_warnings().items() if n]
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
-        return [*defects, *self.plan.warnings, *from_units]
+        notices = [notice for notice in (self._notice, self._engine.notice) if notice]
+        return [*notices, *defects, *self.plan.warnings, *from_units]
 
     def _unit_warnings(self) -> dict[str, int]:
         return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}
@@ -298,7 +301,8 @@ class Simulation:
             "system": plan.system,
             "scenario": plan.scenario,
             "files": _own_files(self.system, self.scenario),
-            "experiment": experiment.model_dump() | {"algorithm": plan.algorithm},
+            "experiment": experiment.model_dump()
+            | {"algorithm": plan.algorithm, "engine": self._engine.name},
             "ideal": plan.ideal,
             "order": [unit.name for unit in plan.units],
             "units": {
@@ -383,6 +387,7 @@ def simulate(
     bus: BusVariation | None = None,
     isolation: Isolation | None = None,
     swaps: Mapping[str, str | Path] | None = None,
+    engine: EngineName | None = None,
     progress: Progress | None = None,
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
@@ -401,6 +406,7 @@ def simulate(
         bus=bus,
         isolation=isolation,
         swaps=swaps,
+        engine=engine,
     )
     try:
         with simulation:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from evcosim.cosim.system import EngineName
 from evcosim.master.simulation import Simulation
 
 from ..case import STEP_SIZE, Case
@@ -20,10 +21,10 @@ def version() -> str:
     return importlib.metadata.version("evcosim")
 
 
-def measure(case: Case, folder: Path) -> Measured:
+def measure(case: Case, folder: Path, engine: EngineName = "compiled") -> Measured:
     """Run a case, all units in this process."""
     system = write_system(case, folder)
-    with Simulation(system) as simulation:
+    with Simulation(system, engine=engine) as simulation:
         simulation.step(1)  # what is made in the first step is no cost of a step
         before = simulation.loop_seconds
         simulation.run()

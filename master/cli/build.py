@@ -17,9 +17,11 @@ def build(
         typer.Option("--output", "-o", metavar="DIR", help="Where to; default: the cache that `run` uses."),
     ] = None,
 ) -> None:
-    """Build the built-in FMUs and print where they are."""
+    """Build the built-in FMUs and print where they are; compile the engine for later runs."""
     from ...cosim.errors import ConfigError, nearest
     from ..builtin import build_fmu, builtin_names
+    from ..engines import prepared
+    from .failures import complain
 
     known = builtin_names()
     for name in names or ():
@@ -29,3 +31,5 @@ def build(
             )
     for name in dict.fromkeys(names or known):
         print(build_fmu(name, output))
+    if notice := prepared():
+        complain(f"warning: {notice}")

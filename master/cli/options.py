@@ -22,6 +22,13 @@ ScenarioOption = Annotated[
 ]
 
 
+class Engine(enum.StrEnum):
+    """What does the steps."""
+
+    compiled = "compiled"
+    python = "python"
+
+
 class Isolation(enum.StrEnum):
     """Where units run."""
 
@@ -50,6 +57,10 @@ SwapsOption = Annotated[
 IdealOption = Annotated[bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")]
 AlgorithmOption = Annotated[
     Algorithm | None, typer.Option(help="The order of steps; default: the system's own.", show_default=False)
+]
+EngineOption = Annotated[
+    Engine | None,
+    typer.Option(help="What does the steps; default: compiled, python without numba.", show_default=False),
 ]
 StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")]
 WorkersOption = Annotated[

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +11,8 @@ import typer
 from .options import (
     Algorithm,
     AlgorithmOption,
+    Engine,
+    EngineOption,
     FmusOption,
     IdealOption,
     Isolation,
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
     from .console import Show
     from .interrupts import Interrupts
 
-_CHUNK_STEPS = 256
-_CHUNK_SECONDS = 0.05  # between two looks at Ctrl-C and the progress bar, however slow a unit is
-
 
 def run(
     system: SystemArgument,
@@ -43,6 +41,7 @@ def run(
     ideal: IdealOption = False,
     algorithm: AlgorithmOption = None,
     isolation: IsolationOption = None,
+    engine: EngineOption = None,
     stop_time: StopTimeOption = None,
     output: Annotated[
         Path | None,
@@ -65,6 +64,7 @@ def run(
         ideal=ideal,
         algorithm=algorithm,
         isolation=isolation,
+        engine=engine,
         stop_time=stop_time,
         output=output,
         can_log=can_log,
@@ -86,6 +86,7 @@ class Order:
     ideal: bool
     algorithm: Algorithm | None
     isolation: Isolation | None
+    engine: Engine | None
     stop_time: float | None
     output: Path | None
     can_log: bool
@@ -167,6 +168,7 @@ def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Sim
         stop_time=order.stop_time,
         log_frames=order.can_log,
         isolation=order.isolation.value if order.isolation else None,
+        engine=order.engine.value if order.engine else None,
     )
 
 
@@ -176,23 +178,19 @@ def _default_folder(simulation: Simulation) -> Path:
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
-    """Step to the stop time, in chunks that take about _CHUNK_SECONDS."""
+    """Step to the stop time; the engine lets us look at Ctrl-C after each tenth of a second, or step."""
     from .console import progress_bar
 
     experiment = simulation.plan.experiment
     title = " ".join(name for name in (simulation.system.file.name, simulation.scenario.name) if name)
     show: Show
     with progress_bar(title, experiment.start_time, experiment.stop_time, bar) as show:
-        count = 1
-        while left := simulation.steps_left:
-            begin = time.perf_counter()
-            simulation.step(min(count, left))
-            show(simulation.time)
+
+        def look(now: float, stop: float) -> None:
+            show(now)
             interrupts.check()
-            if time.perf_counter() - begin < _CHUNK_SECONDS:
-                count = min(2 * count, _CHUNK_STEPS)
-            else:
-                count = max(count // 2, 1)
+
+        simulation.run(look)
 
 
 def _evaluate(outcome: Outcome) -> None:

@@ -15,6 +15,7 @@ from ..unit import Value
 from .fmu import Fmu
 from .instance import Instance
 from .library import Library
+from .transfer import StepCall
 
 _FALSE, _TRUE = ctypes.c_char(0), ctypes.c_char(1)  # fmiBoolean
 _C_TYPES: dict[str, Any] = {
@@ -82,6 +83,7 @@ class Fmi1Unit(Instance):
         self._call("fmiInitializeSlave", self._component, *self._experiment)
         self._initialized = True
         self._do_step = self.function("fmiDoStep")
+        self.step_call = StepCall(self._do_step)
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
@@ -91,7 +93,11 @@ class Fmi1Unit(Instance):
             self._time.value = time + i * step_size
             status = self._do_step(self._component, self._time, self._step_size, _TRUE)
             if status:
-                self._judge_step("fmiDoStep", status)
+                self.judge_step(status)
+
+    def judge_step(self, status: int) -> None:
+        """See `Instance`."""
+        self._judge_step("fmiDoStep", status)
 
     def _listen_to_trouble(self) -> None:
         """FMI 1.0 has no log categories to choose from."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from ...cosim.interface import VariableInfo
 from .instance import Instance
+from .transfer import StepCall
 
 _INVISIBLE, _LOGGING = ctypes.c_int(0), ctypes.c_int(1)  # fmi2Boolean
 _CO_SIMULATION = ctypes.c_int(1)
@@ -53,6 +54,7 @@ class Fmi2Unit(Instance):
         self._call("fmi2ExitInitializationMode", self._component)
         self._initialized = True
         self._do_step = self.function("fmi2DoStep")
+        self.step_call = StepCall(self._do_step)
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
         self._no_set_state = ctypes.c_int(1)
 
@@ -63,4 +65,8 @@ class Fmi2Unit(Instance):
             self._time.value = time + i * step_size
             status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
             if status:
-                self._judge_step("fmi2DoStep", status)
+                self.judge_step(status)
+
+    def judge_step(self, status: int) -> None:
+        """See `Instance`."""
+        self._judge_step("fmi2DoStep", status)

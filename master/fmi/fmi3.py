@@ -10,6 +10,7 @@ from ...cosim.interface import VariableInfo
 from ..unit import UnitError
 from .instance import Instance, resources_path
 from .log import receive_3
+from .transfer import StepCall
 
 _FALSE, _TRUE = ctypes.c_bool(False), ctypes.c_bool(True)
 _C_TYPES: dict[str, Any] = {
@@ -76,6 +77,7 @@ class Fmi3Unit(Instance):
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
         self._event, self._ending, self._early = (ctypes.c_bool() for _ in range(3))
         self._reached = ctypes.c_double()
+        self.step_call = StepCall(self._do_step, (self._event, self._ending, self._early, self._reached))
         self._step_arguments = (
             self._component, self._time, self._step_size, _TRUE, ctypes.byref(self._event),
             ctypes.byref(self._ending), ctypes.byref(self._early), ctypes.byref(self._reached),
@@ -87,16 +89,17 @@ class Fmi3Unit(Instance):
         for i in range(count):
             self._time.value = time + i * step_size
             status = self._do_step(*self._step_arguments)
-            if status:
-                self._judge("fmi3DoStep", status)
-            if self._ending or self._early:
-                self._judge_end()
+            if status or self._ending or self._early:
+                self.judge_step(status)
 
-    def _judge_end(self) -> None:
-        """Raise UnitError for a step that ended the simulation, or ended early though that is not allowed."""
+    def judge_step(self, status: int) -> None:
+        """See `Instance`; a step may neither end the simulation nor, since that is not allowed, end early."""
+        if status:
+            self._judge("fmi3DoStep", status)
         if self._ending:
             raise UnitError(f"unit '{self.name}': fmi3DoStep asks to terminate the simulation{self._said()}")
-        raise UnitError(
-            f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though early "
-            f"return is not allowed{self._said()}"
-        )
+        if self._early:
+            raise UnitError(
+                f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though "
+                f"early return is not allowed{self._said()}"
+            )

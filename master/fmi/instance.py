@@ -19,7 +19,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -30,7 +29,7 @@ from numpy.typing import NDArray
 from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.unit_plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
-from . import binary
+from . import binary, folders
 from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
@@ -38,7 +37,10 @@ from .refusal import why_refused
 from .step_status import beside
 from .transfer import (
     Call,
+    Copy,
     Item,
+    StepCall,
+    Transfer,
     copying,
     getting,
     getting_booleans,
@@ -67,6 +69,8 @@ class Instance:
     """True as an argument of a C function."""
     _statuses = 6
     """How many statuses the version knows."""
+    step_call: StepCall | None = None
+    """What does a step, known when the initialization is left."""
 
     def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
         check_runnable(fmu)
@@ -81,7 +85,7 @@ class Instance:
         self._folder: Path | None = None
         try:
             self._take_place()
-            folder = self._folder = fmu.extract()
+            folder = self._folder = folders.take(fmu)
             self._library = self._load(folder)
             with self.log.instantiating():
                 component = self._instantiate(folder)
@@ -93,7 +97,10 @@ class Instance:
         except BaseException:
             self.free()
             raise
-        # the calls of a turn (see `unit.Unit`), which `bind` makes
+        # what `bind` makes: the transfers of a turn, and the calls (see `unit.Unit`) that do them
+        self.inputs: list[Transfer] = []
+        self.through: list[Transfer | Copy] = []
+        self.outputs: list[Transfer] = []
         self.set_inputs: Call = one_after_the_other()
         self.get_feedthrough: Call = one_after_the_other()
         self.get_outputs: Call = one_after_the_other()
@@ -167,31 +174,30 @@ class Instance:
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """See `unit.Unit`. Makes the calls of a turn, with all their arguments."""
-        inputs: list[Call] = []
-        through: list[Call] = []
-        outputs: list[Call] = []
+        self.inputs, self.through, self.outputs = [], [], []
         for block in plan.blocks:
             if block.kind == "input":
-                inputs += self._transfers("Set", memory, block.variables, block.slot)
+                self.inputs += self._transfers("Set", memory, block.variables, block.slot)
             elif block.kind == "discrete":
-                outputs += self._transfers("Get", memory, block.variables, block.slot)
+                self.outputs += self._transfers("Get", memory, block.variables, block.slot)
             else:
-                outputs += self._transfers("Get", memory, block.variables, block.latest)
-                through += self._feedthrough(memory, block)
-        self.set_inputs = one_after_the_other(*inputs)
-        self.get_feedthrough = one_after_the_other(*through)
-        self.get_outputs = one_after_the_other(*outputs)
+                self.outputs += self._transfers("Get", memory, block.variables, block.latest)
+                self.through += self._feedthrough(memory, block)
+        view = floats(memory)
+        self.set_inputs = one_after_the_other(*(self._acting(t, view) for t in self.inputs))
+        self.get_feedthrough = one_after_the_other(*(self._acting(t, view) for t in self.through))
+        self.get_outputs = one_after_the_other(*(self._acting(t, view) for t in self.outputs))
 
-    def _feedthrough(self, memory: NDArray[np.float64], block: Block) -> list[Call]:
+    def _feedthrough(self, memory: NDArray[np.float64], block: Block) -> list[Transfer | Copy]:
         if not block.feedthrough:
             return []
         transfers = self._transfers("Get", memory, block.variables[: block.feedthrough], block.latest)
-        return [*transfers, copying(floats(memory), block.latest, block.slot, block.feedthrough)]
+        return [*transfers, Copy(block.latest, block.slot, block.feedthrough)]
 
     def _transfers(
         self, direction: str, memory: NDArray[np.float64], variables: Sequence[VariableInfo], slot: int
-    ) -> list[Call]:
-        """Calls without arguments that move values between unit and memory, from `slot` on.
+    ) -> list[Transfer]:
+        """What moves values between unit and memory, from `slot` on.
 
         One for each function: what is one type in a plan may be several in FMI 3.0.
         """
@@ -199,40 +205,54 @@ class Instance:
         for place, variable in enumerate(variables, slot):
             groups.setdefault(self._access(direction, variable), []).append((place, variable))
         return [
-            self._transfer(
-                direction, name, c_type, memory, [slot for slot, _ in members], [v for _, v in members]
-            )
+            self._transfer(name, c_type, memory, [slot for slot, _ in members], [v for _, v in members])
             for (name, c_type), members in groups.items()
         ]
 
     def _transfer(
         self,
-        direction: str,
         name: str,
         c_type: Any,
         memory: NDArray[np.float64],
         slots: list[int],
         variables: list[VariableInfo],
-    ) -> Call:
+    ) -> Transfer:
         n, first = len(slots), slots[0]
         references = (ctypes.c_uint * n)(*(self._reference(v.name) for v in variables))
         in_order = slots == list(range(first, first + n)) and not any(v.inverted for v in variables)
-        if c_type is ctypes.c_double and in_order:
-            values = (c_type * n).from_buffer(memory[first : first + n].data)
-            return self._caller(name, references, n, values)
-        values = (c_type * n)()
-        call, view = self._caller(name, references, n, values), floats(memory)
-        items = [Item(i, slots[i], -1.0 if v.inverted else 1.0) for i, v in enumerate(variables)]
-        if variables[0].type == "Boolean":
-            return (setting_booleans if direction == "Set" else getting_booleans)(call, view, values, items)
+        in_place = c_type is ctypes.c_double and in_order
+        values = (c_type * n).from_buffer(memory[first : first + n].data) if in_place else (c_type * n)()
+        items = [Item(i, slots[i], -1.0 if v.inverted else 1.0, v) for i, v in enumerate(variables)]
+        return Transfer(
+            function=name,
+            pointer=self.function(name),
+            references=references,
+            values=values,
+            c_type=c_type,
+            gets="Get" in name,
+            boolean=variables[0].type == "Boolean",
+            items=() if in_place else tuple(items),
+        )
+
+    def _acting(self, transfer: Transfer | Copy, memory: memoryview[float]) -> Call:
+        """A call without arguments that does it."""
+        if isinstance(transfer, Copy):
+            return copying(memory, transfer)
+        call, values, items = self._caller(transfer), transfer.values, transfer.items
+        if not items:
+            return call
+        if transfer.boolean:
+            return (getting_booleans if transfer.gets else setting_booleans)(call, memory, values, items)
 
         def refuse(place: int, value: float) -> NoReturn:
-            self._refuse(variables[place], value, name)
+            self.refuse(transfer, place, value)
 
-        return (setting if direction == "Set" else getting)(call, view, values, items, c_type, refuse)
+        made = getting if transfer.gets else setting
+        return made(call, memory, values, items, transfer.c_type, refuse)
 
-    def _caller(self, name: str, references: Any, count: int, values: Any) -> Call:
-        function, arguments = self.function(name), self._arguments(references, count, values)
+    def _caller(self, transfer: Transfer) -> Call:
+        function, name = transfer.pointer, transfer.function
+        arguments = self._arguments(transfer.references, len(transfer.references), transfer.values)
 
         def call() -> None:
             status = function(*arguments)
@@ -240,6 +260,23 @@ class Instance:
                 self._judge(name, status)
 
         return call
+
+    def judge_transfer(self, transfer: Transfer, status: int) -> None:
+        """Count the warning, or raise the UnitError, that the status of a transfer is."""
+        self._judge(transfer.function, status)
+
+    def judge_step(self, status: int) -> None:
+        """The same for a step, also one that ended with status OK but answered that it shall be the last."""
+        raise NotImplementedError
+
+    @property
+    def component(self) -> int:
+        """The address of the instance in the library."""
+        return int(self._component.value)
+
+    def refuse(self, transfer: Transfer, place: int, value: float) -> NoReturn:
+        """Raise UnitError for a value of a transfer that its type, or a double, does not hold."""
+        self._refuse(transfer.items[place].variable, value, transfer.function)
 
     def _refuse(self, variable: VariableInfo, value: float, function: str) -> NoReturn:
         name = variable.name
@@ -319,7 +356,7 @@ class Instance:
         self._leave_place()
         folder, self._folder = self._folder, None
         if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+            folders.give_back(self.fmu)
 
     def _free_instance(self, library: Library, component: Any) -> None:
         library.function(f"{self.fmi}FreeInstance", None)(component)

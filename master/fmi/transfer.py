@@ -7,9 +7,12 @@ their C type: a number that the type does not hold is refused there, since C wou
 from __future__ import annotations
 
 import ctypes
+import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, NoReturn
+
+from ...cosim.interface import VariableInfo
 
 LARGEST_WHOLE = 2**53
 """Beyond it a double does not hold every whole number."""
@@ -25,6 +28,43 @@ class Item(NamedTuple):
     place: int
     slot: int
     sign: float
+    variable: VariableInfo
+
+
+@dataclasses.dataclass(frozen=True)
+class Transfer:
+    """A C call that moves values between the memory and a unit: all that an engine needs to make it.
+
+    `pointer` is the C function `function`; `references` and `values` are its arrays, `values` a part of the
+    memory itself where there are no `items`.
+    """
+
+    function: str
+    pointer: Any
+    references: Any
+    values: Any
+    c_type: Any
+    gets: bool
+    boolean: bool
+    items: tuple[Item, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class StepCall:
+    """The C function that does a step; FMI 3.0's is given where to answer `answers`: whether there was an
+    event, whether the simulation shall end, whether the step ended early, and the time reached."""
+
+    pointer: Any
+    answers: tuple[Any, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Copy:
+    """`count` slots of the memory are copied."""
+
+    source: int
+    target: int
+    count: int
 
 
 def limits(c_type: Any) -> tuple[float, float]:
@@ -52,7 +92,7 @@ def setting(
     kind = float if c_type in (ctypes.c_double, ctypes.c_float) else int
 
     def set_values() -> None:
-        for place, slot, sign in items:
+        for place, slot, sign, _ in items:
             value = sign * memory[slot]
             if not low <= value <= high:
                 refuse(place, value)
@@ -66,7 +106,7 @@ def setting_booleans(call: Call, memory: memoryview[float], values: Any, items: 
     """The same for Booleans: all but 0 is true."""
 
     def set_values() -> None:
-        for place, slot, _ in items:
+        for place, slot, *_ in items:
             values[place] = memory[slot] != 0.0
         call()
 
@@ -81,12 +121,12 @@ def getting(
 
     def get_values() -> None:
         call()
-        for place, slot, sign in items:
+        for place, slot, sign, _ in items:
             memory[slot] = sign * values[place]
 
     def get_wide_values() -> None:
         call()
-        for place, slot, sign in items:
+        for place, slot, sign, _ in items:
             value = values[place]
             if not -LARGEST_WHOLE <= value <= LARGEST_WHOLE:
                 refuse(place, value)
@@ -100,20 +140,21 @@ def getting_booleans(call: Call, memory: memoryview[float], values: Any, items: 
 
     def get_values() -> None:
         call()
-        for place, slot, _ in items:
+        for place, slot, *_ in items:
             memory[slot] = 1.0 if values[place] else 0.0
 
     return get_values
 
 
-def copying(memory: memoryview[float], source: int, target: int, count: int) -> Call:
-    """Copy `count` slots."""
-    values, place = memory[source : source + count], slice(target, target + count)
+def copying(memory: memoryview[float], copy: Copy) -> Call:
+    """What copies slots."""
+    values = memory[copy.source : copy.source + copy.count]
+    place = slice(copy.target, copy.target + copy.count)
 
-    def copy() -> None:
+    def copy_values() -> None:
         memory[place] = values
 
-    return copy
+    return copy_values
 
 
 def one_after_the_other(*calls: Call) -> Call:

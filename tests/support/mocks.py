@@ -14,7 +14,7 @@ from evcosim.cosim.plan import Block, Plan, UnitPlan
 from evcosim.cosim.resolve import Options, participating, resolve
 from evcosim.cosim.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system import System, SystemFile
-from evcosim.master.algorithm import Engine
+from evcosim.master.algorithm import PythonEngine
 from evcosim.master.initialization import initialize
 from evcosim.master.unit import Value
 
@@ -130,15 +130,15 @@ def plan_of(
     )
 
 
-def started(units: list[MockUnit], plan: Plan) -> Engine:
+def started(units: list[MockUnit], plan: Plan) -> PythonEngine:
     """An engine of mocks, initialized and ready for its first step."""
     by_name = {u.name: u for u in units}
-    engine = Engine(plan, by_name)
+    engine = PythonEngine(plan, by_name)
     initialize(by_name, plan)
     engine.start()
     return engine
 
 
-def column(engine: Engine, name: str) -> NDArray[np.float64]:
+def column(engine: PythonEngine, name: str) -> NDArray[np.float64]:
     """The recorded values of a variable, one for each step done and one for now."""
     return engine.recorded().column([c.name for c in engine.plan.columns].index(name))

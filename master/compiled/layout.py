@@ -1,0 +1,89 @@
+"""The tables that the kernel follows, and what their columns mean.
+
+A table is an array of 8-byte numbers with a fixed number of columns; a column holds int64 or float64. The
+kernel receives one array of the tables' addresses. A slot is an index of the run's memory.
+"""
+
+from __future__ import annotations
+
+STATE, NUMBERS, MEMORY, OPS, ROUTES, EFFECTS, CALLS, ITEMS, UNITS, SIGNALS, SINKS, RAWS, WAITS = range(13)
+ARRIVALS, COLUMNS, ROWS_OF_RUN, DRIVES, LOGS, LOG, TICKS, TIMES_OF_OPS = range(13, 21)
+TABLES = 21
+"""The tables, in the order of their addresses."""
+
+# ---- operations: the actions of the schedule, taken apart into what the kernel does at a stretch
+
+KIND, DUE, EVERY, FIRST, A, B, C = range(7)
+OPERATION = 7
+"""Columns of OPS: done at step DUE, which then becomes DUE + EVERY; EVERY and FIRST are the action's."""
+
+TAKE = 0  # B ROUTES from row A on
+CALL = 1  # the C call in row A of CALLS, which sets or gets values
+STEP = 2  # the steps of the unit in row A of UNITS
+CHECK = 3  # B slots from A on hold finite numbers
+COPY = 4  # C slots from A on to those from B on
+SEND = 5  # B SIGNALS from row A on; C: the message's place in LOGS, or -1
+RECORD = 6  # B COLUMNS
+DRIVE = 7  # slot A gets the value of stimulus B
+EFFECT = 8  # B EFFECTS from row A on
+KEEP = 9  # what the message in row A of WAITS sent waits
+DELIVER = 10  # and arrives
+PYTHON_ACT = 11  # what the Python engine does for action A
+
+SOURCE, SINK, SCALE, ADD = range(4)
+ROUTE = 4
+"""Columns of ROUTES and SINKS: scale * x + add. What shall add nothing is -0.0, which changes no double."""
+
+SLOT, OVERRIDES, VALUE_OF = range(3)
+EFFECT_WIDTH = 3
+"""Columns of EFFECTS: the value takes the place of what is in the slot, or is added to it."""
+
+# ---- C calls
+
+FUNCTION, COMPONENT, WARNINGS = range(3)
+"""First columns of CALLS and UNITS: addresses, and how often the call answered Warning."""
+REFERENCES, COUNT, VALUES, TWICE, FORMAT, FIRST_ITEM = range(3, 9)
+CALL_WIDTH = 9
+"""Columns of CALLS: addresses of the value references and the buffer, their count (TWICE: passed again behind
+the values, as FMI 3.0 has it), and the buffer's format with the row of ITEMS for its first value."""
+IN_PLACE = 0  # no format: the values are a part of the memory
+GETS = 100  # added to the format where values are read
+F64, F32, I8, U8, I16, U16, I32, U32, I64, U64, B8, B32 = range(1, 13)
+
+SIGN, LOW, HIGH = range(1, 4)
+ITEM = 4
+"""Columns of ITEMS, after SLOT: what a value is multiplied with, and what fits into the buffer."""
+
+STEPS, STEP_SIZE, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 10)
+UNIT = 10
+"""Columns of UNITS: FMU steps within a period, their size, and whether (ANSWERS) and where there are the four
+answers of FMI 3.0."""
+
+# ---- the channel
+
+FROM, MODE, SATURATES, TO, RECEIVERS, TIMES, FIRST_TIME = range(7)
+IN_SCALE, IN_ADD, LEAST, GREATEST, RESOLUTION, OFFSET, OUT_ADD, BELOW, ABOVE = range(7, 16)
+SIGNAL = 16
+"""Columns of SIGNALS: the sender's slot; the rounding; whether a value out of range becomes a raw value BELOW
+or ABOVE; RECEIVERS rows of SINKS from TO on; how often out of range, and the step of the first; the map to
+the bus' unit; the values in range; scale and offset of the raw value, and what decoding adds."""
+FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE = range(5)
+
+PLACE, ROWS, WIDTH, ARRIVAL = range(4)
+WAIT = 4
+"""Columns of WAITS: where a message's values wait, and its first row in ARRIVALS (slot, mailbox)."""
+
+# ---- a chunk
+
+WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, DETAIL, PYTHON, CLOCK, CLOCK_A, CLOCK_B = range(11)
+STATE_SIZE = 11
+"""Places in STATE: steps wanted and done, the first one, how many OPS there are, for how many steps there are
+values of stimuli; the operation that the kernel stopped at, with a detail; addresses of the function of
+Python and of the clock, and the clock's arguments, of which one is the address of TICKS."""
+START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)
+NUMBERS_SIZE = 6
+"""Places in NUMBERS: start time and step size, how long a chunk may take, a value that Python is asked about,
+and how many seconds the two numbers of TICKS are."""
+
+DONE, BAD_STATUS, BAD_END, NO_FIT, NOT_FINITE, RAISED = range(6)
+"""What the kernel returns. DETAIL is the status of a call, or the place of a value that does not fit."""
