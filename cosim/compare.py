@@ -125,6 +125,18 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
     )
 
 
+def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
+    """Time [s] and b - a of a common variable, in its unit in `a`, at the times at which they are compared.
+
+    Raises ConfigError where the two measure different quantities.
+    """
+    grid = _Grid.of(a, b)
+    variable, other = a.variable(name), b.variable(name)
+    convert, _ = _conversion(other.unit, variable.unit)
+    values = grid.values_of(b, variable if variable.held else other)
+    return grid.time, convert.scale * values + convert.offset - a.column(name)[grid.rows]
+
+
 @dataclasses.dataclass(frozen=True)
 class _Grid:
     """The times at which two runs are compared: rows `first` to `last` of `a`."""

@@ -65,6 +65,7 @@ _STYLES = {"solid": _DASHES[0], "dashed": _DASHES[1], "dotted": _DASHES[2], "das
 # Backgrounds of the states: pale, of falling lightness, so that they differ in gray as well.
 _SHADES = ("#FFFFFF", "#FBE3C0", "#BBD7EE", "#F3CDE0", "#BFE3CF", "#D9D9D9")
 
+_OVERLAY = (1.7, 1.0)  # widths of two runs over each other, and of their difference
 _WIDTH = 10.0  # inches; at _DPI 1440 pixels
 _DPI = 144
 _POINTS = 40_000  # of all lines together: about 1 MB of SVG
@@ -116,7 +117,8 @@ def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None 
 def draw_comparison(
     a: Results, b: Results, names: Sequence[str] | None = None, labels: tuple[str, str] = ("a", "b")
 ) -> Figure:
-    """Two runs over each other, a panel for each variable: those named, or the six that differ most.
+    """Two runs over each other, and beside that b - a; a row for each variable: those named, or the six that
+    differ most.
 
     Raises ConfigError when the runs have no variable in common, or one is named that they have not.
     """
@@ -127,19 +129,49 @@ def draw_comparison(
     if not names:
         raise ConfigError("the two results have no variable in common that can be compared")
     with style():
-        figure, panels = _panels([1.0] * len(names), f"{labels[0]} and {labels[1]}")
+        figure, panels = _grid(
+            len(names), 2, 1.9 * len(names) + 1.3, _comparison_title(a, b), True, None, _OVERLAY
+        )
         clock = _Clock.of(a, b)
-        limit = _points_per_line(2 * len(names))
+        limit = _points_per_line(3 * len(names))
         looks = (_Look(COLORS[0], _DASHES[0], 2.6), _Look(COLORS[1], _DASHES[1], 1.2))
-        for axes, name in zip(panels, names, strict=True):
+        for (axes, beside), name in zip(panels, names, strict=True):
             unit = a.variable(name).unit or b.variable(name).unit
             for results, label, look in zip((a, b), labels, looks, strict=True):
                 _draw_signal(axes, results, SignalSpec(name=name, label=label), unit, clock, limit, look)
             _fit_axis(axes)
             _label_axis(axes, name, unit)
-        _add_legend(panels[0])
-        _finish(figure, panels, clock, None)
+            _draw_difference(beside, a, b, name, unit, clock, limit)
+        handles, shown = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, shown, loc="outside lower center", ncols=2)
+        panels[0, 1].set_title("second run minus first", fontsize=10)
+        for column in (0, 1):
+            _finish(figure, list(panels[:, column]), clock, None)
         return figure
+
+
+def _comparison_title(a: Results, b: Results) -> str:
+    titles = [_title(a), _title(b)]
+    return titles[0] if titles[0] == titles[1] else " and ".join(filter(None, titles))
+
+
+def _draw_difference(
+    axes: Axes, a: Results, b: Results, name: str, unit: str, clock: _Clock, limit: int
+) -> None:
+    from .compare import difference
+
+    times, values = difference(a, b, name)
+    keep = thinned(values, limit)
+    held = a.variable(name).held
+    axes.plot(
+        clock.scale * times[keep],
+        values[keep],
+        color=COLORS[3],
+        linewidth=0.6 if _is_band(values[keep]) else 1.0,
+        drawstyle="steps-post" if held else "default",
+    )
+    _fit_axis(axes)
+    axes.set_ylabel(f"[{pretty(unit)}]" if unit else "")
 
 
 def save(figure: Figure, folder: Path, stem: str = "figure") -> tuple[Path, Path]:
@@ -187,12 +219,20 @@ def canvas(
 
 
 def _grid(
-    rows: int, columns: int, tall: float, title: str, share_x: bool, ratios: Sequence[float] | None
+    rows: int,
+    columns: int,
+    tall: float,
+    title: str,
+    share_x: bool,
+    ratios: Sequence[float] | None,
+    widths: Sequence[float] | None = None,
 ) -> tuple[Figure, NDArray[Any]]:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, tall), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=share_x, height_ratios=ratios)
+    axes = figure.subplots(
+        rows, columns, squeeze=False, sharex=share_x, height_ratios=ratios, width_ratios=widths
+    )
     if title:
         figure.suptitle(title, fontsize=12, fontweight="bold")
     return figure, axes
@@ -300,7 +340,7 @@ def _draw_signal(
         linestyle=look.dashes,
         linewidth=signal.weight or (0.6 * look.width if _is_band(values[keep]) else look.width),
         drawstyle="steps-post" if held else "default",
-        label="\n".join(textwrap.wrap(label, 26, break_on_hyphens=False)),
+        label=broken(label, 26),
     )
 
 
@@ -332,8 +372,29 @@ def thinned(values: Array, limit: int) -> NDArray[np.intp]:
 
 def _label_axis(axes: Axes, label: str, unit: str) -> None:
     shown = f"[{pretty(unit)}]" if unit else ""
-    wrapped = "\n".join(textwrap.wrap(label, 24))
+    wrapped = broken(label, 24)
     axes.set_ylabel(f"{wrapped}\n{shown}" if len(label) > 14 and shown else f"{wrapped} {shown}".strip())
+
+
+def broken(text: str, width: int) -> str:
+    """A text on lines of at most `width` characters: broken after spaces, then after the dots and slashes of
+    names, then after their other marks. What has none of them stays longer."""
+    lines = [""]
+    for word in text.split():
+        for i, part in enumerate(_parts(word, width)):
+            gap = " " if i == 0 and lines[-1] else ""
+            if lines[-1] and len(lines[-1]) + len(gap) + len(part) > width:
+                lines.append(part)
+            else:
+                lines[-1] += gap + part
+    return "\n".join(lines)
+
+
+def _parts(word: str, width: int, marks: tuple[str, ...] = (r"./\\", "_-")) -> list[str]:
+    if len(word) <= width or not marks:
+        return [word]
+    parts = re.findall(f"[^{marks[0]}]*[{marks[0]}]+|[^{marks[0]}]+", word)
+    return [piece for part in parts for piece in _parts(part, width, marks[1:])]
 
 
 def _fit_axis(axes: Axes) -> None:

@@ -21,19 +21,28 @@ def compare(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw what differs most (.png, .svg, .pdf).")
     ] = None,
+    signals: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATTERN", help="Only these variables, as in 'vehicle.*'; can be given again."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
     """Compare two results; exit code 1 when they differ."""
     from ...cosim import compare as comparing
     from ...cosim.results import Results
     from .console import print_json, print_table
+    from .plot import chosen
 
     first, second = Results.read(a), Results.read(b)
+    if signals:
+        first = chosen(first, signals)
+        second = second.part(slice(None), [name for name in first.names if name in second])
     found = comparing.compare(first, second, tolerance, relative)
     if plot is not None:
         from ...cosim import figures
 
-        figures.write(figures.draw_comparison(first, second, labels=(str(a), str(b))), plot)
+        names = second.names if signals else None
+        figures.write(figures.draw_comparison(first, second, names, labels=(str(a), str(b))), plot)
     if as_json:
         print_json(dataclasses.asdict(found) | {"equal": found.equal})
         return 0 if found.equal else 1

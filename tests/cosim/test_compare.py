@@ -1,3 +1,4 @@
+import dataclasses
 import math
 
 import numpy as np
@@ -6,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from evcosim.cosim.compare import compare, worst
+from evcosim.cosim.compare import compare, difference, worst
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results import Results, ResultVariable
 
@@ -138,3 +139,14 @@ def test_the_table_tells_what_differs() -> None:
 def test_a_tolerance_is_a_number_from_0(tolerance: float) -> None:
     with pytest.raises(ConfigError, match="must not be negative"):
         compare(one([1.0]), one([1.0]), tolerance)
+
+
+def test_a_difference_is_signed_and_in_the_unit_of_the_first() -> None:
+    a, b = one([1.0, 2.0, 4.0]), one([3.6, 10.8, 14.4], dataclasses.replace(SPEED, unit="km/h"))
+    assert a.variables[0].unit == "m/s"
+    times, values = difference(a, b, SPEED.name)
+    assert list(times) == list(a.time)
+    assert values == pytest.approx([0.0, 1.0, 0.0])
+    assert difference(a, a, SPEED.name)[1] == pytest.approx(np.zeros(3), abs=0.0)
+    largest = compare(a, b).rows[0].difference
+    assert largest == pytest.approx(np.max(np.abs(values)))

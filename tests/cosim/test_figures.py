@@ -9,7 +9,16 @@ from hypothesis.extra import numpy as arrays
 
 from evcosim.cosim import figures
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.figures import FigureSpec, default_spec, draw, draw_comparison, pretty, save, thinned
+from evcosim.cosim.figures import (
+    FigureSpec,
+    broken,
+    default_spec,
+    draw,
+    draw_comparison,
+    pretty,
+    save,
+    thinned,
+)
 from evcosim.cosim.files import validate
 from evcosim.cosim.results import Results, ResultVariable
 
@@ -258,14 +267,32 @@ def test_a_comparison_shows_what_differs_most() -> None:
     a, b = scooter(), scooter(301)
     other = Results(b.time, b.data * 1.01, b.variables)
     figure = draw_comparison(a, other, ["vehicle.speed", "ecu.state"], labels=("old", "new"))
-    assert [axes.get_ylabel() for axes in figure.axes] == ["vehicle.speed [m/s]", "ecu.state"]
-    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["old", "new"]
+    assert [axes.get_ylabel() for axes in figure.axes] == ["vehicle.speed [m/s]", "[m/s]", "ecu.state", ""]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["old", "new"]
     changed = scooter()
     changed.data[50, changed.names.index("vehicle.speed")] += 1.0
-    assert [axes.get_ylabel() for axes in draw_comparison(a, changed).axes] == ["vehicle.speed [m/s]"]
+    overlay, beside = draw_comparison(a, changed).axes
+    assert overlay.get_ylabel() == "vehicle.speed [m/s]"
+    (line,) = beside.get_lines()
+    assert sorted(line.get_ydata())[-2:] == pytest.approx([0.0, 1.0])
     nothing = Results(a.time, a.data[:, :1], [ResultVariable("x.y")])
     with pytest.raises(ConfigError, match="no variable in common"):
         draw_comparison(a, nothing)
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("ecu.acceleration_estimate", ["ecu.", "acceleration_estimate"]),
+        ("controller.rear_steering_angle", ["controller.", "rear_steering_angle"]),
+        ("ecu.a_very_long_name_of_a_variable_that", ["ecu.a_very_long_name_of_", "a_variable_that"]),
+        ("speed of the front wheel of the vehicle", ["speed of the front wheel", "of the vehicle"]),
+        ("x" * 40, ["x" * 40]),
+        ("", [""]),
+    ],
+)
+def test_names_are_broken_at_their_marks(text: str, lines: list[str]) -> None:
+    assert broken(text, 24).split("\n") == lines
 
 
 WRONG = [
