@@ -8,13 +8,12 @@ is weak, or hardly better than another one, is the user's to choose.
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import re
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from .errors import ConfigError
 from .interface import UnitInterface, VariableInfo
+from .likeness import likeness, unit_in
 from .requirements import Requirement
 from .system import MapEntry, UnitEntry
 from .units import conversion, defined
@@ -22,12 +21,6 @@ from .units import conversion, defined
 Verdict = Literal["fits", "fits after conversion", "your choice", "missing", "unused"]
 
 _WEAK, _MARGIN, _CANDIDATES = 0.45, 0.1, 4
-_SYNONYMS = (
-    {"speed", "velocity", "v", "vel", "vx"}, {"throttle", "pedal", "accelerator", "u"},
-    {"acceleration", "a", "accel", "ax"}, {"force", "f"}, {"torque", "tau", "trq"}, {"power", "p", "pel"},
-    {"distance", "s", "position", "x"}, {"mass", "m", "total"}, {"grade", "slope", "incline"},
-    {"angle", "delta", "theta"}, {"brake", "braking"}, {"current", "i"}, {"voltage", "u"}, {"soc", "charge"},
-)  # fmt: skip # words of the field that mean the same
 _NOTHING = VariableInfo("")
 _CAUSALITIES = {
     "input": ("input",),
@@ -39,14 +32,22 @@ _CAUSALITIES = {
 @dataclasses.dataclass(frozen=True)
 class Row:
     """One line of a report: what the system needs ("" for what the FMU has beside it), the FMU's variable
-    ("" for none), and why. `candidates` are the variables that could be chosen, the best first."""
+    ("" for none), and the reason of the verdict.
+
+    `needed` are who gives, takes or sets it in the system. `candidates` are the variables that could be
+    chosen, the best first. `unit` is the unit of measure that stands in for one that the FMU does not declare
+    ("": its own counts), `invert` whether a mapping that is there turns the sign.
+    """
 
     need: str
     role: str
     variable: str
     verdict: Verdict
     reason: str
+    needed: tuple[str, ...] = ()
     candidates: tuple[str, ...] = ()
+    unit: str = ""
+    invert: bool = False
 
     @property
     def others(self) -> list[str]:
@@ -64,6 +65,7 @@ def fit(needs: Sequence[Requirement], offer: UnitInterface, entry: UnitEntry | N
     for role in ("input", "output", "parameter"):
         wanted = [need for need in needs if need.role == role]
         rows += _of_role(wanted, role, offer, mapped.get(role, {}), set(entry.absent if entry else ()))
+        rows += _beside(mapped.get(role, {}), role, {need.name for need in wanted})
     used = {row.variable for row in rows}
     for v in offer.of_causality("input"):
         if v.name not in used:
@@ -85,7 +87,7 @@ def _of_role(
     rows = []
     for need in needs:
         if need.name in absent:
-            rows.append(Row(need.name, role, "", "fits", "absent, as the mapping says"))
+            rows.append(Row(need.name, role, "", "fits", "absent, as the mapping says", need.why))
         elif need.name in mapped:
             rows.append(_as_mapped(need, mapped[need.name], offer))
         else:
@@ -93,15 +95,27 @@ def _of_role(
     return rows
 
 
+def _beside(mapped: Mapping[str, MapEntry], role: str, needed: set[str]) -> list[Row]:
+    """What a mapping names and the system in this scenario does not need."""
+    reason = "as mapped; nothing needs it in this scenario"
+    return [
+        Row(name, role, entry.variable, "unused", reason, unit=entry.unit or "", invert=entry.invert)
+        for name, entry in mapped.items()
+        if name not in needed
+    ]
+
+
 def _as_mapped(need: Requirement, entry: MapEntry, offer: UnitInterface) -> Row:
-    variable = offer.variables.get(entry.variable)
-    if variable is None:
-        return Row(need.name, need.role, entry.variable, "missing", "the FMU has no variable of this name")
-    if entry.unit is not None:
-        variable = dataclasses.replace(variable, unit=entry.unit)
-    verdict, reason = _converts(need, variable, offer)
-    sign = ", inverted" if entry.invert else ""
-    return Row(need.name, need.role, entry.variable, verdict, f"as mapped{sign}: {reason}")
+    found = offer.variables.get(entry.variable)
+    unit, invert = entry.unit or "", entry.invert
+    if found is None:
+        verdict: Verdict = "missing"
+        reason = offer.unusable.get(entry.variable, "the FMU has no variable of this name")
+    else:
+        known = found if entry.unit is None else dataclasses.replace(found, unit=entry.unit)
+        verdict, told, _ = _converts(need, known, offer)
+        reason = f"as mapped{', inverted' if invert else ''}: {told}"
+    return Row(need.name, need.role, entry.variable, verdict, reason, need.why, unit=unit, invert=invert)
 
 
 def _assigned(
@@ -129,45 +143,36 @@ def _score(need: Requirement, v: VariableInfo, offer: UnitInterface) -> float:
         return 0.0
     if v.name == need.name:
         return 2.0
-    likeness = _likeness(
-        f"{need.name} {need.variable.description}", f"{v.name} {v.description}", need.name, v.name
-    )
+    alike = likeness(need.name, need.variable.description, v.name, v.description)
     same = 0.3 if v.unit and need.variable.unit else 0.0
-    return min(1.0, 0.7 * likeness + same) * (0.8 if v.causality == "local" else 1.0)
+    return min(1.0, 0.7 * alike + same) * (0.8 if v.causality == "local" else 1.0)
 
 
-def _likeness(told: str, other: str, name: str, other_name: str) -> float:
-    """From 0 to 1: how many words of name and description mean the same, or else how alike the names look."""
-    a, b = _words(told), _words(other)
-    shared = len(a & b) / max(1, min(len(a), len(b)))
-    return max(shared, difflib.SequenceMatcher(None, name.lower(), other_name.lower()).ratio() * 0.8)
-
-
-def _words(text: str) -> set[str]:
-    parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", text)
-    words = {part.lower() for part in parts} - {"the", "of", "and", "to", "at", "in"}
-    return words | {min(group) for word in words for group in _SYNONYMS if word in group}
-
-
-def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple[Verdict, str]:
-    """Whether the values of a variable can be those of a need, and what happens to them."""
+def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple[Verdict, str, str]:
+    """Whether the values of a variable can be those of a need, what happens to them, and the unit of measure
+    to assume where the FMU declares none ("": its own counts)."""
     if v.type != need.variable.type and "String" in (v.type, need.variable.type):
-        return "missing", f"is a {v.type}, not a {need.variable.type}"
-    wanted, unit = need.variable.unit, v.unit
-    if unit == wanted or (wanted in ("", "1") and unit in ("", "1")):
-        return "fits", f"[{unit}]" if unit else "no unit of measure on both sides"
+        return "missing", f"is a {v.type}, not a {need.variable.type}", ""
+    wanted = need.variable.unit
+    unit = v.unit or unit_in(v.name)
+    if unit == wanted == v.unit or (wanted in ("", "1") and unit in ("", "1")):
+        return "fits", f"[{unit}]" if unit else "no unit of measure on both sides", ""
     if not unit:
-        return "your choice", f"declares no unit of measure; the system has [{wanted}]"
+        return "your choice", f"declares no unit of measure; the system has [{wanted}]", wanted
     if not wanted:
-        return "your choice", f"is in [{unit}]; the system declares no unit of measure"
+        return "your choice", f"is in [{unit}]; the system declares no unit of measure", ""
     try:
         map_ = conversion(defined(unit, offer.units_of_measure), defined(wanted))
     except ConfigError:
-        return "missing", f"[{unit}] is no unit for what the system has in [{wanted}]"
+        said = "" if v.unit else "its name says "
+        return "missing", f"{said}[{unit}], no unit for what the system has in [{wanted}]", ""
+    if not v.unit:
+        told = f"declares no unit of measure; its name says [{unit}], the system has [{wanted}]"
+        return "your choice", told, unit
     if map_.identity:
-        return "fits", f"[{unit}] is [{wanted}]"
+        return "fits", f"[{unit}] is [{wanted}]", ""
     shift = f" + {map_.offset:g}" if map_.offset else ""
-    return "fits after conversion", f"1 [{unit}] is {map_.scale:g}{shift} [{wanted}]"
+    return "fits after conversion", f"1 [{unit}] is {map_.scale:g}{shift} [{wanted}]", ""
 
 
 def _judged(
@@ -176,10 +181,11 @@ def _judged(
     scored = sorted(((_score(need, c, offer), c.name) for c in candidates), key=lambda pair: -pair[0])
     named = tuple(name for score, name in scored[:_CANDIDATES] if score > 0.0)
     if v is None:
-        return Row(
-            need.name, need.role, "", "missing", f"nothing has a unit for [{need.variable.unit}]", named
-        )
-    verdict, reason = _converts(need, v, offer)
+        reason = "no variable is left that could be it"
+        if not named:
+            reason = f"nothing has a unit of measure for [{need.variable.unit}]"
+        return Row(need.name, need.role, "", "missing", reason, need.why, named)
+    verdict, reason, unit = _converts(need, v, offer)
     own = _score(need, v, offer)
     rival = max((score for score, name in scored if name != v.name), default=0.0)
     if v.name != need.name and own < _WEAK:
@@ -188,7 +194,7 @@ def _judged(
         verdict, reason = "your choice", f"others are as likely; {reason}"
     if v.causality == "local":
         reason += "; a local variable, read as an output"
-    return Row(need.name, need.role, v.name, verdict, reason, named)
+    return Row(need.name, need.role, v.name, verdict, reason, need.why, named, unit)
 
 
 def fits(rows: Sequence[Row]) -> bool:

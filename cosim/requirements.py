@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 from .interface import UnitInterface, VariableInfo
+from .presentation import figure_spec, metric_specs
 from .scenario import Scenario
-from .system import System
+from .system import Connection, System
 
 Role = Literal["input", "output", "parameter"]
 
@@ -47,20 +48,47 @@ def requirements(
     )
 
 
+def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface) -> list[str]:
+    """All that a system in this scenario needs of a unit and that `offer` does not have.
+
+    Each is a clause: the variable and who gives or takes it. Units that the scenario leaves out need nothing.
+    """
+    own, out = f"{unit}.", set(scenario.file.leave_out)
+    used: list[tuple[str, str]] = []
+    for c in system.file.connect:
+        takers = [to for to in c.to if _unit(to) not in out]
+        if _unit(c.source) not in out and (takers or c.via):
+            used += _ends(c, takers)
+    used += [(stimulus.to, f"stimulus of {scenario.name}") for stimulus in scenario.file.stimuli]
+    spec = figure_spec(system, scenario)
+    shown = [s.name for panel in spec.panels for s in panel.signals] if spec else []
+    shown += [name for metric in metric_specs(system, scenario) for name in metric.all_signals]
+    used += [(name, "figure or metrics") for name in shown]
+    found: dict[str, list[str]] = {}
+    for name, why in used:
+        if name.startswith(own) and name.removeprefix(own) not in offer.variables:
+            found.setdefault(name.removeprefix(own), []).append(why)
+    return [f"'{name}' ({'; '.join(dict.fromkeys(why))})" for name, why in found.items()]
+
+
+def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:
+    """The variables at the ends of a connection, each with what is at the other end."""
+    via = f" over {c.via}" if c.via else ""
+    taken = f"to {', '.join(takers)}{via}" if takers else f"to {c.via}"
+    return [*((to, f"from {c.source}{via}") for to in takers), (c.source, taken)]
+
+
+def _unit(variable: str) -> str:
+    return variable.partition(".")[0]
+
+
 def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role, str, str]]:
     """(role, name, why) for each place that names a variable of the unit."""
     own = f"{unit}."
     for c in system.file.connect:
-        via = f" over {c.via}" if c.via else ""
-        for to in c.to:
-            if to.startswith(own):
-                yield "input", to.removeprefix(own), f"from {c.source}{via}"
-        if c.source.startswith(own):
-            yield (
-                "output",
-                c.source.removeprefix(own),
-                f"to {', '.join(c.to) or c.via}{via if c.to else ''}",
-            )
+        for name, why in _ends(c, c.to):
+            if name.startswith(own):
+                yield "output" if name == c.source else "input", name.removeprefix(own), why
     for stimulus in scenario.file.stimuli:
         if stimulus.to.startswith(own):
             yield "input", stimulus.to.removeprefix(own), f"stimulus of {scenario.name}"

@@ -31,6 +31,7 @@ from ..cosim.interface import UnitInterface
 from ..cosim.mapping import present, without_absent
 from ..cosim.plan import Plan, UnitPlan
 from ..cosim.presentation import check_specs, figure_spec, metric_specs
+from ..cosim.requirements import lacking
 from ..cosim.resolve import Options, check_effect, checked, participating, resolve
 from ..cosim.results import Results
 from ..cosim.scenario import Scenario, load_scenario
@@ -64,11 +65,12 @@ class Prepared:
 
 def prepare(
     system: str | Path | System,
-    scenario: str | Path | None = None,
+    scenario: str | Path | Scenario | None = None,
     options: Options | None = None,
     fmus: Mapping[str, str | Path] | None = None,
     bus: BusVariation | None = None,
     swaps: Mapping[str, str | Path] | None = None,
+    strict: bool = False,
 ) -> Prepared:
     """Read and check all that a run needs; the arguments are those of `Simulation`.
 
@@ -76,21 +78,27 @@ def prepare(
     """
     options = options or Options()
     read = system if isinstance(system, System) else load_system(str(system))
-    driven = load_scenario(read, None if scenario is None else str(scenario))
+    if isinstance(scenario, Scenario):
+        driven = scenario
+    else:
+        driven = load_scenario(read, None if scenario is None else str(scenario))
     if bus is not None:
         if options.ideal:
             raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
         read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
     read = swapped(read, swaps or {})
     read, driven, left_out = without_absent(read, driven)
-    loaded = _read_fmus(read, driven, fmus or {})
+    loaded = _read_fmus(read, driven, fmus or {}, strict)
     interfaces = {
         unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
         for unit, fmu in loaded.items()
     }
     for unit, interface in interfaces.items():
         _check_absent(read, unit, interface)
-    plan = _advised(lambda: resolve(read, driven, interfaces, options), swaps)
+    for unit, path in (swaps or {}).items():
+        if unit in interfaces:
+            _check_complete(read, driven, unit, interfaces[unit], path)
+    plan = _advised(read, lambda: resolve(read, driven, interfaces, options), swaps)
     plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
@@ -100,19 +108,20 @@ def prepare(
 class Simulation:
     """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
 
-    `system` and `scenario` are built-in names or paths of TOML files, a system also one made in memory;
+    `system` and `scenario` are built-in names or paths of TOML files, or made in memory;
     `parameters` ("unit.parameter" to value) override those of the files; `fmus` (unit to path) put other
     FMUs in the place of the named ones, `swaps` (unit to swap file) FMUs with other names; `ideal` leaves the
     buses out (unit conversion only); `bus` varies all of them (BusVariation); `log_frames` keeps the frames
     for `write_can_log`; `isolation` puts all units into processes of their own ("process") or none ("none"),
-    whatever the system says; `engine` is "compiled" (needs numba) or "python", which give the same results.
+    whatever the system says; `engine` is "compiled" (needs numba) or "python", which give the same results;
+    `strict` refuses every FMU whose description has defects.
     Raises ConfigError before any step for every input that does not fit.
     """
 
     def __init__(
         self,
         system: str | Path | System,
-        scenario: str | Path | None = None,
+        scenario: str | Path | Scenario | None = None,
         *,
         parameters: Mapping[str, Value] | None = None,
         fmus: Mapping[str, str | Path] | None = None,
@@ -124,9 +133,10 @@ class Simulation:
         isolation: Isolation | None = None,
         swaps: Mapping[str, str | Path] | None = None,
         engine: EngineName | None = None,
+        strict: bool = False,
     ) -> None:
         options = Options(parameters or {}, algorithm, stop_time, ideal)
-        prepared = prepare(system, scenario, options, fmus, bus, swaps)
+        prepared = prepare(system, scenario, options, fmus, bus, swaps, strict)
         made, self._notice = engine_class(engine or prepared.plan.experiment.engine)
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
@@ -158,6 +168,11 @@ class Simulation:
         return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry))
 
     # ---- a loop of one's own
+
+    @property
+    def units(self) -> Mapping[str, Unit]:
+        """The loaded units by name; none after the end."""
+        return self._units
 
     @property
     def time(self) -> float:
@@ -388,6 +403,7 @@ def simulate(
     isolation: Isolation | None = None,
     swaps: Mapping[str, str | Path] | None = None,
     engine: EngineName | None = None,
+    strict: bool = False,
     progress: Progress | None = None,
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
@@ -407,6 +423,7 @@ def simulate(
         isolation=isolation,
         swaps=swaps,
         engine=engine,
+        strict=strict,
     )
     try:
         with simulation:
@@ -442,7 +459,21 @@ def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
             raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
 
 
-def _advised(resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
+def _check_complete(
+    system: System, scenario: Scenario, unit: str, interface: UnitInterface, path: str | Path
+) -> None:
+    """Raise ConfigError that tells all that a swapped unit lacks."""
+    if missing := lacking(system, scenario, unit, interface):
+        lines = "\n".join(f"unit '{unit}' has no variable {name}" for name in missing)
+        raise ConfigError(f"{path}: {lines}\nmap them, or declare them absent; {_advice(system, unit, path)}")
+
+
+def _advice(system: System, unit: str, path: str | Path) -> str:
+    name = system.path if DATA.resolve() not in system.path.resolve().parents else system.file.name
+    return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
+
+
+def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
     """The plan; an error of a run with swapped units says what shows all that is missing."""
     try:
         return resolved()
@@ -450,9 +481,7 @@ def _advised(resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | Non
         if not swaps:
             raise
         unit, path = next(iter(swaps.items()))
-        raise ConfigError(
-            f"{error}\n'evcosim check {path} --as SYSTEM.{unit}' shows what the system needs and what fits"
-        ) from error
+        raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
 
 
 def _defects(unit: str, fmu: Fmu) -> list[str]:
@@ -462,7 +491,9 @@ def _defects(unit: str, fmu: Fmu) -> list[str]:
     return [*shown, *([f"unit '{unit}': {fmu.path.name}: {more} more defects"] if more else [])]
 
 
-def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path]) -> dict[str, Fmu]:
+def _read_fmus(
+    system: System, scenario: Scenario, fmus: Mapping[str, str | Path], strict: bool
+) -> dict[str, Fmu]:
     entries = participating(system, scenario)
     for unit in fmus:
         if unit not in entries:
@@ -472,6 +503,6 @@ def _read_fmus(system: System, scenario: Scenario, fmus: Mapping[str, str | Path
     read = {}
     for unit, entry in entries.items():
         path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
-        read[unit] = read_fmu(path, entry.strict)
+        read[unit] = read_fmu(path, strict or entry.strict)
         check_runnable(read[unit])
     return read

@@ -58,3 +58,14 @@ def as_typed(options: Sequence[str]) -> Iterator[None]:
             if str(error).startswith(place):
                 raise ConfigError(f"--set {option}:{str(error).removeprefix(place)}") from error
         raise
+
+
+def seconds(option: str, text: str) -> float:
+    """A time as "5s", "500ms" or "5", in s. Raises ConfigError."""
+    import re
+
+    found = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ms|s|)\s*", text)
+    value = float(found[1]) * (1e-3 if found[2] == "ms" else 1.0) if found else 0.0
+    if not 0.0 < value <= 3600.0:
+        raise ConfigError(f"{option} {text}: it is a time of up to an hour, written 5s or 500ms")
+    return value

@@ -1,4 +1,4 @@
-"""`evcosim check`: whether an FMU fits into the place of a system's unit, before it is run."""
+"""`evcosim check`: whether an FMU fits into the place of a system's unit, and how it behaves there."""
 
 from __future__ import annotations
 
@@ -8,48 +8,75 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import ScenarioOption
+from .options import ScenarioOption, StrictOption
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...cosim.fit import Row
+    from ...cosim.interface import UnitInterface
+    from ...cosim.scenario import Scenario
+    from ...cosim.swap import SwapFile
+    from ...cosim.system import System
+    from ..trial.trial import Trial
 
 
 def check(
     file: Annotated[str, typer.Argument(metavar="FILE", help="An FMU, or a swap file that maps one.")],
     place: Annotated[str, typer.Option("--as", metavar="SYSTEM.UNIT", help="Whose place it would take.")],
     scenario: ScenarioOption = None,
+    trial: Annotated[
+        str | None,
+        typer.Option(
+            "--try", metavar="T", help="Run it too, for a time such as 5s, beside the present unit."
+        ),
+    ] = None,
     write: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a swap file, ready to edit.")
     ] = None,
+    strict: StrictOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
-    """Show whether an FMU fits in the place of a unit; exit code 1 when something is missing or to choose."""
+    """Show whether an FMU fits in the place of a unit.
+
+    Exit code 0: it fits, and the trial found no problem; 1: something is missing, to choose or a problem;
+    2: it cannot be checked at all.
+    """
     from ...cosim.fit import fits
-    from .console import print_json, print_table
+    from .arguments import seconds
+    from .console import print_json
 
-    fmu, rows = _compared(file, place, scenario)
-    complete = fits(rows)
-    if as_json:
-        print_json(
-            {"fmu": fmu, "place": place, "fits": complete, "rows": list(map(dataclasses.asdict, rows))}
-        )
-    else:
-        table = [(row.need or "-", row.role, row.variable or "-", row.verdict, _reason(row)) for row in rows]
-        print_table((place, "role", "variable of the FMU", "verdict", "why"), table)
-        print()
-    if write is not None:
-        from ...cosim.swap import written
-
-        written(write, fmu, place, rows)
+    duration = None if trial is None else seconds("--try", trial)
+    checked = _checked(file, place, scenario, strict)
     if not as_json:
-        _conclude(complete, rows, file, place, write)
-    return 0 if complete else 1
+        _show_rows(place, checked.rows)
+    tried = None if duration is None else _tried(checked, duration)
+    if tried is not None and not as_json:
+        _show_trial(tried)
+    if write is not None:
+        _write(checked, write, tried)
+    complete = fits(checked.rows)
+    if as_json:
+        print_json(_as_data(checked, complete, tried))
+    else:
+        _conclude(complete, checked, file, write, tried)
+    return 0 if complete and (tried is None or tried.passed) else 1
 
 
-def _compared(file: str, place: str, scenario: str | None) -> tuple[str, list[Row]]:
-    """The FMU's path, and the rows for what the system needs from the unit."""
+@dataclasses.dataclass(frozen=True)
+class _Checked:
+    """What was read, and the rows for what the system needs from the unit."""
+
+    place: str
+    system: System
+    scenario: Scenario
+    unit: str
+    fmu: Path
+    entry: SwapFile | None
+    rows: list[Row]
+
+
+def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.files import read_toml
     from ...cosim.fit import fit
@@ -66,33 +93,105 @@ def _compared(file: str, place: str, scenario: str | None) -> tuple[str, list[Ro
     system = load_system(name)
     if unit not in system.file.units:
         raise ConfigError(f"--as {place}: there is no unit '{unit}'{nearest(unit, system.file.units)}")
+    driven = load_scenario(system, scenario)
     entry = read_toml(Path(file), SwapFile) if file.endswith(".toml") else None
     path = fmu_file(entry.fmu, Path(file)) if entry else fmu_file(file)
-    fmu = read_fmu(path)
+    fmu = read_fmu(path, strict or (entry is not None and entry.strict))
     check_runnable(fmu)
-    present = read_fmu(fmu_file(system.file.units[unit].fmu, system.path)).interface
-    needs = requirements(system, load_scenario(system, scenario), unit, present)
-    return str(path), fit(needs, fmu.interface, entry)
+    needs = requirements(system, driven, unit, _there_now(system, unit))
+    return _Checked(place, system, driven, unit, path, entry, fit(needs, fmu.interface, entry))
+
+
+def _there_now(system: System, unit: str) -> UnitInterface:
+    """What the unit that the system has now offers. Raises ConfigError that says what it is needed for."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.mapping import present
+    from ..builtin import fmu_file
+    from ..fmi.fmu import read_fmu
+
+    entry, where = system.file.units[unit], f"{system.path}: units.{unit}"
+    try:
+        interface = read_fmu(fmu_file(entry.fmu, system.path)).interface
+    except ConfigError as error:
+        raise ConfigError(
+            f"{where}.fmu = '{entry.fmu}' cannot be read, so that nobody knows what this unit declares "
+            f"and what its place asks for:\n{error}\nput an FMU there that can be read, or a built-in one"
+        ) from error
+    return present(interface, entry, where)
+
+
+def _tried(checked: _Checked, duration: float) -> Trial:
+    from ...cosim.swap import entry_of
+    from ..trial.trial import try_unit
+
+    entry = entry_of(str(checked.fmu.resolve()), checked.rows, checked.entry)
+    names = [row.need for row in checked.rows if row.need and row.role != "parameter"]
+    return try_unit(checked.system, checked.scenario, checked.unit, entry, names, duration)
+
+
+def _write(checked: _Checked, path: Path, tried: Trial | None) -> None:
+    from ...cosim.swap import written
+
+    proposal = tried.proposal if tried else None
+    written(path, str(checked.fmu), checked.place, checked.rows, checked.entry, proposal)
+
+
+def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str, object]:
+    data: dict[str, object] = {
+        "fmu": str(checked.fmu),
+        "place": checked.place,
+        "fits": complete,
+        "rows": list(map(dataclasses.asdict, checked.rows)),
+    }
+    if tried is not None:
+        proposal = tried.proposal
+        data["trial"] = {
+            "duration": tried.duration,
+            "passed": tried.passed,
+            "findings": list(map(dataclasses.asdict, tried.findings)),
+            "proposed": {"substeps": proposal.substeps, "invert": [".".join(n) for n in proposal.invert]},
+        }
+    return data
+
+
+def _show_rows(place: str, rows: Sequence[Row]) -> None:
+    from .console import print_table
+
+    table = [(row.need or "-", row.role, row.variable or "-", row.verdict, _reason(row)) for row in rows]
+    print_table((place, "role", "variable of the FMU", "verdict", "why"), table)
+    print()
 
 
 def _reason(row: Row) -> str:
     told = row.verdict in ("your choice", "missing") and row.others
-    return f"{row.reason}; others: {', '.join(row.others)}" if told else row.reason
+    others = f"; others: {', '.join(row.others)}" if told else ""
+    return f"{row.reason}{others}" + (f" ({'; '.join(row.needed)})" if row.needed else "")
 
 
-def _conclude(complete: bool, rows: Sequence[Row], file: str, place: str, write: Path | None) -> None:
+def _show_trial(tried: Trial) -> None:
+    from .console import print_table
+
+    findings = [(f.what, f.verdict, f.text) for f in tried.findings]
+    print_table((f"trial of {tried.duration:g} s", "verdict", "what was seen"), findings)
+    print()
+
+
+def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, tried: Trial | None) -> None:
     from .console import counted
 
     counts: dict[str, int] = {}
-    for row in rows:
+    for row in checked.rows:
         counts[row.verdict] = counts.get(row.verdict, 0) + 1
+    left = sum(counts.get(verdict, 0) for verdict in ("your choice", "missing"))
+    problems = [f for f in tried.findings if f.verdict == "problem"] if tried else []
+    told = [f"{counted(left, 'row')} to decide"] if left else []
+    told += [counted(len(problems), "problem")] if problems else []
+    system, _, unit = checked.place.rpartition(".")
     print(", ".join(f"{n} {verdict}" for verdict, n in counts.items()))
-    system, _, unit = place.rpartition(".")
+    said = " and ".join(told) or "it fits"
     if write is not None:
-        print(f"written: {write}; then: evcosim run {system} --swap {unit}={write}")
+        print(f"{said}; written: {write}; then: evcosim run {system} --swap {unit}={write}")
     elif complete and file.endswith(".toml"):
-        print(f"it fits: evcosim run {system} --swap {unit}={file}")
+        print(f"{said}: evcosim run {system} --swap {unit}={file}")
     else:
-        left = sum(counts.get(verdict, 0) for verdict in ("your choice", "missing"))
-        said = f"{counted(left, 'row')} to decide" if left else "it fits"
-        print(f"{said}: evcosim check {file} --as {place} --write swap.toml writes the mapping")
+        print(f"{said}: evcosim check {file} --as {checked.place} --write swap.toml writes the mapping")

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from .options import StrictOption
+
 
 def info(
     what: Annotated[
@@ -22,6 +24,7 @@ def info(
     diagram: Annotated[
         Path | None, typer.Option(metavar="FILE", help="System: draw its units and connections (.png, .svg).")
     ] = None,
+    strict: StrictOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Show what an FMU offers or how a system is connected."""
@@ -31,8 +34,8 @@ def info(
     from .console import print_json
 
     if what.endswith(".toml") or what in system_names():
-        if causality or search:
-            raise ConfigError(f"--causality and --search choose variables of an FMU; {what} is a system")
+        if causality or search or strict:
+            raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")
         about = info_system.described(what)
         show = info_system.show
         if diagram is not None:
@@ -41,7 +44,7 @@ def info(
     else:
         if diagram is not None:
             raise ConfigError(f"--diagram draws a system; {what} is none")
-        about = info_fmu.described(fmu_path(what), causality or [], search)
+        about = info_fmu.described(fmu_path(what), causality or [], search, strict)
         show = info_fmu.show
     if as_json:
         print_json(about)

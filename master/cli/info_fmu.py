@@ -2,38 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .console import counted, number, print_fields, print_table
+from .info_capabilities import capabilities, limits
+
+if TYPE_CHECKING:
+    from ..fmi.fmu import Fmu
 
 _DIGITS = 9
+_MESSAGES, _LONGEST = 5, 240  # that are printed of a list of defects, and characters of each
 _COLUMNS = ("name", "causality", "variability", "type", "unit", "start", "min", "max", "description")
 
-_ABILITIES = {
-    "canHandleVariableCommunicationStepSize": "takes steps of changing size",
-    "canInterpolateInputs": "interpolates inputs within a step",
-    "canGetAndSetFMUstate": "saves and restores its state",
-    "canGetAndSetFMUState": "saves and restores its state",
-    "canSerializeFMUstate": "writes its state to bytes",
-    "canSerializeFMUState": "writes its state to bytes",
-    "providesDirectionalDerivative": "gives directional derivatives",
-    "providesDirectionalDerivatives": "gives directional derivatives",
-    "providesAdjointDerivatives": "gives adjoint derivatives",
-    "canRunAsynchronuously": "steps in the background",
-    "mightReturnEarlyFromDoStep": "may end a step early",
-    "canReturnEarlyAfterIntermediateUpdate": "ends a step early on request",
-    "hasEventMode": "has an event mode",
-    "providesIntermediateUpdate": "shows values within a step",
-    "providesEvaluateDiscreteStates": "evaluates discrete states",
-}
-_LIMITS = {
-    "needsCompletedIntegratorStep": "must be told of completed integrator steps",
-    "canBeInstantiatedOnlyOncePerProcess": "one instance in a process",
-    "canNotUseMemoryManagementFunctions": "allocates memory by itself",
-    "needsExecutionTool": "needs an execution tool",
-}
 _KINDS = {
     "coSimulation": "Co-Simulation",
     "modelExchange": "Model Exchange",
@@ -41,14 +24,16 @@ _KINDS = {
 }
 
 
-def described(path: Path, causalities: Sequence[str], search: str | None) -> dict[str, Any]:
+def described(
+    path: Path, causalities: Sequence[str], search: str | None, strict: bool = False
+) -> dict[str, Any]:
     """All that is shown of an FMU, with the variables of these causalities (none: all) that hold `search`.
 
-    Raises ConfigError when it is no FMU, or no variable has such a causality.
+    Raises ConfigError when it is no FMU, no variable has such a causality, or with `strict` it has defects.
     """
     from ..fmi.fmu import read_fmu
 
-    fmu = read_fmu(path)
+    fmu = read_fmu(path, strict)
     md = fmu.description
     kinds = {word: getattr(md, key) for key, word in _KINDS.items() if getattr(md, key, None) is not None}
     variables = [_variable(v) for v in md.modelVariables]
@@ -64,9 +49,14 @@ def described(path: Path, causalities: Sequence[str], search: str | None) -> dic
         "version": md.version or "",
         "license": md.license or "",
         "platforms": list(fmu.platforms),
+        "binary_for_this_machine": _has_binary(fmu),
+        "sources": [name for name in fmu.entries if name.startswith("sources/") and name[-1] != "/"],
+        "unpacked_size": fmu.unpacked,
         "python": fmu.holds_python,
-        "capabilities": {word: _capabilities(kind) for word, kind in kinds.items()},
-        "limits": list(dict.fromkeys(limit for kind in kinds.values() for limit in _true(kind, _LIMITS))),
+        "capabilities": {word: capabilities(kind) for word, kind in kinds.items()},
+        "limits": _limits(kinds.values(), fmu.holds_python),
+        "defects": list(fmu.defects),
+        "validator": _validated(path),
         "default_experiment": _experiment(md.defaultExperiment),
         "units_of_measure": [unit.name for unit in md.unitDefinitions],
         "number_of_variables": len(variables),
@@ -74,18 +64,28 @@ def described(path: Path, causalities: Sequence[str], search: str | None) -> dic
     }
 
 
-def _capabilities(kind: Any) -> list[str]:
-    words = _true(kind, _ABILITIES)
-    if order := int(getattr(kind, "maxOutputDerivativeOrder", 0) or 0):
-        words.append(f"output derivatives up to order {order}")
-    if step := getattr(kind, "fixedInternalStepSize", None):
-        words.append(f"fixed internal step of {step} s")
-    return words
+def _has_binary(fmu: Fmu) -> bool:
+    from ..fmi.fmu import FmuError
+
+    try:
+        return fmu.binary in fmu.entries
+    except FmuError:  # Scheduled Execution alone: no binary is of use
+        return False
 
 
-def _true(kind: Any, words: dict[str, str]) -> list[str]:
-    found = [text for name, text in words.items() if getattr(kind, name, None) in (True, "true")]
-    return list(dict.fromkeys(found))  # FMI 2.0 and 3.0 spell some of the names differently
+def _limits(kinds: Iterable[Any], holds_python: bool) -> list[dict[str, str]]:
+    found = [limit for kind in kinds for limit in limits(kind, holds_python)]
+    return [limit for i, limit in enumerate(found) if limit not in found[:i]]
+
+
+def _validated(path: Path) -> list[str]:
+    """What FMPy's validator has to say about the description as it stands in the file, one sentence each."""
+    from fmpy.validation import validate_fmu
+
+    def told(message: str) -> str:
+        return re.sub(r"^ERROR \(line (\d+), column \d+\): ", r"line \1: ", " ".join(message.split()))
+
+    return [told(message) for message in validate_fmu(str(path))]
 
 
 def _experiment(experiment: Any) -> dict[str, float]:
@@ -146,6 +146,9 @@ def _selected(
 def show(about: dict[str, Any]) -> None:
     """Print what `described` gave."""
     experiment = about["default_experiment"]
+    several = len(about["kinds"]) > 1
+    can = [(f"can ({kind})" if several else "can", found) for kind, found in about["capabilities"].items()]
+    defects, told = about["defects"], about["validator"]
     fields = [
         ("name", about["name"]),
         ("description", about["description"]),
@@ -154,13 +157,15 @@ def show(about: dict[str, Any]) -> None:
         ("version", about["version"]),
         ("license", about["license"]),
         ("platforms", ", ".join(about["platforms"]) + (" (runs Python)" if about["python"] else "")),
-        *((f"can ({kind})" if len(about["kinds"]) > 1 else "can", ", ".join(words))
-          for kind, words in about["capabilities"].items()),
-        ("limits", ", ".join(about["limits"])),
+        ("sources", _sources(about)),
+        *(field for name, found in can for field in _listed(name, map(_with_meaning, found))),
+        *_listed("limits", map(_with_meaning, about["limits"])),
         ("experiment", ", ".join(f"{name.replace('_', ' ')} {x:g}" for name, x in experiment.items())),
-        ("file", f"{about['file']} ({about['size'] / 1024:.0f} KiB)"),
+        *_listed("mended", _bounded(defects)),
+        *_listed("validator", _bounded(told)),
+        ("file", f"{about['file']} ({_size(about['size'])}, unpacked {_size(about['unpacked_size'])})"),
         ("sha256", about["sha256"]),
-    ]  # fmt: skip # one line for each field
+    ]
     print_fields([(name, value) for name, value in fields if value])
     rows = [tuple(_short(v[column]) for column in _COLUMNS) for v in about["variables"]]
     print()
@@ -169,6 +174,34 @@ def show(about: dict[str, Any]) -> None:
     total = about["number_of_variables"]
     if len(rows) != total:
         print(f"\n{len(rows)} of {counted(total, 'variable')}")
+
+
+def _sources(about: dict[str, Any]) -> str:
+    """The files, and what to do with them where there is no binary for this machine."""
+    files = ", ".join(_bounded([name.removeprefix("sources/") for name in about["sources"]]))
+    if not files or about["binary_for_this_machine"]:
+        return files
+    return f"{files}; there is no binary for this machine: 'evcosim compile {about['file']}' builds one"
+
+
+def _with_meaning(told: dict[str, str]) -> str:
+    return f"{told['what']}: {told['here']}"
+
+
+def _listed(name: str, texts: Iterable[str]) -> list[tuple[str, str]]:
+    """A field of several lines."""
+    return [(name if i == 0 else "", text) for i, text in enumerate(texts)]
+
+
+def _bounded(texts: Sequence[str]) -> list[str]:
+    """The first texts, none of them too long; --json has them all."""
+    shown = [t if len(t) <= _LONGEST else t[:_LONGEST] + " ..." for t in texts[:_MESSAGES]]
+    more = len(texts) - len(shown)
+    return [*shown, *([f"and {more} more (--json shows all)"] if more else [])]
+
+
+def _size(count: int) -> str:
+    return f"{count / 1024:.0f} KiB" if count < 10 << 20 else f"{count / (1 << 20):.0f} MiB"
 
 
 def _short(text: str) -> str:

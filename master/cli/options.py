@@ -66,4 +66,7 @@ StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to
 WorkersOption = Annotated[
     int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
 ]
+StrictOption = Annotated[
+    bool, typer.Option("--strict", help="Refuse an FMU whose description has defects that could be mended.")
+]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")]

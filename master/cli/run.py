@@ -21,6 +21,7 @@ from .options import (
     ScenarioOption,
     SettingsOption,
     StopTimeOption,
+    StrictOption,
     SwapsOption,
     SystemArgument,
 )
@@ -43,6 +44,7 @@ def run(
     isolation: IsolationOption = None,
     engine: EngineOption = None,
     stop_time: StopTimeOption = None,
+    strict: StrictOption = False,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>."),
@@ -66,6 +68,7 @@ def run(
         isolation=isolation,
         engine=engine,
         stop_time=stop_time,
+        strict=strict,
         output=output,
         can_log=can_log,
         figure=not no_plot,
@@ -88,6 +91,7 @@ class Order:
     isolation: Isolation | None
     engine: Engine | None
     stop_time: float | None
+    strict: bool
     output: Path | None
     can_log: bool
     figure: bool
@@ -169,6 +173,7 @@ def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Sim
         log_frames=order.can_log,
         isolation=order.isolation.value if order.isolation else None,
         engine=order.engine.value if order.engine else None,
+        strict=order.strict,
     )
 
 

@@ -120,7 +120,8 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
         defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
     fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects, negated)
     if strict and defects:
-        raise FmuError(f"{path}: strict: {len(defects)} defects: " + "; ".join(defects[:_SHOWN_DEFECTS]))
+        count = f"{len(defects)} defect" + ("s" if len(defects) > 1 else "")
+        raise FmuError(f"{path}: strict: {count}: " + "; ".join(defects[:_SHOWN_DEFECTS]))
     return fmu
 
 

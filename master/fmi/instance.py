@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,6 +35,7 @@ from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
+from .state import States
 from .step_status import beside
 from .transfer import (
     Call,
@@ -324,6 +326,28 @@ class Instance:
                 self._refuse(variable, number, function)
             buffer = (c_type * 1)(number)
         self._call(function, *self._arguments((ctypes.c_uint * 1)(self._reference(name)), 1, buffer), of=name)
+
+    # ---- its state (see `state.States`)
+
+    @functools.cached_property
+    def _states(self) -> States:
+        return States(self)
+
+    def save_state(self) -> int:
+        """Save the state and return its number."""
+        return self._states.save()
+
+    def restore_state(self, number: int) -> None:
+        """Go back to a saved state."""
+        self._states.restore(number)
+
+    def free_state(self, number: int) -> None:
+        """Forget a saved state."""
+        self._states.free(number)
+
+    def call(self, name: str, *arguments: Any) -> None:
+        """Call a C function on the component and judge its status. Raises FmuError where it is missing."""
+        self._call(name, self._component, *arguments)
 
     # ---- the end
 

@@ -197,6 +197,18 @@ class IsolatedUnit:
         """See `unit.Unit`."""
         self._call("set", name, value)
 
+    def save_state(self) -> int:
+        """Save the state in its process and return its number (see `fmi.state`)."""
+        return int(self._call("save_state"))
+
+    def restore_state(self, number: int) -> None:
+        """Go back to a saved state."""
+        self._call("restore_state", number)
+
+    def free_state(self, number: int) -> None:
+        """Forget a saved state."""
+        self._call("free_state", number)
+
     def set_inputs(self) -> None:
         """See `unit.Unit`; the unit takes them with the next request."""
         for target, place, values in self._inputs:

@@ -153,8 +153,11 @@ _VEHICLE = [
 ]
 
 
-def vehicle_fmu(path: Path, fmi: int) -> Path:
-    """The vehicle of sources/vehicle.c as an FMU at `path`, in FMI 2.0 or 3.0: a stranger to our system."""
+def vehicle_fmu(path: Path, fmi: int, *flags: str, **changed: str) -> Path:
+    """The vehicle of sources/vehicle.c as an FMU at `path`, in FMI 2.0 or 3.0: a stranger to our system.
+
+    `flags` are its compiler flags; `changed` replaces text of its description: a name by its new text.
+    """
     variables, structure = [], []
     for i, (name, reference, causality, unit, start, text) in enumerate(_VEHICLE, 1):
         real = (f' unit="{unit}"' if unit else "") + (f' start="{start}"' if start else "")
@@ -179,4 +182,7 @@ def vehicle_fmu(path: Path, fmi: int) -> Path:
         f'<CoSimulation modelIdentifier="vehicle"/><ModelVariables>{"".join(variables)}</ModelVariables>'
         f"<ModelStructure>{body}</ModelStructure></fmiModelDescription>"
     )
-    return compile_fmu(path, SOURCES / "vehicle.c", description, "vehicle", fmi, [f"-DFMI={fmi}"])
+    for old, new in changed.items():
+        assert old in description
+        description = description.replace(old, new)
+    return compile_fmu(path, SOURCES / "vehicle.c", description, "vehicle", fmi, [f"-DFMI={fmi}", *flags])

@@ -1,6 +1,9 @@
 /* A light electric vehicle in C, FMI 2.0 (-DFMI=2) or 3.0 Co-Simulation: the equations of evcosim's Scooter in
    other names and units. Speed in m/s, pedal 0..1, the brake as a force that is negative when it brakes.
 
+   One thing that a user of such an FMU may meet: -DBACKWARD full throttle at pedal 0, -DIN_KMH v in km/h, -DSTIFF steps
+   of more than 6 ms do not converge, -DSTATE=1 saves its state, -DSTATE=2 says so and does not go back to it.
+
    value references: 0 pedal [1], 1 F_brake [N], 2 slope [rad], 10 v [m/s], 11 a [m/s2], 12 P [W], 13 s [m],
    20 m_total [kg] */
 
@@ -47,9 +50,29 @@ static void show(Vehicle *c) {
     c->x[P] = c->force * v / EFFICIENCY + AUXILIARY;
 }
 
+#ifdef IN_KMH
+static const double SHOWN = 3.6;
+#else
+static const double SHOWN = 1.0;
+#endif
+
+#ifdef STIFF
+/* Euler's rule for a force that follows within 3 ms */
+static int advance(Vehicle *c, double h) {
+    double u = fmin(1.0, fmax(0.0, c->x[PEDAL])), v = c->x[V], f = c->force;
+    c->force += h / 0.003 * (u * largest(v) - f);
+    c->x[V] = fmax(0.0, v + h * (f - resistance(v) - held(c)) / c->x[MASS]);
+    c->x[S] += h * v;
+    show(c);
+    return 0;
+}
+#else
 /* the midpoint rule with 10 substeps: another integration than evcosim's own */
 static int advance(Vehicle *c, double h) {
     double u = fmin(1.0, fmax(0.0, c->x[PEDAL])), dt = h / 10.0, m = c->x[MASS];
+#ifdef BACKWARD
+    u = 1.0 - u;
+#endif
     for (int i = 0; i < 10; i++) {
         double v = c->x[V], f = c->force;
         double vm = fmax(0.0, v + 0.5 * dt * (f - resistance(v) - held(c)) / m);
@@ -62,6 +85,7 @@ static int advance(Vehicle *c, double h) {
     show(c);
     return 0;
 }
+#endif
 
 static Vehicle *make(void) {
     Vehicle *c = calloc(1, sizeof(Vehicle));
@@ -73,7 +97,7 @@ static int get(Vehicle *c, const unsigned *r, size_t n, double *x) {
     show(c);
     for (size_t i = 0; i < n; i++) {
         if (r[i] >= COUNT) return 3;
-        x[i] = c->x[r[i]];
+        x[i] = r[i] == V ? SHOWN * c->x[V] : c->x[r[i]];
     }
     return 0;
 }
@@ -105,6 +129,23 @@ EXPORT int fmi2SetReal(void *c, const unsigned *r, size_t n, const double *x) { 
 EXPORT int fmi2SetupExperiment(void *c, int td, double t, double start, int sd, double stop) { return 0; }
 EXPORT int fmi2EnterInitializationMode(void *c) { return 0; }
 EXPORT int fmi2DoStep(void *c, double t, double h, int s) { return advance(c, h); }
+#endif
+#ifdef STATE
+#if FMI == 3
+#define STATES(verb) fmi3##verb##FMUState
+#else
+#define STATES(verb) fmi2##verb##FMUstate
+#endif
+EXPORT int STATES(Get)(void *c, void **state) {
+    if (!*state) *state = malloc(sizeof(Vehicle));
+    *(Vehicle *)*state = *(Vehicle *)c;
+    return 0;
+}
+EXPORT int STATES(Set)(void *c, void *state) {
+    if (STATE == 1) *(Vehicle *)c = *(Vehicle *)state;
+    return 0;
+}
+EXPORT int STATES(Free)(void *c, void **state) { return free(*state), *state = NULL, 0; }
 #endif
 EXPORT int F(ExitInitializationMode)(void *c) { return 0; }
 EXPORT int F(Terminate)(void *c) { return 0; }
