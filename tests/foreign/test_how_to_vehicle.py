@@ -1,0 +1,36 @@
+"""docs/how-to/vehicle.md: its commands, run in order by the installed programs, print what the page says."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from support.needs import need_c_compiler
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "how-to" / "vehicle.md"
+# What depends on the machine, the compiler and the day.
+VARIES = re.compile(r"^(speed +(good|note) .*|file  .*|sha256 .*|platforms .*|validator .*)$", re.MULTILINE)
+
+
+def test_the_page_shows_what_its_commands_print(tmp_path: Path) -> None:
+    need_c_compiler()
+    folder = tmp_path / "modelica"
+    shutil.copytree(ROOT / "examples" / "modelica", folder)
+    programs = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    page = PAGE.read_text(encoding="utf-8")
+    blocks = re.findall(r"```console\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) == 5
+    for block in blocks:
+        for command, told in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE):
+            done = subprocess.run(
+                command, shell=True, cwd=folder, env=programs, capture_output=True, text=True
+            )
+            printed = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
+            assert done.returncode in (0, 1), done.stderr
+            assert VARIES.sub("", printed.strip()) == VARIES.sub("", told.strip()), command
+    assert (folder / "swap.toml").read_text() in page
