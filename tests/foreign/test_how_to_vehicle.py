@@ -21,7 +21,9 @@ def test_the_page_shows_what_its_commands_print(tmp_path: Path) -> None:
     need_c_compiler()
     folder = tmp_path / "modelica"
     shutil.copytree(ROOT / "examples" / "modelica", folder)
-    programs = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    # A width of the terminal that somebody set would break the lines.
+    programs = {name: x for name, x in os.environ.items() if name != "COLUMNS"} | {"PATH": path}
     page = PAGE.read_text(encoding="utf-8")
     blocks = re.findall(r"```console\n(.*?)```", page, re.DOTALL)
     assert len(blocks) == 5
