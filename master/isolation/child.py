@@ -6,6 +6,7 @@ It does what the master asks for until the socket ends. Its limits hold before a
 
 from __future__ import annotations
 
+import ctypes
 import fcntl
 import json
 import os
@@ -21,6 +22,8 @@ from . import shared, wire
 from .line import Line
 from .shared import Shared
 
+_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
+
 
 def main() -> None:
     """Serve one unit."""
@@ -28,6 +31,7 @@ def main() -> None:
     for descriptor in (connection, memory, life):
         os.set_inheritable(descriptor, False)  # what the FMU starts shall not keep them open
     _end_with_master(life)
+    _adopt()
     _limit(resource.RLIMIT_CORE, 0.0)
     _limit(resource.RLIMIT_AS, float(sys.argv[4]))
     _limit(resource.RLIMIT_FSIZE, float(sys.argv[5]))
@@ -59,6 +63,12 @@ def _watch(life: int) -> None:
     os.killpg(0, signal.SIGKILL)
 
 
+def _adopt() -> None:
+    """What a process that we started leaves behind becomes our child, so that the master finds it."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
 def _limit(kind: int, most: float) -> None:
     _, hard = resource.getrlimit(kind)
     if most != float("inf"):
@@ -87,8 +97,10 @@ class _Server:
                     self._answer(number, *pickle.loads(frame or line.frame(sys.maxsize)))
                 else:
                     self._turn(number)
-        except (EOFError, OSError):
+        except EOFError:
             os._exit(0)
+        except OSError:
+            os._exit(wire.LOST)
 
     def _turn(self, number: float) -> None:
         unit, slots = self.unit, self.slots

@@ -83,6 +83,8 @@ class Process:
             code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
             return "closed its connection and was ended"
+        if code == wire.LOST:
+            return "lost its connection to the master: the FMU closed or replaced files that are not its own"
         if code < 0:
             with contextlib.suppress(ValueError):  # a signal that Python has no name for
                 return f"was killed by {signal.Signals(-code).name} ({signal.strsignal(-code)})"
@@ -97,8 +99,10 @@ class Process:
         return self._output.read().decode("utf-8", "replace").strip()[-_SAID:]
 
     def kill(self) -> None:
-        """End it and what it started."""
+        """End it and what it started, also what left its process group, as long as it lives itself."""
         if self._process is not None:
+            if self._process.poll() is None:
+                _end_descendants(self._process.pid)
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
@@ -110,3 +114,13 @@ class Process:
         for each in (self.connection, self._life, self._output):
             each.close()
         shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def _end_descendants(process: int) -> None:
+    """Kill what a process started, and what that started; where /proc does not tell, nobody."""
+    with contextlib.suppress(OSError):
+        for thread in Path(f"/proc/{process}/task").iterdir():
+            for child in map(int, (thread / "children").read_text().split()):
+                _end_descendants(child)
+                with contextlib.suppress(ProcessLookupError, PermissionError):
+                    os.kill(child, signal.SIGKILL)

@@ -68,8 +68,8 @@ class IsolatedUnit:
     def _call(self, name: str, *arguments: Any) -> Any:
         """Ask for something that happens once or seldom."""
         if not self._loaded:
+            self._loaded = True  # whatever the answer is, there is no other
             self._answer(self._frame())
-            self._loaded = True
         self._check_free()
         self._asked = name + (f" of {arguments[0]}" if name in _OF_ONE_VARIABLE else "")
         self._request(shared.CALL)

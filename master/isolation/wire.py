@@ -19,6 +19,9 @@ LONGEST = 1 << 20
 LOADING = "loading"
 """The file in the child's working folder with the arguments of its first request, pickled."""
 
+LOST = 76
+"""The exit code of a child whose socket fails (EX_PROTOCOL): where the master lives, the FMU closed it."""
+
 Impatience = Callable[[], None]
 """Called from time to time while nothing moves; raises what shall end the wait."""
 
