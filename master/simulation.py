@@ -45,6 +45,7 @@ from .initialization import initialize, ordered_links
 from .isolation.choice import chosen, limits
 from .isolation.unit import IsolatedUnit
 from .loading import load_unit
+from .plausibility import implausible
 from .unit import Unit
 
 _SHOWN_DEFECTS = 5  # of an FMU's description, as warnings
@@ -265,11 +266,17 @@ class Simulation:
 
     @property
     def warnings(self) -> list[str]:
-        """What is not as it should be, one sentence each: missing units of measure, warnings of units."""
-        from_units = [f"unit '{name}' gave {n} warnings" for name, n in self._unit_warnings().items() if n]
+        """What is not as it should be, one sentence each: missing units of measure, warnings of units,
+        outputs beyond their limits."""
+        from_units = [
+            f"unit '{name}' gave {n} warning{'s' if n > 1 else ''}"
+            for name, n in self._unit_warnings().items()
+            if n
+        ]
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
         notices = [notice for notice in (self._notice, self._engine.notice) if notice]
-        return [*notices, *defects, *self.plan.warnings, *from_units]
+        beyond = implausible(self._engine.recorded(), self.plan)
+        return [*notices, *defects, *self.plan.warnings, *from_units, *beyond]
 
     def _unit_warnings(self) -> dict[str, int]:
         return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}
