@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from typing import NoReturn
 
 import pytest
@@ -19,3 +20,9 @@ def need_c_compiler() -> None:
     """Give up where there is no `cc`."""
     if shutil.which("cc") is None:
         give_up("there is no C compiler (cc) on this machine")
+
+
+def need_linux() -> None:
+    """Give up on another system."""
+    if sys.platform != "linux":
+        give_up("this needs what Linux has: its libraries and /proc")
