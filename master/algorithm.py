@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .engine import CHUNK_SECONDS, Act, Engine
+from .profile import part_of
 from .schedule import Action
 
 
@@ -31,11 +32,18 @@ class PythonEngine(Engine):
             wide[k - first] = memory
 
         acts = [
-            _when_due(action, record if action.kind == "record" else
-                      drive(self.plan.drives[action.index].sink, stimuli[action.index])
-                      if action.kind == "drive" else self.act(action))
+            _when_due(
+                action,
+                record
+                if action.kind == "record"
+                else drive(self.plan.drives[action.index].sink, stimuli[action.index])
+                if action.kind == "drive"
+                else self.act(action),
+            )
             for action in self.schedule
-        ]  # fmt: skip
+        ]
+        if self.profile is not None:
+            acts = [self._timed(*pair) for pair in zip(self.schedule, acts, strict=True)]  # fmt: skip
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
         try:
             for k in range(first, first + count):
@@ -47,6 +55,17 @@ class PythonEngine(Engine):
                     break
         finally:
             np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])
+
+    def _timed(self, action: Action, act: Act) -> Act:
+        profile, part = self.profile, part_of(action, self.plan)
+        assert profile is not None  # it is wanted
+
+        def timed(k: int, time: float) -> None:
+            begin = profile.clock()
+            act(k, time)
+            profile.add(part, profile.clock() - begin)
+
+        return timed
 
 
 def _when_due(action: Action, act: Act) -> Act:

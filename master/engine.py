@@ -20,6 +20,7 @@ from ..cosim.errors import RunError
 from ..cosim.plan import MessagePlan, Plan
 from ..cosim.rows import RowStore, Table
 from ..cosim.unit_plan import Route, UnitPlan
+from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
 from .unit import Unit, floats
 
@@ -140,6 +141,8 @@ class Engine:
     name: str
     notice = ""
     """What is not as it should be with the engine itself, in a sentence."""
+    profile: Profile | None = None
+    """Gets what each part takes, if it is set before the start."""
 
     def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
         self.plan = plan

@@ -53,6 +53,7 @@ def run(
         bool, typer.Option("--can-log", help="Write the CAN frames (.log .blf .asc).")
     ] = False,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figure.")] = False,
+    profile: Annotated[bool, typer.Option("--profile", help="Show what takes the time of a step.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what happened as JSON.")] = False,
     quiet: QuietOption = False,
 ) -> int:
@@ -72,6 +73,7 @@ def run(
         output=output,
         can_log=can_log,
         figure=not no_plot,
+        profile=profile,
         bar=not (as_json or quiet),
     )
     return _carry_out(order, as_json, quiet)
@@ -95,6 +97,7 @@ class Order:
     output: Path | None
     can_log: bool
     figure: bool
+    profile: bool
     bar: bool
 
 
@@ -174,6 +177,7 @@ def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Sim
         isolation=order.isolation.value if order.isolation else None,
         engine=order.engine.value if order.engine else None,
         strict=order.strict,
+        profile=order.profile,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .console import counted, number, print_fields
+from .console import counted, number, print_fields, print_table
 
 if TYPE_CHECKING:
     from .run import Outcome
@@ -29,6 +29,9 @@ def show(outcome: Outcome) -> None:
     print_fields(fields)
     print()
     print_fields([(m.name, m.text) for m in outcome.metrics] or _final_values(outcome))
+    if profile := outcome.simulation.profile:
+        print()
+        _show_profile(profile)
     print(f"\nin {outcome.folder}: {', '.join(outcome.files)}")
 
 
@@ -42,11 +45,27 @@ def as_data(outcome: Outcome) -> dict[str, Any]:
         "simulated_seconds": _simulated(outcome),
         "real_time_factor": _factor(outcome),
         "warnings": outcome.remarks,
+        "profile": outcome.simulation.profile,
         "metrics": manifest.get("metrics", {}),
         "final": results.final(),
         "folder": str(outcome.folder),
         "files": outcome.files,
     }
+
+
+def _show_profile(profile: list[dict[str, Any]]) -> None:
+    rows = [
+        (
+            p["name"],
+            p["what"],
+            f"{p['seconds']:.4f}",
+            f"{p['microseconds_per_step']:.3f}",
+            f"{p['share']:.1%}",
+        )
+        for p in profile
+    ]
+    headers = ("part", "at", "s", "us a step", "share")
+    print_table(headers, rows, right=headers[2:])
 
 
 def of_failure(outcome: Outcome) -> str:

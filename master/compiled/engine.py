@@ -83,7 +83,7 @@ class CompiledEngine(Engine):
         for place, array in tables.items():
             self._addresses[place] = array.ctypes.data
         kind = _HOLDING if program.holds_python else _RELEASING
-        function, self.notice = compiled()
+        function, self.notice = compiled(timed=self.profile is not None)
         self._kernel = kind(function)
 
     def _set_clock(self) -> None:
@@ -145,6 +145,10 @@ class CompiledEngine(Engine):
                 for i, instance in enumerate(instances):
                     instance.log.warnings += int(table[i, L.WARNINGS])
                 table[:, L.WARNINGS] = 0
+        if self.profile is not None:
+            for part, seconds in zip(program.parts(), self._times.tolist(), strict=False):
+                self.profile.add(part, seconds)
+            self._times[:] = 0.0
         signals = program.signal_table
         for i in np.flatnonzero(signals[:, L.TIMES]).tolist():
             sender, place = program.signals[i]

@@ -17,6 +17,7 @@ from ..fmi.fmi2 import Fmi2Unit
 from ..fmi.fmi3 import Fmi3Unit
 from ..fmi.instance import Instance
 from ..fmi.transfer import Copy, Transfer, limits
+from ..profile import Part, part_of
 from ..schedule import Action
 from . import layout as L
 
@@ -101,6 +102,18 @@ class Program:
                 )  # fmt: skip # a row
             if not turn.effects:
                 self.ops[op, L.DUE] = _NEVER
+
+    def parts(self) -> list[Part]:
+        """What each operation is a part of, for a profile."""
+        kinds = self.ops[: len(self.actions), L.KIND].tolist()
+        found = []
+        for at, kind in zip(self.actions, kinds, strict=True):
+            action = self._engine.schedule[at]
+            what = ""
+            if action.kind == "begin" and kind != L.PYTHON_ACT:
+                what = "step" if kind == L.STEP else "set"
+            found.append(part_of(action, self._engine.plan, what))
+        return found
 
     # ---- operations
 

@@ -186,3 +186,33 @@ def test_the_key_of_a_system_names_the_engine(ring):
 def test_the_option_names_the_engine(evcosim):
     answer = evcosim("run", "scooter", "--stop-time", "1", "--engine", "python", "--no-plot", "--json")
     assert answer.code == 0
+
+
+@pytest.mark.parametrize("engine", ["compiled", "python"])
+def test_a_profile_adds_up_to_the_time_of_the_steps_and_changes_no_result(ring, engine):
+    system = ring()
+    with Simulation(system, engine=engine, profile=True) as simulation:
+        simulation.run()
+        rows = simulation.profile
+        data = np.asarray(simulation.results.data)
+    with Simulation(system, engine=engine) as simulation:
+        simulation.run()
+        assert np.array_equal(np.asarray(simulation.results.data), data)
+        assert simulation.profile == []
+    named = {(row["name"], row["what"]) for row in rows}
+    step = "step" if engine == "compiled" else "set and step"
+    assert {
+        ("n0", "set"),
+        ("n2", step),
+        ("n1", "get"),
+        ("can0.M0_0", "channel"),
+        ("results", "record"),
+    } <= named
+    assert all(row["seconds"] >= 0.0 for row in rows)
+    assert sum(row["seconds"] for row in rows[:-1]) == pytest.approx(rows[-1]["seconds"], rel=1e-9)
+
+
+def test_the_option_shows_the_profile(evcosim):
+    answer = evcosim("run", "scooter", "--stop-time", "1", "--profile", "--no-plot")
+    assert answer.code == 0
+    assert "us a step" in answer.out
