@@ -17,9 +17,13 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 class Snapshot(NamedTuple):
-    """All that distinguishes two instances of one FMU. Parameters are rebuilt from `values`."""
+    """All that distinguishes two instances of one FMU.
 
-    values: tuple[Any, ...]
+    `values` are those of parameters (from which the record of them is rebuilt), inputs and outputs, and the
+    time.
+    """
+
+    values: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], float]
     state: Any
     started: bool
     stale: bool

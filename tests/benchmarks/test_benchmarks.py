@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import worker
+from benchmarks import slaves, worker
 from benchmarks.asking import Figure, ask
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -30,6 +30,17 @@ def test_our_outputs_are_the_reference(case: Case, monkeypatch: pytest.MonkeyPat
     assert figure.reason == ""
     assert figure.microseconds is not None
     assert figure.microseconds > 0.0
+
+
+def test_an_fmu_costs_little_beside_its_model_and_the_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three times measured in turn, the least of each: a busy machine is slow at all of them."""
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    found = slaves.measured("Scooter", rounds=60, steps=50)
+    assert 0.0 < found.floor < found.fmu
+    assert 0.0 < found.model < found.fmu
+    assert found.ratio < 1.5
+    assert f"| Scooter | 10 | {1e6 * found.model:.2f} |" in slaves.report({"Scooter": found})
 
 
 def test_a_result_that_is_not_the_reference_has_no_time() -> None:
@@ -70,7 +81,7 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
 
 
 def test_help_says_what_is_measured() -> None:
-    for module in ("benchmarks", "benchmarks.scaling"):
+    for module in ("benchmarks", "benchmarks.scaling", "benchmarks.slaves"):
         command = [sys.executable, "-m", module, "--help"]
         said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         assert "--write" in said

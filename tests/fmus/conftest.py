@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import random
 import struct
@@ -212,7 +213,7 @@ class Plain:
     def outputs(self) -> dict[str, Any]:
         """The outputs now."""
         args = (self.inputs(self.now),) if self.model.feeds_through() else ()
-        return vars(self.model.outputs(self.p, self.x, *args))
+        return dataclasses.asdict(self.model.outputs(self.p, self.x, *args))
 
     def run(self, inputs: list[dict[str, Any]], start: int = 0) -> list[dict[str, Any]]:
         """Outputs after each step."""

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import enum
 import math
+import pickle
+from functools import cached_property
 from typing import Any
 
 import pytest
@@ -27,6 +31,25 @@ class Everything:
     whole: int = var(3, "", "A count", min=1)
     flag: bool = var(True, "", "A choice")
     mode: Mode = var(Mode.ON, "", "A mode")
+
+
+@record
+class Derived:
+    """A record that caches what derives from it."""
+
+    real: float = var(1.0, "m", "A length")
+
+    @cached_property
+    def twice(self) -> float:
+        """Twice the length [m]."""
+        return 2.0 * self.real
+
+
+@record
+class Longer(Everything):
+    """A record that extends another."""
+
+    force: float = var(0.0, "N", "A force")
 
 
 @record
@@ -103,6 +126,31 @@ def test_violations_name_variable_rule_and_values() -> None:
         "whole = 0 is below its minimum 1",
     ]
     assert violations(Everything(real=math.nan)) == ["real = nan is not a finite number"]
+
+
+def test_a_record_is_made_as_a_dataclass_is() -> None:
+    made = Everything(2.5, 1.5, whole=4)
+    assert dataclasses.astuple(made) == (2.5, 1.5, 4, True, Mode.ON)
+    for values, named in (((), {"other": 1}), (range(9), {}), ((1.0,), {"now": 2.0})):
+        with pytest.raises(TypeError, match="__init__"):
+            Everything(*values, **named)
+
+
+@pytest.mark.parametrize("made", [Everything(real=1.5), Derived(2.0), Longer(real=3.0, force=1.0)])
+def test_a_record_is_frozen_and_can_be_copied(made: Any) -> None:
+    """With slots, with what it caches, and as an extension of another record."""
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        made.real = 2.0
+    for same in (copy.copy(made), copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
+        assert same == made
+        assert type(same) is type(made)
+        assert hash(same) == hash(made)
+    assert dataclasses.replace(made, real=0.5) != made
+    assert dataclasses.asdict(dataclasses.replace(made, real=0.5)) == dataclasses.asdict(made) | {"real": 0.5}
+
+
+def test_what_a_record_caches_belongs_to_it() -> None:
+    assert [Derived(x).twice for x in (1.0, 2.0)] == [2.0, 4.0]
 
 
 def test_feedthrough_is_read_from_outputs() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
@@ -148,4 +149,4 @@ def test_no_output_is_ever_undefined() -> None:
     for strategy in Strategy:
         p = SlipController.Parameters(strategy=strategy)
         (x,) = samples(p, Inputs(0.0, 0.0, 0.0, 0.0))
-        assert all(math.isfinite(value) for value in vars(x).values())
+        assert all(math.isfinite(value) for value in dataclasses.astuple(x))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
+from dataclasses import asdict, astuple, replace
 
 import pytest
 from hypothesis import example, given, settings
@@ -106,7 +106,7 @@ def test_a_long_step_is_many_short_ones() -> None:
     x = TwoWheelerBraking.step(P, x, u, 0.01)
     for _ in range(50):
         y = TwoWheelerBraking.step(P, y, u, 2e-4)
-    assert tuple(vars(x).values()) == pytest.approx(tuple(vars(y).values()), abs=1e-12)
+    assert astuple(x) == pytest.approx(astuple(y), abs=1e-12)
 
 
 @settings(max_examples=30)
@@ -227,7 +227,7 @@ def test_wheels_lift_without_a_jump(height: float, front: float, rear: float) ->
         replace(P, initial_speed=300.0, road=Road.SNOW),
         replace(P, drag_area=0.0, air_density=0.0),
     ],
-    ids=lambda p: str(vars(p)),
+    ids=lambda p: str(asdict(p)),
 )
 def test_stiff_and_odd_vehicles_stay_calm(p: Parameters) -> None:
     """The inner step follows the fastest eigenvalue: no slip jumps to and fro under constant torque."""
