@@ -18,6 +18,7 @@ Value = bool | int | float | str
 Algorithm = Literal["gauss_seidel", "jacobi"]
 Isolation = Literal["process", "none"]
 EngineName = Literal["compiled", "python"]
+InterfaceType = Literal["co_simulation", "model_exchange"]
 
 
 def _identifier(name: str) -> str:
@@ -103,9 +104,10 @@ class UnitEntry(FileModel):
     FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
     that evcosim built itself is in the master's). The limits of such a process: `step_timeout` [s] for an
     answer in the run, `load_timeout` [s] for one before it, `memory_limit` [bytes] of address space,
-    `file_limit` [bytes] of each file that it writes. `strict` refuses an FMU with defects that we could bear.
-    `map` gives its variables the names that the system uses; `absent` are names of the system that it does
-    not have.
+    `file_limit` [bytes] of each file that it writes. `interface` is which one is used of an FMU that has both
+    (default: Co-Simulation), `tolerance` the relative one of the solver: ours under Model Exchange, else the
+    FMU's own. `strict` refuses an FMU with defects that we could bear. `map` gives its variables the names
+    that the system uses; `absent` are names of the system that it does not have.
     """
 
     fmu: str
@@ -118,6 +120,8 @@ class UnitEntry(FileModel):
     load_timeout: float = Field(default=60.0, gt=0.0, allow_inf_nan=False)
     memory_limit: float = Field(default=8e9, gt=0.0)
     file_limit: float = Field(default=256e6, gt=0.0)
+    interface: InterfaceType | None = None
+    tolerance: float | None = Field(default=None, gt=0.0, lt=1.0)
     strict: bool = False
     map: MapTables = MapTables()
     absent: list[str] = []

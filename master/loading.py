@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 from ..cosim.interface import UnitInterface
 from .fmi.fmi1 import Fmi1Unit
-from .fmi.fmi2 import Fmi2Unit
-from .fmi.fmi3 import Fmi3Unit
-from .fmi.fmu import Fmu
+from .fmi.fmi2 import Fmi2ModelExchange, Fmi2Unit
+from .fmi.fmi3 import Fmi3ModelExchange, Fmi3Unit
+from .fmi.fmu import DEFAULT_OPTIONS, Fmu, LoadOptions
 from .unit import Unit
 
-_CO_SIMULATION: dict[str, Callable[[Fmu, str, UnitInterface], Unit]] = {
-    "1": Fmi1Unit,
-    "2": Fmi2Unit,
-    "3": Fmi3Unit,
+_CLASSES: dict[tuple[str, str], Any] = {
+    ("1", "co_simulation"): Fmi1Unit,
+    ("2", "co_simulation"): Fmi2Unit,
+    ("3", "co_simulation"): Fmi3Unit,
+    ("2", "model_exchange"): Fmi2ModelExchange,
+    ("3", "model_exchange"): Fmi3ModelExchange,
 }
 
 
-def load_unit(fmu: Fmu, name: str, interface: UnitInterface) -> Unit:
+def load_unit(fmu: Fmu, name: str, interface: UnitInterface, options: LoadOptions = DEFAULT_OPTIONS) -> Unit:
     """Instantiate an FMU; `interface` is how the system sees it.
 
     Raises FmuError naming the file and the reason when it cannot run here.
     """
-    return _CO_SIMULATION[fmu.description.fmiVersion[0]](fmu, name, interface)
+    used = fmu.using(options.interface)
+    unit: Unit = _CLASSES[fmu.description.fmiVersion[0], used.interface_type](used, name, interface, options)
+    return unit

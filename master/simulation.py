@@ -40,7 +40,7 @@ from ..cosim.system import Algorithm, EngineName, Isolation, System, Value, load
 from ..cosim.variation import BusVariation, varied
 from .builtin import fmu_file
 from .engines import engine_class
-from .fmi.fmu import Fmu, check_runnable, read_fmu
+from .fmi.fmu import Fmu, LoadOptions, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
 from .isolation.choice import chosen, limits
 from .isolation.unit import IsolatedUnit
@@ -168,9 +168,10 @@ class Simulation:
     def _load(self, plan: UnitPlan, wanted: Isolation | None) -> Unit:
         fmu, entry = self._fmus[plan.name], self.system.file.units[plan.name]
         self.isolation[plan.name] = chosen(plan.name, fmu, entry, wanted)
+        options = LoadOptions(entry.interface, entry.tolerance)
         if self.isolation[plan.name] == "none":
-            return load_unit(fmu, plan.name, plan.interface)
-        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry))
+            return load_unit(fmu, plan.name, plan.interface, options)
+        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry), options)
 
     # ---- a loop of one's own
 
@@ -351,6 +352,7 @@ class Simulation:
                     "parameters": unit.parameters,
                     "period": unit.every * experiment.step_size,
                     "substeps": unit.substeps,
+                    "interface": self._fmus[unit.name].interface_type,
                     "isolation": self.isolation[unit.name],
                     "map": self.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
                 }
@@ -526,6 +528,6 @@ def _read_fmus(
     read = {}
     for unit, entry in entries.items():
         path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
-        read[unit] = read_fmu(path, strict or entry.strict)
+        read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)
         check_runnable(read[unit])
     return read

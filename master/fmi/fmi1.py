@@ -12,7 +12,7 @@ from typing import Any
 
 from ...cosim.interface import UnitInterface, VariableInfo
 from ..unit import Value
-from .fmu import Fmu
+from .fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions
 from .instance import Instance
 from .library import Library
 from .transfer import StepCall
@@ -30,9 +30,17 @@ class Fmi1Unit(Instance):
     fmi = "fmi"
     _true = _TRUE
 
-    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
+    def __init__(
+        self,
+        fmu: Fmu,
+        name: str,
+        interface: UnitInterface | None = None,
+        options: LoadOptions = DEFAULT_OPTIONS,
+    ) -> None:
+        if options.tolerance is not None:
+            raise FmuError(f"{fmu.path}: unit '{name}': a unit of FMI 1.0 Co-Simulation takes no tolerance")
         self._given: dict[str, Value] = {}
-        super().__init__(fmu, name, interface)
+        super().__init__(fmu, name, interface, options)
 
     def _prefix(self) -> str:
         return f"{self.fmu.kind.modelIdentifier}_"

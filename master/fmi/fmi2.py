@@ -1,4 +1,4 @@
-"""A unit of FMI 2.0 Co-Simulation."""
+"""A unit of FMI 2.0: Co-Simulation, and Model Exchange."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
+from fmpy.fmi2 import fmi2EventInfo
+
 from ...cosim.interface import VariableInfo
+from .exchange import ModelExchange
 from .instance import Instance
-from .transfer import StepCall
+from .transfer import Call, StepCall
 
 _INVISIBLE, _LOGGING = ctypes.c_int(0), ctypes.c_int(1)  # fmi2Boolean
-_CO_SIMULATION = ctypes.c_int(1)
+_MODEL_EXCHANGE, _CO_SIMULATION = ctypes.c_int(0), ctypes.c_int(1)
 _C_TYPES: dict[str, Any] = {
     "Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int, "String": ctypes.c_char_p,
 }  # fmt: skip # a table
@@ -44,15 +47,19 @@ class Fmi2Unit(Instance):
         """See `unit.Unit`."""
         known = stop_time is not None
         self._call(
-            "fmi2SetupExperiment", self._component, ctypes.c_int(0), ctypes.c_double(0.0),
+            "fmi2SetupExperiment", self._component,
+            ctypes.c_int(self.tolerance is not None), ctypes.c_double(self.tolerance or 0.0),
             ctypes.c_double(start_time), ctypes.c_int(known), ctypes.c_double(stop_time or 0.0),
-        )  # fmt: skip # (no) tolerance, start, stop
+        )  # fmt: skip # tolerance, start, stop
         self._call("fmi2EnterInitializationMode", self._component)
 
     def exit_initialization(self) -> None:
         """See `unit.Unit`."""
         self._call("fmi2ExitInitializationMode", self._component)
         self._initialized = True
+        self._prepare_steps()
+
+    def _prepare_steps(self) -> None:
         self._do_step = self.function("fmi2DoStep")
         self.step_call = StepCall(self._do_step)
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
@@ -70,3 +77,15 @@ class Fmi2Unit(Instance):
     def judge_step(self, status: int) -> None:
         """See `Instance`."""
         self._judge_step("fmi2DoStep", status)
+
+
+class Fmi2ModelExchange(ModelExchange, Fmi2Unit):
+    """See `ModelExchange`."""
+
+    _kind = _MODEL_EXCHANGE
+    _flag = ctypes.c_int
+    _derivatives = "GetDerivatives"
+
+    def _discrete_states(self) -> Call:
+        self._answer = fmi2EventInfo()
+        return self._bound("NewDiscreteStates", ctypes.byref(self._answer))

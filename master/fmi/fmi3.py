@@ -1,4 +1,4 @@
-"""A unit of FMI 3.0 Co-Simulation, without event mode and early return."""
+"""A unit of FMI 3.0: Co-Simulation, without event mode and early return, and Model Exchange."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Any
 
 from ...cosim.interface import VariableInfo
 from ..unit import UnitError
+from .exchange import ModelExchange
 from .instance import Instance, resources_path
 from .log import receive_3
-from .transfer import StepCall
+from .transfer import Call, StepCall
 
 _FALSE, _TRUE = ctypes.c_bool(False), ctypes.c_bool(True)
 _C_TYPES: dict[str, Any] = {
@@ -64,15 +65,16 @@ class Fmi3Unit(Instance):
         """See `unit.Unit`."""
         stop = ctypes.c_bool(stop_time is not None), ctypes.c_double(stop_time or 0.0)
         start = ctypes.c_double(start_time)
-        self._call("fmi3EnterInitializationMode", self._component, *self._tolerance(), start, *stop)
-
-    def _tolerance(self) -> tuple[Any, Any]:
-        return _FALSE, ctypes.c_double(0.0)
+        tolerance = ctypes.c_bool(self.tolerance is not None), ctypes.c_double(self.tolerance or 0.0)
+        self._call("fmi3EnterInitializationMode", self._component, *tolerance, start, *stop)
 
     def exit_initialization(self) -> None:
         """See `unit.Unit`."""
         self._call("fmi3ExitInitializationMode", self._component)
         self._initialized = True
+        self._prepare_steps()
+
+    def _prepare_steps(self) -> None:
         self._do_step = self.function("fmi3DoStep")
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
         self._event, self._ending, self._early = (ctypes.c_bool() for _ in range(3))
@@ -103,3 +105,36 @@ class Fmi3Unit(Instance):
                 f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though "
                 f"early return is not allowed{self._said()}"
             )
+
+
+class _DiscreteStates(ctypes.Structure):
+    """What fmi3UpdateDiscreteStates answers, in its order, under the names of FMI 2.0."""
+
+    _fields_ = [
+        ("newDiscreteStatesNeeded", ctypes.c_bool),
+        ("terminateSimulation", ctypes.c_bool),
+        ("nominalsOfContinuousStatesChanged", ctypes.c_bool),
+        ("valuesOfContinuousStatesChanged", ctypes.c_bool),
+        ("nextEventTimeDefined", ctypes.c_bool),
+        ("nextEventTime", ctypes.c_double),
+    ]
+
+
+class Fmi3ModelExchange(ModelExchange, Fmi3Unit):
+    """See `ModelExchange`."""
+
+    _flag = ctypes.c_bool
+    _derivatives = "GetContinuousStateDerivatives"
+
+    def _instantiate(self, folder: Path) -> int | None:
+        component: int | None = self.function("fmi3InstantiateModelExchange", ctypes.c_void_p)(
+            *self._about(folder, self.fmu.description.instantiationToken or ""),
+            ctypes.c_void_p(self.log.id),
+            receive_3,
+        )
+        return component
+
+    def _discrete_states(self) -> Call:
+        self._answer = answer = _DiscreteStates()
+        offsets = [getattr(_DiscreteStates, field[0]).offset for field in _DiscreteStates._fields_]
+        return self._bound("UpdateDiscreteStates", *(ctypes.byref(answer, offset) for offset in offsets))

@@ -12,14 +12,26 @@ from typing import Any
 
 from ...cosim.errors import nearest
 from ...cosim.interface import UnitInterface, VariableInfo
+from ...cosim.system import InterfaceType
 from ...cosim.units import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
 
-__all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
+__all__ = ["DEFAULT_OPTIONS", "Fmu", "FmuError", "LoadOptions", "check_runnable", "is_true", "read_fmu"]
 
 _DESCRIPTION = "modelDescription.xml"
 _SHOWN_DEFECTS = 5
+
+
+@dataclasses.dataclass(frozen=True)
+class LoadOptions:
+    """What a unit's entry says beyond the FMU (see `cosim.system.UnitEntry`)."""
+
+    interface: InterfaceType | None = None
+    tolerance: float | None = None
+
+
+DEFAULT_OPTIONS = LoadOptions()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,7 +40,8 @@ class Fmu:
 
     `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are what is wrong with
     the description and was tolerated, one sentence each with what was assumed;
-    `negated` the variables of FMI 1.0 whose value is that of their reference with the other sign.
+    `negated` the variables of FMI 1.0 whose value is that of their reference with the other sign;
+    `wanted` the interface that shall be used, where it is not the default (see `using`).
     """
 
     path: Path
@@ -37,6 +50,18 @@ class Fmu:
     unpacked: int = 0
     defects: tuple[str, ...] = ()
     negated: frozenset[str] = frozenset()
+    wanted: InterfaceType | None = None
+
+    def using(self, interface: InterfaceType | None) -> Fmu:
+        """The same FMU by this interface (None: Co-Simulation where there is one, else Model Exchange).
+
+        Raises FmuError when it does not have it.
+        """
+        md = self.description
+        kind = {"co_simulation": md.coSimulation, "model_exchange": md.modelExchange}
+        if interface is not None and kind[interface] is None:
+            raise FmuError(f'{self.path}: interface = "{interface}": it has no such interface')
+        return self if interface == self.wanted else dataclasses.replace(self, wanted=interface)
 
     @functools.cached_property
     def digest(self) -> str:
@@ -66,15 +91,23 @@ class Fmu:
         return f"binaries/{folder}/{self.kind.modelIdentifier}{sharedLibraryExtension}"
 
     @property
-    def kind(self) -> Any:
-        """The interface that is used: FMPy's CoSimulation where there is one, else its ModelExchange.
-
-        Raises FmuError for an FMU that has neither.
-        """
-        found = self.description.coSimulation or self.description.modelExchange
-        if found is None:
+    def interface_type(self) -> InterfaceType:
+        """Which interface is used. Raises FmuError for an FMU that has none of the two."""
+        md = self.description
+        if md.coSimulation is None and md.modelExchange is None:
             raise FmuError(f"{self.path}: has neither a Co-Simulation nor a Model Exchange interface")
-        return found
+        return self.wanted or ("model_exchange" if md.coSimulation is None else "co_simulation")
+
+    @property
+    def kind(self) -> Any:
+        """FMPy's CoSimulation or ModelExchange of the interface that is used. Raises FmuError."""
+        md = self.description
+        return md.coSimulation if self.interface_type == "co_simulation" else md.modelExchange
+
+    @property
+    def has_sources(self) -> bool:
+        """Whether it contains its C sources."""
+        return any(e.startswith("sources/") and e.endswith((".c", ".cpp", ".cc")) for e in self.entries)
 
     @property
     def holds_python(self) -> bool:
@@ -136,12 +169,16 @@ def _elsewhere(names: tuple[str, ...]) -> str:
 
 def check_runnable(fmu: Fmu) -> None:
     """Raise FmuError unless this master can run the FMU on this machine."""
-    if fmu.description.coSimulation is None:
-        raise FmuError(f"{fmu.path}: has no Co-Simulation interface; Model Exchange is not supported")
+    if fmu.interface_type == "model_exchange" and fmu.description.fmiVersion.startswith("1"):
+        raise FmuError(
+            f"{fmu.path}: FMI 1.0 Model Exchange is not supported, only that of FMI 2.0 and 3.0; "
+            "export it as Co-Simulation, or in FMI 2.0"
+        )
     if fmu.binary not in fmu.entries:
+        compile_it = f"; it has its sources: evcosim compile {fmu.path}" if fmu.has_sources else ""
         raise FmuError(
             f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "
-            f"{', '.join(fmu.platforms) or 'no platform'}"
+            f"{', '.join(fmu.platforms) or 'no platform'}{compile_it}"
         )
 
 

@@ -20,7 +20,7 @@ import contextlib
 import ctypes
 import functools
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -31,7 +31,7 @@ from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.unit_plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
 from . import binary, folders
-from .fmu import Fmu, FmuError, check_runnable, is_true
+from .fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
@@ -74,8 +74,15 @@ class Instance:
     step_call: StepCall | None = None
     """What does a step, known when the initialization is left."""
 
-    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface | None = None) -> None:
+    def __init__(
+        self,
+        fmu: Fmu,
+        name: str,
+        interface: UnitInterface | None = None,
+        options: LoadOptions = DEFAULT_OPTIONS,
+    ) -> None:
         check_runnable(fmu)
+        self.options = options
         self.name = name
         self.fmu = fmu
         self.interface = interface or fmu.interface
@@ -172,18 +179,27 @@ class Instance:
         """See `unit.Unit`."""
         return self.log.warnings
 
+    @property
+    def tolerance(self) -> float | None:
+        """The relative tolerance that the FMU is told; None: none."""
+        return self.options.tolerance
+
     # ---- before the steps
+
+    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+        """See `unit.Unit`."""
+        raise NotImplementedError
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """See `unit.Unit`. Makes the calls of a turn, with all their arguments."""
         self.inputs, self.through, self.outputs = [], [], []
         for block in plan.blocks:
             if block.kind == "input":
-                self.inputs += self._transfers("Set", memory, block.variables, block.slot)
+                self.inputs += self._transfers("Set", memory, enumerate(block.variables, block.slot))
             elif block.kind == "discrete":
-                self.outputs += self._transfers("Get", memory, block.variables, block.slot)
+                self.outputs += self._transfers("Get", memory, enumerate(block.variables, block.slot))
             else:
-                self.outputs += self._transfers("Get", memory, block.variables, block.latest)
+                self.outputs += self._transfers("Get", memory, enumerate(block.variables, block.latest))
                 self.through += self._feedthrough(memory, block)
         view = floats(memory)
         self.set_inputs = one_after_the_other(*(self._acting(t, view) for t in self.inputs))
@@ -193,19 +209,20 @@ class Instance:
     def _feedthrough(self, memory: NDArray[np.float64], block: Block) -> list[Transfer | Copy]:
         if not block.feedthrough:
             return []
-        transfers = self._transfers("Get", memory, block.variables[: block.feedthrough], block.latest)
+        through = enumerate(block.variables[: block.feedthrough], block.latest)
+        transfers = self._transfers("Get", memory, through)
         return [*transfers, Copy(block.latest, block.slot, block.feedthrough)]
 
     def _transfers(
-        self, direction: str, memory: NDArray[np.float64], variables: Sequence[VariableInfo], slot: int
+        self, direction: str, memory: NDArray[np.float64], places: Iterable[tuple[int, VariableInfo]]
     ) -> list[Transfer]:
-        """What moves values between unit and memory, from `slot` on.
+        """What moves values between the unit and their slots of the memory.
 
         One for each function: what is one type in a plan may be several in FMI 3.0.
         """
         groups: dict[tuple[str, Any], list[tuple[int, VariableInfo]]] = {}
-        for place, variable in enumerate(variables, slot):
-            groups.setdefault(self._access(direction, variable), []).append((place, variable))
+        for slot, variable in places:
+            groups.setdefault(self._access(direction, variable), []).append((slot, variable))
         return [
             self._transfer(name, c_type, memory, [slot for slot, _ in members], [v for _, v in members])
             for (name, c_type), members in groups.items()

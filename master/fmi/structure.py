@@ -25,6 +25,8 @@ def mend_structure(root: Any, places: Mapping[int, int]) -> list[str]:
 
 def _by_index(root: Any, places: Mapping[int, int]) -> list[str]:
     defects, known = [], {str(old): str(new) for old, new in places.items()}
+    states = len(root.findall("ModelStructure/Derivatives/Unknown"))
+    root.set("numberOfContinuousStates", str(states))  # as the FMU counts them, whatever is left out below
     for unknown in list(root.iter("Unknown")):
         if wrong := _unknown_numbers(unknown, "index", known):
             what = f"is the index of none of {len(known)} variables"

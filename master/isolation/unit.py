@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface
 from ...cosim.unit_plan import UnitPlan
-from ..fmi.fmu import Fmu, FmuError, check_runnable
+from ..fmi.fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions, check_runnable
 from ..fmi.log import UnitLog
 from ..unit import UnitError, Value, floats
 from . import line, shared, wire
@@ -33,7 +33,14 @@ class IsolatedUnit:
     Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
     """
 
-    def __init__(self, fmu: Fmu, name: str, interface: UnitInterface, limits: Limits) -> None:
+    def __init__(
+        self,
+        fmu: Fmu,
+        name: str,
+        interface: UnitInterface,
+        limits: Limits,
+        options: LoadOptions = DEFAULT_OPTIONS,
+    ) -> None:
         check_runnable(fmu)
         self.name, self.fmu, self.interface = name, fmu, interface
         self._limits = limits
@@ -47,7 +54,7 @@ class IsolatedUnit:
             self._shared = shared.Shared(descriptor)
             self._slots = self._shared.slots
             self._slots[shared.SPIN] = line.spin_time()
-            self._process = Process((there, name, interface), descriptor, limits)
+            self._process = Process((there, name, interface, options), descriptor, limits)
         finally:
             os.close(descriptor)
         self._line = line.Line(
