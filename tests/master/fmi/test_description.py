@@ -81,7 +81,7 @@ def test_defects_are_mended_and_told(tmp_path: Path, change: tuple[str, str], to
     found = read_fmu(path)
     assert found.defects == (told,)
     assert "y" in found.interface.variables
-    with pytest.raises(FmuError, match=r"a.fmu: strict: 1 defects: "):
+    with pytest.raises(FmuError, match=r"a.fmu: strict: 1 defect: "):
         read_fmu(path, strict=True)
 
 
