@@ -11,6 +11,7 @@ from .budget import budget
 from .build import build
 from .check import check
 from .compare import compare
+from .compile import compile_
 from .identify import identify
 from .info import info
 from .listing import list_
@@ -40,6 +41,7 @@ def command() -> Any:
         "identify": identify,
         "reproduce": reproduce,
         "build": build,
+        "compile": compile_,
         "budget": budget,
     }
     for name, verb in verbs.items():

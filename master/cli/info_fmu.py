@@ -181,8 +181,7 @@ def _sources(about: dict[str, Any]) -> str:
     files = ", ".join(_bounded([name.removeprefix("sources/") for name in about["sources"]]))
     if not files or about["binary_for_this_machine"]:
         return files
-    builds = f"'fmpy compile {about['file']}' builds one if it is valid"
-    return f"{files}; there is no binary for this machine: {builds}"
+    return f"{files}; there is no binary for this machine: 'evcosim compile {about['file']}' makes one"
 
 
 def _with_meaning(told: dict[str, str]) -> str:

@@ -107,7 +107,7 @@ class Fmu:
     @property
     def has_sources(self) -> bool:
         """Whether it contains its C sources."""
-        return any(e.startswith("sources/") and e.endswith((".c", ".cpp", ".cc")) for e in self.entries)
+        return any(e.startswith("sources/") and e.endswith(".c") for e in self.entries)
 
     @property
     def holds_python(self) -> bool:

@@ -228,7 +228,7 @@ def test_info_of_sources_without_a_binary(evcosim, tmp_path: Path) -> None:
         bare.writestr("sources/vehicle.c", "int x;")
     shown = " ".join(evcosim("info", "Sources.fmu").out.split())
     assert "sources vehicle.c; there is no binary for this machine" in shown
-    assert "'fmpy compile Sources.fmu' builds one if it is valid" in shown
+    assert "'evcosim compile Sources.fmu' makes one" in shown
 
 
 def test_info_says_what_a_capability_means_here(evcosim) -> None:
