@@ -300,13 +300,13 @@ DESCRIPTIONS = [
     described(
         "no_interface",
         "neither Co-Simulation nor Model Exchange",
-        "no Co-Simulation",
+        "has neither a Co-Simulation nor a Model Exchange interface",
         ('<CoSimulation modelIdentifier="hostile"/>', ""),
     ),
     described(
         "model_exchange",
         "Model Exchange only, by a library without it",
-        "Model Exchange",
+        "lacks the function fmi",
         ("<CoSimulation ", "<ModelExchange "),
     ),
     described(

@@ -121,7 +121,7 @@ static void end(void) {
     if (act("file")) { FILE *f = fopen("large", "w"); static char block[1 << 20]; for (;;) fwrite(block, 1, sizeof block, f); }
     if (act("alarm")) { struct itimerval soon = {{0, 0}, {0, 1000}}; setitimer(ITIMER_REAL, &soon, NULL); hang(); }
     if (act("fork_and_exit")) { fork_sleeper(false); _exit(3); }
-    if (act("close_all")) { for_descriptors(closed); usleep(100000); }
+    if (act("close_all")) { for_descriptors(closed); usleep(1000000); }
     if (act("truncate_all")) { for_descriptors(truncated); answer("+", 1); hang(); }
     if (act("answer_nonsense")) { answer("nonsense", 8); hang(); }
     if (act("answer_nesting")) { static char deep[500000]; memset(deep, '[', sizeof deep); answer(deep, sizeof deep); hang(); }
