@@ -26,6 +26,7 @@ from evcosim.master.simulation import simulate
 from support.hostile import units
 from support.hostile.case import WHOLE, Case
 
+_ENDING = 2.0  # s
 _MARK = "EVCOSIM_TEST_MARK"
 SYSTEM = """
 name = "hostile"
@@ -114,9 +115,17 @@ def watched(folder: Path) -> Iterator[list[str]]:
         after = _state(folder)
         left += [f"{name}: {state[name]} -> {after[name]}" for name in state if state[name] != after[name]]
         left += [f"temporary {name}" for name in sorted(os.listdir(temporary))]
-        for process, command in _marked(mark):
+        for process, command in _lasting(mark):
             left.append(f"process {command}")
             os.kill(process, signal.SIGKILL)
+
+
+def _lasting(mark: str) -> list[tuple[int, str]]:
+    """The marked processes that are still there after a moment: the system takes one to end a killed one."""
+    until = time.monotonic() + _ENDING
+    while (found := _marked(mark)) and time.monotonic() < until:
+        time.sleep(0.02)
+    return found
 
 
 def _state(folder: Path) -> dict[str, Any]:
