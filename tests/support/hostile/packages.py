@@ -88,7 +88,7 @@ _PACKED = [
         pack=archives.with_entries(25_000),
     ),
     Case("outside", "an entry ../../evil", _OUTSIDE, None, pack=archives.with_entry("../../evil")),
-    Case("absolute", "an entry /tmp/evil", _OUTSIDE, None, pack=archives.with_entry("/tmp/evil")),
+    Case("absolute", "an entry /evil", _OUTSIDE, None, pack=archives.with_entry("/evil")),
     Case("drive", "an entry C:/evil", _OUTSIDE, None, pack=archives.with_entry("C:/evil")),
     Case("link", "a link to /etc", "is a link or a device", None, pack=archives.link("resources/etc")),
     Case(
