@@ -81,7 +81,7 @@ ENDS = [
     ),
     in_step(
         "close_all",
-        "closes the files 0 to 20, our socket among them",
+        "closes the files 0 to 63, our socket among them",
         _DIED + "lost its connection to the master",
         versions=(3,),
     ),

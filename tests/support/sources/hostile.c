@@ -53,7 +53,7 @@ static void hang(void) { for (volatile int i = 0;; i++) {} }
 
 static int deeper(volatile int n) { return n ? deeper(n + 1) + n : 0; }
 
-static void for_descriptors(void (*what)(int)) { for (int i = 0; i <= 20; i++) what(i); }
+static void for_descriptors(void (*what)(int)) { for (int i = 0; i < 64; i++) what(i); }
 
 static void closed(int i) { close(i); }
 
