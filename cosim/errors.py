@@ -27,3 +27,8 @@ def nearest(word: str, words: Iterable[str]) -> str:
     """` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
     close = difflib.get_close_matches(word, list(words), n=1, cutoff=0.6)
     return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def counted(count: int, thing: str) -> str:
+    """`1 value`, `2 values`."""
+    return f"{count} {thing}" + ("" if count == 1 else "s")

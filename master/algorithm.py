@@ -43,7 +43,7 @@ class PythonEngine(Engine):
             for action in self.schedule
         ]
         if self.profile is not None:
-            acts = [self._timed(*pair) for pair in zip(self.schedule, acts, strict=True)]  # fmt: skip
+            acts = [self._timed(*pair) for pair in zip(self.schedule, acts, strict=True)]
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
         try:
             for k in range(first, first + count):

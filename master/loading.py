@@ -8,7 +8,7 @@ from ..cosim.interface import UnitInterface
 from .fmi.fmi1 import Fmi1Unit
 from .fmi.fmi2 import Fmi2ModelExchange, Fmi2Unit
 from .fmi.fmi3 import Fmi3ModelExchange, Fmi3Unit
-from .fmi.fmu import DEFAULT_OPTIONS, Fmu, LoadOptions
+from .fmi.fmu import Fmu
 from .unit import Unit
 
 _CLASSES: dict[tuple[str, str], Any] = {
@@ -20,11 +20,11 @@ _CLASSES: dict[tuple[str, str], Any] = {
 }
 
 
-def load_unit(fmu: Fmu, name: str, interface: UnitInterface, options: LoadOptions = DEFAULT_OPTIONS) -> Unit:
-    """Instantiate an FMU; `interface` is how the system sees it.
+def load_unit(fmu: Fmu, name: str, interface: UnitInterface, tolerance: float | None = None) -> Unit:
+    """Instantiate an FMU; `interface` is how the system sees it, `tolerance` the relative one of its solver.
 
     Raises FmuError naming the file and the reason when it cannot run here.
     """
-    used = fmu.using(options.interface)
-    unit: Unit = _CLASSES[fmu.description.fmiVersion[0], used.interface_type](used, name, interface, options)
+    made = _CLASSES[fmu.description.fmiVersion[0], fmu.interface_type]
+    unit: Unit = made(fmu, name, interface, tolerance)
     return unit

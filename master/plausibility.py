@@ -14,31 +14,41 @@ _LARGEST = 1e30
 """Beyond it, in whatever unit of measure, an output without declared limits is taken to have diverged."""
 
 
-def implausible(table: Table, plan: Plan) -> list[str]:
+class Extremes:
+    """The smallest and the largest value of each column of a table that grows; no row is read twice."""
+
+    def __init__(self, columns: int) -> None:
+        self._rows = 0
+        self._low, self._high = np.full(columns, np.inf), np.full(columns, -np.inf)
+
+    def of(self, table: Table) -> tuple[Array, Array]:
+        """Both, shapes (columns,). The last row may not be final: it is read again with those that follow."""
+        count = table.shape[0]
+        for start in range(self._rows, count - 1, _ROWS):
+            self._low, self._high = self._with(table.rows(start, min(start + _ROWS, count - 1)))
+        self._rows = max(self._rows, count - 1)
+        return self._with(table.rows(self._rows, count))
+
+    def _with(self, rows: Array) -> tuple[Array, Array]:
+        if not len(rows):
+            return self._low, self._high
+        return np.minimum(self._low, rows.min(axis=0)), np.maximum(self._high, rows.max(axis=0))
+
+
+def implausible(extremes: tuple[Array, Array], plan: Plan) -> list[str]:
     """Recorded outputs that left the range that they declare, or went beyond 1e30: a sentence for each.
 
     A range that does not hold is no error: it is the author's claim, and the run went on with what the unit
     computed.
     """
-    if not table.shape[0]:
-        return []
     interfaces = {unit.name: unit.interface for unit in plan.units}
     found = []
-    for column, low, high in zip(plan.columns, *_extremes(table), strict=True):
+    for column, low, high in zip(plan.columns, *extremes, strict=True):
         unit, _, variable = column.name.partition(".")
         about = interfaces[unit].variables[variable]
-        if about.type in ("Real", "Integer") and about.causality in ("output", "local"):
+        if low <= high and about.type in ("Real", "Integer") and about.causality in ("output", "local"):
             found += _sentences(column.name, about, float(low), float(high))
     return found
-
-
-def _extremes(table: Table) -> tuple[Array, Array]:
-    """The smallest and the largest value of each column, shapes (columns,)."""
-    low, high = np.full(table.shape[1], np.inf), np.full(table.shape[1], -np.inf)
-    for start in range(0, table.shape[0], _ROWS):
-        rows = table.rows(start, start + _ROWS)
-        low, high = np.minimum(low, rows.min(axis=0)), np.maximum(high, rows.max(axis=0))
-    return low, high
 
 
 def _sentences(name: str, about: VariableInfo, low: float, high: float) -> list[str]:

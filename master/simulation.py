@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from ..cosim.canlog import BusLog, write_can_log
-from ..cosim.errors import ConfigError, RunError, nearest
+from ..cosim.errors import ConfigError, RunError, counted, nearest
 from ..cosim.files import DATA
 from ..cosim.interface import UnitInterface
 from ..cosim.mapping import present, without_absent
@@ -40,12 +40,12 @@ from ..cosim.system import Algorithm, EngineName, Isolation, System, Value, load
 from ..cosim.variation import BusVariation, varied
 from .builtin import fmu_file
 from .engines import engine_class
-from .fmi.fmu import Fmu, LoadOptions, check_runnable, read_fmu
+from .fmi.fmu import Fmu, check_runnable, read_fmu
 from .initialization import initialize, ordered_links
 from .isolation.choice import chosen, limits
 from .isolation.unit import IsolatedUnit
 from .loading import load_unit
-from .plausibility import implausible
+from .plausibility import Extremes, implausible
 from .profile import Profile
 from .unit import Unit
 
@@ -159,6 +159,7 @@ class Simulation:
                 self._units[unit.name] = self._load(unit, isolation)
             self._engine = made(self.plan, self._units, log_raw=log_frames)
             self._engine.profile = Profile() if profile else None
+            self._extremes = Extremes(len(self.plan.columns))
             initialize(self._units, self.plan)
             self._engine.start()
         except BaseException:
@@ -168,10 +169,9 @@ class Simulation:
     def _load(self, plan: UnitPlan, wanted: Isolation | None) -> Unit:
         fmu, entry = self._fmus[plan.name], self.system.file.units[plan.name]
         self.isolation[plan.name] = chosen(plan.name, fmu, entry, wanted)
-        options = LoadOptions(entry.interface, entry.tolerance)
         if self.isolation[plan.name] == "none":
-            return load_unit(fmu, plan.name, plan.interface, options)
-        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry), options)
+            return load_unit(fmu, plan.name, plan.interface, entry.tolerance)
+        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry), entry.tolerance)
 
     # ---- a loop of one's own
 
@@ -286,13 +286,11 @@ class Simulation:
         """What is not as it should be, one sentence each: missing units of measure, warnings of units,
         outputs beyond their limits."""
         from_units = [
-            f"unit '{name}' gave {n} warning{'s' if n > 1 else ''}"
-            for name, n in self._unit_warnings().items()
-            if n
+            f"unit '{name}' gave {counted(n, 'warning')}" for name, n in self._unit_warnings().items() if n
         ]
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
         notices = [notice for notice in (self._notice, self._engine.notice) if notice]
-        beyond = implausible(self._engine.recorded(), self.plan)
+        beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
         return [*notices, *defects, *self.plan.warnings, *from_units, *beyond]
 
     def _unit_warnings(self) -> dict[str, int]:

@@ -177,7 +177,7 @@ def _show_trial(tried: Trial) -> None:
 
 
 def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, tried: Trial | None) -> None:
-    from .console import counted
+    from ...cosim.errors import counted
 
     counts: dict[str, int] = {}
     for row in checked.rows:

@@ -105,11 +105,6 @@ def number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def counted(count: int, thing: str) -> str:
-    """`1 value`, `2 values`."""
-    return f"{count} {thing}" + ("" if count == 1 else "s")
-
-
 @contextlib.contextmanager
 def progress_bar(text: str, start: float, stop: float, wanted: bool) -> Iterator[Show]:
     """A bar over the simulated time [s] on stderr, where that is a terminal and a bar is wanted."""

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .console import counted, number, print_fields, print_table
+from ...cosim.errors import counted
+from .console import number, print_fields, print_table
 from .info_capabilities import capabilities, limits
 
 if TYPE_CHECKING:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .console import counted, number, print_fields, print_table
+from ...cosim.errors import counted
+from .console import number, print_fields, print_table
 
 if TYPE_CHECKING:
     from .run import Outcome

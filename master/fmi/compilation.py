@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .archive import FmuError, extract, read_entry
+from .description import parsed_xml
 from .fmu import Fmu, read_fmu
 
 _SHOWN = 3000  # characters of what the compiler says
@@ -30,7 +31,7 @@ def compile_fmu(path: Path, output: Path | None = None) -> Path:
     missing = [used for used in _interfaces(fmu) if used.binary not in fmu.entries]
     if not missing:
         raise FmuError(f"{path}: has a binary for this machine already: {fmu.binary}")
-    if not fmu.has_sources:
+    if not fmu.c_sources:
         raise FmuError(f"{path}: has no C sources (sources/*.c), so that nothing can be compiled")
     folder = extract(path)
     try:
@@ -89,18 +90,11 @@ def _declared(fmu: Fmu) -> tuple[list[str], list[str]]:
     names, flags = (_of_fmi_3 if fmu.description.fmiVersion.startswith("3") else _of_fmi_2)(fmu)
     if lacking := [name for name in names if name not in fmu.entries]:
         raise FmuError(f"{fmu.path}: declares the source {lacking[0]}, which is not in it")
-    every = [e for e in fmu.entries if e.startswith("sources/") and e.endswith(".c")]
-    return names or every, flags
+    return names or list(fmu.c_sources), flags
 
 
 def _root(fmu: Fmu, entry: str) -> Any:
-    from lxml import etree
-
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-    try:
-        return etree.fromstring(read_entry(fmu.path, entry), parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        raise FmuError(f"{fmu.path}: {entry} is no well-formed XML: {error}") from error
+    return parsed_xml(f"{fmu.path}: {entry}", read_entry(fmu.path, entry))
 
 
 def _of_fmi_2(fmu: Fmu) -> tuple[list[str], list[str]]:

@@ -43,10 +43,10 @@ def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], froz
     return description, tuple(defects), negated_aliases(root)
 
 
-def _parsed(path: Path, xml: bytes) -> Any:
+def parsed_xml(place: str, xml: bytes) -> Any:
+    """The root of a document of an FMU. Raises FmuError that begins with `place`."""
     from lxml import etree
 
-    place = f"{path}: modelDescription.xml"
     # in UTF-16 too: no description needs a document type, and entities are how XML reads files and explodes
     if b"<!DOCTYPE" in xml.replace(b"\0", b"") or b"<!ENTITY" in xml.replace(b"\0", b""):
         raise FmuError(
@@ -54,9 +54,14 @@ def _parsed(path: Path, xml: bytes) -> Any:
         )
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
     try:
-        root = etree.fromstring(xml, parser)
+        return etree.fromstring(xml, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
         raise FmuError(f"{place} is no well-formed XML: {error}") from error
+
+
+def _parsed(path: Path, xml: bytes) -> Any:
+    place = f"{path}: modelDescription.xml"
+    root = parsed_xml(place, xml)
     if root.tag != "fmiModelDescription":
         raise FmuError(f"{place} begins with <{root.tag}>, not with <fmiModelDescription>")
     version = root.get("fmiVersion")

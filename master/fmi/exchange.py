@@ -26,7 +26,7 @@ from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.plan import UnitPlan
 from ..unit import UnitError, Value, floats
 from .cvode import Cvode, Function, SolverError
-from .fmu import DEFAULT_OPTIONS, Fmu, LoadOptions
+from .fmu import Fmu
 from .instance import Instance
 from .transfer import Call, one_after_the_other
 
@@ -61,21 +61,21 @@ class ModelExchange(Instance):
         fmu: Fmu,
         name: str,
         interface: UnitInterface | None = None,
-        options: LoadOptions = DEFAULT_OPTIONS,
+        tolerance: float | None = None,
     ) -> None:
         self._solver: Cvode | None = None
         self._begins_anew = self._nominals_changed = True
         self._inputs: dict[bool, list[Place]] = {True: [], False: []}  # continuous ones, discrete ones
         self._held: dict[bool, list[float]] = {True: [], False: []}  # their values, as last given to the FMU
-        super().__init__(fmu, name, interface, options)
+        super().__init__(fmu, name, interface, tolerance)
 
     # ---- before the steps
 
     @property
     def tolerance(self) -> float:
         """The relative tolerance: what the system says, else what the FMU does, else 1e-6."""
-        if self.options.tolerance is not None:
-            return self.options.tolerance
+        if self._tolerance is not None:
+            return self._tolerance
         with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
             declared = float(getattr(self.fmu.description.defaultExperiment, "tolerance", None))  # type: ignore[arg-type] # None is a TypeError
             return declared if 0.0 < declared < 1.0 else _TOLERANCE
@@ -247,11 +247,11 @@ class ModelExchange(Instance):
         continuous, discrete = ([view[slot] for slot, _ in self._inputs[kind]] for kind in (True, False))
         if continuous == held[True] and discrete == held[False]:
             return
-        before, held[True] = held[True], continuous
+        held[True] = continuous
         if discrete != held[False]:
             held[False] = discrete
             self._handle_event(one_after_the_other(self._set_discrete, self._set_continuous))
-        elif continuous != before:
+        else:
             self._set_continuous()
             self._begins_anew = True
             if self._domains_now() != self._domains:

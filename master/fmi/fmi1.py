@@ -12,7 +12,7 @@ from typing import Any
 
 from ...cosim.interface import UnitInterface, VariableInfo
 from ..unit import Value
-from .fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions
+from .fmu import Fmu, FmuError
 from .instance import Instance
 from .library import Library
 from .transfer import StepCall
@@ -35,12 +35,12 @@ class Fmi1Unit(Instance):
         fmu: Fmu,
         name: str,
         interface: UnitInterface | None = None,
-        options: LoadOptions = DEFAULT_OPTIONS,
+        tolerance: float | None = None,
     ) -> None:
-        if options.tolerance is not None:
+        if tolerance is not None:
             raise FmuError(f"{fmu.path}: unit '{name}': a unit of FMI 1.0 Co-Simulation takes no tolerance")
         self._given: dict[str, Value] = {}
-        super().__init__(fmu, name, interface, options)
+        super().__init__(fmu, name, interface, tolerance)
 
     def _prefix(self) -> str:
         return f"{self.fmu.kind.modelIdentifier}_"

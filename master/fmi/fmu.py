@@ -10,28 +10,17 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ...cosim.errors import nearest
+from ...cosim.errors import counted, nearest
 from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.system import InterfaceType
 from ...cosim.units import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
 
-__all__ = ["DEFAULT_OPTIONS", "Fmu", "FmuError", "LoadOptions", "check_runnable", "is_true", "read_fmu"]
+__all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
 
 _DESCRIPTION = "modelDescription.xml"
 _SHOWN_DEFECTS = 5
-
-
-@dataclasses.dataclass(frozen=True)
-class LoadOptions:
-    """What a unit's entry says beyond the FMU (see `cosim.system.UnitEntry`)."""
-
-    interface: InterfaceType | None = None
-    tolerance: float | None = None
-
-
-DEFAULT_OPTIONS = LoadOptions()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -105,9 +94,9 @@ class Fmu:
         return md.coSimulation if self.interface_type == "co_simulation" else md.modelExchange
 
     @property
-    def has_sources(self) -> bool:
-        """Whether it contains its C sources."""
-        return any(e.startswith("sources/") and e.endswith(".c") for e in self.entries)
+    def c_sources(self) -> tuple[str, ...]:
+        """The entries that are C sources."""
+        return tuple(e for e in self.entries if e.startswith("sources/") and e.endswith(".c"))
 
     @property
     def holds_python(self) -> bool:
@@ -153,8 +142,9 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
         defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
     fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects, negated)
     if strict and defects:
-        count = f"{len(defects)} defect" + ("s" if len(defects) > 1 else "")
-        raise FmuError(f"{path}: strict: {count}: " + "; ".join(defects[:_SHOWN_DEFECTS]))
+        raise FmuError(
+            f"{path}: strict: {counted(len(defects), 'defect')}: " + "; ".join(defects[:_SHOWN_DEFECTS])
+        )
     return fmu
 
 
@@ -175,7 +165,7 @@ def check_runnable(fmu: Fmu) -> None:
             "export it as Co-Simulation, or in FMI 2.0"
         )
     if fmu.binary not in fmu.entries:
-        compile_it = f"; it has its sources: evcosim compile {fmu.path}" if fmu.has_sources else ""
+        compile_it = f"; it has its sources: evcosim compile {fmu.path}" if fmu.c_sources else ""
         raise FmuError(
             f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "
             f"{', '.join(fmu.platforms) or 'no platform'}{compile_it}"

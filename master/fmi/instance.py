@@ -31,7 +31,7 @@ from ...cosim.interface import UnitInterface, VariableInfo
 from ...cosim.unit_plan import Block, UnitPlan
 from ..unit import UnitError, Value, floats
 from . import binary, folders
-from .fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions, check_runnable, is_true
+from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
@@ -79,10 +79,10 @@ class Instance:
         fmu: Fmu,
         name: str,
         interface: UnitInterface | None = None,
-        options: LoadOptions = DEFAULT_OPTIONS,
+        tolerance: float | None = None,
     ) -> None:
         check_runnable(fmu)
-        self.options = options
+        self._tolerance = tolerance
         self.name = name
         self.fmu = fmu
         self.interface = interface or fmu.interface
@@ -182,7 +182,7 @@ class Instance:
     @property
     def tolerance(self) -> float | None:
         """The relative tolerance that the FMU is told; None: none."""
-        return self.options.tolerance
+        return self._tolerance
 
     # ---- before the steps
 

@@ -136,13 +136,13 @@ class _Server:
         if frame:
             wire.send(self.connection, frame)
 
-    def do_load(self, fmu: Any, name: str, interface: Any, options: Any) -> None:
+    def do_load(self, fmu: Any, name: str, interface: Any, tolerance: Any) -> None:
         """Instantiate the FMU."""
         from ..fmi.log import UnitLog
         from ..loading import load_unit
 
         UnitLog.listener = self.memory.hear
-        self.unit = load_unit(fmu, name, interface, options)
+        self.unit = load_unit(fmu, name, interface, tolerance)
 
     def do_bind(self, plan: Any) -> None:
         """Bind the unit to the shared memory."""

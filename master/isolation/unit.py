@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface
 from ...cosim.unit_plan import UnitPlan
-from ..fmi.fmu import DEFAULT_OPTIONS, Fmu, FmuError, LoadOptions, check_runnable
+from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
 from ..unit import UnitError, Value, floats
 from . import line, shared, wire
@@ -39,7 +39,7 @@ class IsolatedUnit:
         name: str,
         interface: UnitInterface,
         limits: Limits,
-        options: LoadOptions = DEFAULT_OPTIONS,
+        tolerance: float | None = None,
     ) -> None:
         check_runnable(fmu)
         self.name, self.fmu, self.interface = name, fmu, interface
@@ -54,7 +54,7 @@ class IsolatedUnit:
             self._shared = shared.Shared(descriptor)
             self._slots = self._shared.slots
             self._slots[shared.SPIN] = line.spin_time()
-            self._process = Process((there, name, interface, options), descriptor, limits)
+            self._process = Process((there, name, interface, tolerance), descriptor, limits)
         finally:
             os.close(descriptor)
         self._line = line.Line(

@@ -20,8 +20,6 @@ from ..builtin import fmu_file
 from ..fmi.fmu import read_fmu
 from ..simulation import Simulation
 
-_CHUNK = 50  # steps between two looks at the clock
-
 Drive = Mapping[str, Sequence[tuple[float, float]]]
 """The points (time [s] from the start, value) of each input, in the units of measure of the system."""
 
@@ -92,9 +90,8 @@ class Bench:
     def run(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
         """The outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
         with self.loaded(drive, deadline, substeps) as simulation:
-            while left := simulation.steps_left:
-                deadline.check()
-                simulation.step(min(_CHUNK, left))
+            deadline.check()
+            simulation.run(lambda *_: deadline.check())
             results = simulation.results
         columns = {}
         for name in self.outputs:
@@ -103,13 +100,12 @@ class Bench:
         return columns
 
     def to_ours(self, name: str) -> Affine:
-        """From the values of an output to the unit of measure of the unit that is there now."""
-        source, target = self.interface.variables[name].unit, self.ours.variables[name].unit
-        if not source or not target:
-            return Affine()
-        return conversion(
-            defined(source, self.interface.units_of_measure), defined(target, self.ours.units_of_measure)
-        )
+        """From the values of a variable to the unit of measure of the unit that is there now."""
+        return _between(self.interface, self.ours, name)
+
+    def from_ours(self, name: str) -> Affine:
+        """The other way."""
+        return _between(self.ours, self.interface, name)
 
     def _alone(self, entry: UnitEntry) -> System:
         experiment = self.system.file.experiment.model_copy(
@@ -143,6 +139,14 @@ class Bench:
                 start={self.unit: _of(given.start.get(self.unit, {}), known)},
             ),
         )
+
+
+def _between(source: UnitInterface, target: UnitInterface, name: str) -> Affine:
+    """Between the units of measure of a variable; as it is where one of the two has none."""
+    before, after = source.variables[name].unit, target.variables[name].unit
+    if not before or not after:
+        return Affine()
+    return conversion(defined(before, source.units_of_measure), defined(after, target.units_of_measure))
 
 
 def _of(values: Mapping[str, Value], known: Mapping[str, object]) -> dict[str, Value]:

@@ -14,7 +14,6 @@ from ...cosim.errors import ConfigError, RunError
 from ...cosim.interface import VariableInfo
 from ...cosim.reaction import Pair, alike, direction
 from ...cosim.results import Array
-from ...cosim.units import conversion, defined
 from ..fmi.fmu import is_true
 from ..isolation.unit import IsolatedUnit
 from .bench import Bench, largest
@@ -146,13 +145,8 @@ def limits(bench: Bench, given: Mapping[str, Level]) -> list[Finding]:
         v = bench.interface.variables.get(name)
         if v is None or v.causality != "input" or (v.min is None and v.max is None):
             continue
-        ends = [level.limits[0], level.limits[1]]
-        ours = bench.ours.variables[name].unit
-        if ours and v.unit:
-            map_ = conversion(
-                defined(ours, bench.ours.units_of_measure), defined(v.unit, bench.interface.units_of_measure)
-            )
-            ends = sorted(map_(end) for end in ends)
+        map_ = bench.from_ours(name)
+        ends = sorted(map_(end) for end in level.limits)
         if (v.max is not None and ends[1] > v.max * (1.0 + 1e-9)) or (v.min is not None and ends[0] < v.min):
             takes = f"from {_end(v.min)} to {_end(v.max)}"
             text = f"the system can give {_end(ends[0])} to {_end(ends[1])} [{v.unit}], the FMU takes {takes}"

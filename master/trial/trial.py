@@ -8,7 +8,7 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from ...cosim.errors import ConfigError, RunError
+from ...cosim.errors import ConfigError, RunError, counted
 from ...cosim.reaction import Pair, turned
 from ...cosim.results import Array
 from ...cosim.scenario import Scenario
@@ -87,7 +87,8 @@ class _Trying:
         self.proposal = Proposal()
         self._seen: list[Columns] = []
         self._ours_seen: list[Columns] = []
-        self._cache: dict[str, Columns] = {}
+        self._theirs_by_drive: dict[str, Columns] = {}
+        self._ours_by_drive: dict[str, Columns] = {}
         self._runs = 0
 
     def found(self, what: str, verdict: probes.Verdict, text: str) -> None:
@@ -106,7 +107,7 @@ class _Trying:
         self.findings += probes.values(self._seen, self._ours_seen, theirs)
         self.findings += probes.limits(theirs, self.given)
         self._look_inside()
-        warned = f", {theirs.warnings} warnings" if theirs.warnings else ""
+        warned = f", {counted(theirs.warnings, 'warning')}" if theirs.warnings else ""
         text = f"{self._runs} runs of {theirs.duration:g} s{warned}"
         self.findings.insert(0, Finding("status", "note" if warned else "good", text))
 
@@ -120,18 +121,19 @@ class _Trying:
     def _run(self, drive: Drive) -> Columns:
         """The FMU's outputs; the same inputs are run once. Raises ConfigError, RunError."""
         key = repr(sorted(drive.items()))
-        if key not in self._cache:
-            self._cache[key] = self.theirs.run(drive, self.deadline)
+        known = self._theirs_by_drive
+        if key not in known:
+            known[key] = self.theirs.run(drive, self.deadline)
             self._runs += 1
-            self._seen.append(self._cache[key])
+            self._seen.append(known[key])
             self._ours_seen.append(self._run_ours(drive))
-        return self._cache[key]
+        return known[key]
 
     def _run_ours(self, drive: Drive) -> Columns:
-        key = "ours" + repr(sorted(drive.items()))
-        if key not in self._cache:
-            self._cache[key] = self.ours.run(drive, self.deadline)
-        return self._cache[key]
+        key, known = repr(sorted(drive.items())), self._ours_by_drive
+        if key not in known:
+            known[key] = self.ours.run(drive, self.deadline)
+        return known[key]
 
     def _at(self, high: Sequence[str] = ()) -> dict[str, list[tuple[float, float]]]:
         """All inputs constant: at rest, those in `high` moved."""
@@ -187,7 +189,7 @@ class _Trying:
         """Propose so many steps in a period, and let what follows have them."""
         self.proposal = dataclasses.replace(self.proposal, substeps=substeps, why_substeps=why)
         self.theirs.entry = self.theirs.entry.model_copy(update={"substeps": substeps})
-        self._cache = {key: columns for key, columns in self._cache.items() if key.startswith("ours")}
+        self._theirs_by_drive = {}
 
     def _ended(self) -> bool:
         self.found("trial", "problem", "ended: reactions, steps, state and speed were not tried")

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import Results
-from evcosim.master.fmi.fmu import LoadOptions, read_fmu
+from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.loading import load_unit
 from evcosim.master.simulation import simulate
 from support.equations import MODELS, equations_fmu
@@ -275,7 +275,7 @@ def test_co_simulation_is_the_default_where_there_are_both(tmp_path: Path) -> No
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_a_value_set_after_the_initialization_is_an_event(tmp_path: Path, fmi: int) -> None:
     fmu = read_fmu(equations_fmu(tmp_path / "timer.fmu", "timer", fmi))
-    unit = load_unit(fmu, "a", fmu.interface, LoadOptions(tolerance=1e-4))
+    unit = load_unit(fmu, "a", fmu.interface, tolerance=1e-4)
     try:
         unit.set("label", "first")
         unit.enter_initialization(0.0, None)
