@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from .asking import Figure
+from .memory import Peak
 
 _STYLES = {
     "direct": ("0.4", ":", "x"), "evcosim": ("#0b6e4f", "-", "o"), "evcosim_python": ("#0b6e4f", "--", "o"),
@@ -91,6 +92,24 @@ def scaling(units: Sequence[Sequence[Figure]], signals: Sequence[Sequence[Figure
     for axis in (left, right):
         axis.set_ylim(bottom=axis.get_ylim()[0] / 2)
         axis.legend(frameon=False, fontsize=9)
+    save(figure, path)
+
+
+def memory(peaks: Sequence[Peak], name: Callable[[float], str], path: Path) -> None:
+    """The most memory of a run, and what its rows would take there, against its length."""
+    figure, axis = plt.subplots(figsize=(7, 4.2), layout="constrained")
+    lengths = [p.length for p in peaks]
+    axis.plot(
+        lengths, [p.memory / 1e6 for p in peaks], color="#0b6e4f", marker="o", label="whole process, at most"
+    )
+    axis.plot(
+        lengths, [p.rows / 1e6 for p in peaks], color="0.4", linestyle=":", marker="x", label="recorded rows"
+    )
+    logarithmic(axis, [])
+    axis.set_xticks(lengths, [name(length) for length in lengths])
+    axis.set_xlabel("length of the run at 100 Hz")
+    axis.set_ylabel("memory [MB]")
+    axis.legend(frameon=False, fontsize=9)
     save(figure, path)
 
 

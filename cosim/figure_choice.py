@@ -78,8 +78,8 @@ def _note(left_out: list[str]) -> str | None:
 
 
 def _changes(results: Results, variable: ResultVariable) -> bool:
-    values = results.column(variable.name)
-    return bool(len(values)) and bool(np.any(values != values[0]))
+    pieces = (values for _, values in results.pieces([variable.name], overlap=1))
+    return any(bool(np.any(values != values[0])) for values in pieces)
 
 
 def _shading(results: Results) -> ResultVariable | None:
@@ -99,8 +99,11 @@ def _distinct(results: Results) -> list[ResultVariable]:
 
 
 def _is_time(results: Results, variable: ResultVariable) -> bool:
-    values = results.column(variable.name)  # k * step_size as it is, where results.time is rounded
-    return variable.unit == "s" and np.allclose(values, results.time, rtol=1e-12, atol=1e-9)
+    # k * step_size as it is, where the time of results is rounded
+    return variable.unit == "s" and all(
+        np.allclose(values[:, 0], time, rtol=1e-12, atol=1e-9)
+        for time, values in results.pieces([variable.name])
+    )
 
 
 def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) -> bool:
@@ -114,12 +117,13 @@ def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) 
         convert = panel_conversion(variable, other.unit, "figure")
     except ConfigError:
         return False
-    a = convert.scale * results.column(variable.name) + convert.offset
-    b = results.column(other.name)
-    if not len(a) or np.array_equal(a, b):
-        return True
-    span = float(np.max(b) - np.min(b))
-    return span > 0.0 and float(np.sqrt(np.mean((a - b) ** 2))) <= 5e-3 * span
+    low, high, equal, squares = math.inf, -math.inf, True, 0.0
+    for _, values in results.pieces([variable.name, other.name]):
+        a, b = convert.scale * values[:, 0] + convert.offset, values[:, 1]
+        low, high = min(low, float(np.min(b))), max(high, float(np.max(b)))
+        equal = equal and np.array_equal(a, b)
+        squares += float(np.sum((a - b) ** 2))
+    return equal or (high > low and math.sqrt(squares / len(results)) <= 5e-3 * (high - low))
 
 
 def _group(results: Results, variable: ResultVariable) -> object:
@@ -130,7 +134,8 @@ def _group(results: Results, variable: ResultVariable) -> object:
         return variable.type
     if variable.unit in ("", "1", "%"):
         # nothing says that bare numbers belong together, but a common size at least makes them readable
-        size = float(np.max(np.abs(results.column(variable.name)), initial=0.0))
+        pieces = (values for _, values in results.pieces([variable.name]))
+        size = max((float(np.max(np.abs(values))) for values in pieces), default=0.0)
         decade = math.floor(math.log10(size)) if 0.0 < size < math.inf else 0
         return (variable.unit, decade if variable.unit == "" else 0)
     try:

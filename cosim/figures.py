@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from .errors import ConfigError
 from .figure_choice import MAX_PANELS, default_spec
 from .figure_spec import FigureSpec, PanelSpec, SignalSpec, check, panel_conversion
-from .results import Array, Results
+from .results import PIECE, Array, Results
 from .writing import replacing
 
 if TYPE_CHECKING:
@@ -277,7 +277,7 @@ class _Clock:
 
     @classmethod
     def of(cls, *runs: Results) -> _Clock:
-        times = [t for run in runs if len(run) for t in (float(run.time[0]), float(run.time[-1]))] or [0.0]
+        times = [t for run in runs if len(run) for t in run.span] or [0.0]
         begin, end = min(times), max(times)
         scale, unit = (1.0 / 60.0, "min") if end - begin > _MINUTES else (1.0, "s")
         return cls(scale, unit, scale * begin, scale * end)
@@ -328,17 +328,17 @@ def _draw_signal(
     variable = results.variable(signal.name)
     convert = panel_conversion(variable, unit, "figure")
     held = variable.held if signal.step is None else signal.step
-    values = results.column(signal.name)
-    keep = thinned(values, limit // 2 if held else limit)  # a step has two points for each value
+    # a step has two points for each value
+    time, values = _drawn(results, signal.name, limit // 2 if held else limit)
     label = signal.label or signal.name
     if not variable.unit and unit not in ("", "1"):
         label += " (no unit declared)"
     axes.plot(
-        clock.scale * results.time[keep],
-        convert.scale * values[keep] + convert.offset,
+        clock.scale * time,
+        convert.scale * values + convert.offset,
         color=look.color,
         linestyle=look.dashes,
-        linewidth=signal.weight or (0.6 * look.width if _is_band(values[keep]) else look.width),
+        linewidth=signal.weight or (0.6 * look.width if _is_band(values) else look.width),
         drawstyle="steps-post" if held else "default",
         label=broken(label, 26),
     )
@@ -351,16 +351,35 @@ def _is_band(values: Array) -> bool:
     return span > 0.0 and way > 60.0 * span
 
 
+def _drawn(results: Results, name: str, limit: int) -> tuple[Array, Array]:
+    """Times and values of a variable, thinned; one piece of a long run is in memory at a time."""
+    width = _width(len(results), limit)
+    times, kept = [np.empty(0)], [np.empty(0)]
+    for time, values in results.pieces([name], rows=width * max(1, PIECE // width)):
+        at = _extremes(values[:, 0], width)
+        times.append(time[at])
+        kept.append(values[at, 0])
+    return np.concatenate(times), np.concatenate(kept)
+
+
 def thinned(values: Array, limit: int) -> NDArray[np.intp]:
     """The indices of about `limit` values that draw the same picture.
 
     In each of limit/2 equal stretches the smallest and the largest value stay, in their order in time, so
     that a spike of one sample survives. The first and the last value always stay.
     """
+    return _extremes(values, _width(len(values), limit))
+
+
+def _width(n: int, limit: int) -> int:
+    """How many values a stretch has of which two are drawn; 1 where all are."""
+    return 1 if n <= limit else math.ceil(n / max(1, limit // 2))
+
+
+def _extremes(values: Array, width: int) -> NDArray[np.intp]:
     n = len(values)
-    if n <= limit:
+    if width == 1:
         return np.arange(n)
-    width = math.ceil(n / max(1, limit // 2))
     whole = n - n % width
     blocks = values[:whole].reshape(-1, width)
     begin = np.arange(0, whole, width)
@@ -422,12 +441,12 @@ def pretty(unit: str) -> str:
 def _draw_states(panels: list[Axes], results: Results, name: str, clock: _Clock) -> None:
     from matplotlib.patches import Patch
 
-    values = results.column(name)
+    time, values = _course(results, name)
     handles = [Patch(visible=False, label=f"{name}:")]
     for place, (value, text) in enumerate(results.variable(name).items):
         face = _SHADES[place % len(_SHADES)]
         hatch = "///" if place >= len(_SHADES) else None
-        spans = [(clock.scale * a, clock.scale * (b - a)) for a, b in _spans(results.time, values, value)]
+        spans = [(clock.scale * a, clock.scale * (b - a)) for a, b in _spans(time, values, value)]
         for axes in panels if spans else []:
             bars = axes.broken_barh(spans, (0.0, 1.0), transform=axes.get_xaxis_transform())
             bars.set(facecolor=face, hatch=hatch, edgecolor="#C0C0C0", linewidth=0.0, zorder=0.1)
@@ -444,17 +463,35 @@ def _draw_states(panels: list[Axes], results: Results, name: str, clock: _Clock)
     legend.set_clip_on(False)  # the layout makes room for what is not clipped
 
 
-def _spans(time: Array, values: Array, value: float) -> list[tuple[float, float]]:
-    """The stretches [t_k, t_j) in which a held variable has this value.
+def _course(results: Results, name: str) -> tuple[Array, Array]:
+    """Times and values of a held variable: at the start, wherever it changes, and at the end.
 
-    More than _SPANS of them would not be seen: then the state at each of as many equal distances counts.
+    More than _SPANS changes would not be seen: then the state at each of as many equal distances counts.
     """
-    if len(time) > 1 and np.count_nonzero(np.diff(values)) > _SPANS:
-        rows = np.linspace(0, len(time) - 1, _SPANS).astype(np.intp)
-        time, values = time[rows], values[rows]
+    times, kept, count = [np.empty(0)], [np.empty(0)], 0
+    for time, values in results.pieces([name], overlap=1):
+        x = values[:, 0]
+        at = np.flatnonzero(x[1:] != x[:-1]) + 1
+        count += len(at)
+        if count > _SPANS:
+            rows = np.linspace(0, len(results) - 1, _SPANS).astype(np.intp).tolist()
+            few = [next(results.pieces([name], first=k, rows=1)) for k in rows]
+            return np.concatenate([t for t, _ in few]), np.concatenate([v[:, 0] for _, v in few])
+        at = at if len(times) > 1 else np.insert(at, 0, 0)
+        times.append(time[at])
+        kept.append(x[at])
+    if len(results) > 1:
+        times.append(time[-1:])
+        kept.append(x[-1:])
+    return np.concatenate(times), np.concatenate(kept)
+
+
+def _spans(time: Array, values: Array, value: float) -> list[tuple[float, float]]:
+    """The stretches [t_k, t_j) of a variable's course in which it has this value."""
     inside = np.concatenate(([False], values[:-1] == value, [False]))  # the last value lasts no time
     edges = np.flatnonzero(inside[1:] != inside[:-1])
-    return [(float(time[a]), float(time[b])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    spans = [(float(time[a]), float(time[b])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    return [(a, b) for a, b in spans if a < b]  # a change at the end stands there twice
 
 
 def _finish(figure: Figure, panels: list[Axes], clock: _Clock, note: str | None) -> None:

@@ -23,13 +23,13 @@ stands in a file.
 
 from __future__ import annotations
 
+import bisect
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from . import units
@@ -181,7 +181,7 @@ def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, Result
     parts = spec.reductions
     try:
         scale = _scale(spec, variables)
-        numbers = [_reduce(_window(results, part), part) for part in parts]
+        numbers = [_reduce(results, part) for part in parts]
     except _NoValueError as error:
         return without(str(error))
     value = numbers[0]
@@ -273,50 +273,73 @@ def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitO
     )
 
 
-def _window(results: Results, part: Reduction) -> Results:
-    """The part of a run that a reduction is of."""
-    if part.after is not None:
-        kept = results.time >= part.after
-        if not kept.any():
-            raise _NoValueError(f"the run ends before {part.after:g} s")
-        results = results.part(kept, part.signals)
-    if part.reduce in _NEEDS_DURATION and _duration(results) == 0.0:
-        raise _NoValueError("the run has no duration")
-    return results
-
-
 def _reduce(results: Results, part: Reduction) -> float:
-    """The number of a reduction, in the unit of the signal and s."""
+    """The number of a reduction, in the unit of the signal and s; one piece of the run is in memory."""
     variables = {name: results.variable(name) for name in part.signals}
+    first = _first_row(results, part)
+    duration = results.span[1] - float(results.times(first, first + 1)[0])
+    if part.reduce in _NEEDS_DURATION and duration == 0.0:
+        raise _NoValueError("the run has no duration")
     other, threshold = _to_signal(part, variables)
-    x = results.column(part.signal)
-    if part.minus is not None:
-        x = x - (other.scale * results.column(part.minus) + other.offset)
-    if not np.isfinite(x).all():
-        raise _NoValueError(f"{part.signal} is not finite at {results.time[~np.isfinite(x)][0]:g} s")
-    held = all(v.held for v in variables.values())
+    pieces = _pieces(results, part, first, other)
     if part.reduce in _AT_POINTS:
-        return _AT_POINTS[part.reduce](x)
+        return _AT_POINTS[part.reduce](x for _, x in pieces)
     if part.reduce == "settling":
-        return _settling(results.time, np.abs(x) > threshold)
-    if part.reduce in (*_SHARES, *_TIMES):
-        inside = x > threshold if part.value is None else x == _state(part, variables[part.signal])
-        seconds = _integral(results.time, inside.astype(np.float64), held=True)
-        return seconds / _duration(results) if part.reduce in _SHARES else seconds
-    if part.reduce == "integral_above":
-        return _integral(results.time, np.maximum(x - threshold, 0.0), held)
+        return _settling(pieces, threshold)
+    held = part.reduce in (*_SHARES, *_TIMES) or all(v.held for v in variables.values())
+    integrand = _integrand(part, variables[part.signal], threshold)
+    integral = sum(_integral(time, integrand(x), held) for time, x in pieces)
     if part.reduce == "rms":
-        return math.sqrt(_integral(results.time, x**2, held) / _duration(results))
-    integral = _integral(results.time, x, held)
-    return integral / _duration(results) if part.reduce == "mean" else integral
+        return math.sqrt(integral / duration)
+    return integral / duration if part.reduce in _NEEDS_DURATION else integral
 
 
-_AT_POINTS: dict[str, Callable[[Array], float]] = {
-    "final": lambda x: float(x[-1]),
-    "max": lambda x: float(np.max(x)),
-    "min": lambda x: float(np.min(x)),
-    "range": lambda x: float(np.ptp(x)),
-    "changes": lambda x: float(np.count_nonzero(np.diff(x))),
+def _first_row(results: Results, part: Reduction) -> int:
+    """Where what is reduced begins."""
+    if part.after is None:
+        return 0
+    rows = range(len(results))
+    first = bisect.bisect_left(rows, part.after, key=lambda k: float(results.times(k, k + 1)[0]))
+    if first == len(results):
+        raise _NoValueError(f"the run ends before {part.after:g} s")
+    return first
+
+
+Pieces = Iterable[tuple[Array, Array]]
+"""Times and values of a signal, shapes (n,); each piece begins with the last row of the one before."""
+
+
+def _pieces(
+    results: Results, part: Reduction, first: int, other: units.Affine
+) -> Iterator[tuple[Array, Array]]:
+    """What is reduced. Raises _NoValueError for a value that is not finite."""
+    for time, values in results.pieces(part.signals, first, overlap=1):
+        x = values[:, 0]
+        if part.minus is not None:
+            x = x - (other.scale * values[:, 1] + other.offset)
+        if not np.isfinite(x).all():
+            raise _NoValueError(f"{part.signal} is not finite at {time[~np.isfinite(x)][0]:g} s")
+        yield time, x
+
+
+def _final(xs: Iterable[Array]) -> float:
+    last = math.nan
+    for x in xs:
+        last = float(x[-1])
+    return last
+
+
+def _range(xs: Iterable[Array]) -> float:
+    ends = [(float(np.min(x)), float(np.max(x))) for x in xs]
+    return max(high for _, high in ends) - min(low for low, _ in ends)
+
+
+_AT_POINTS: dict[str, Callable[[Iterable[Array]], float]] = {
+    "final": _final,
+    "max": lambda xs: max(float(np.max(x)) for x in xs),
+    "min": lambda xs: min(float(np.min(x)) for x in xs),
+    "range": _range,
+    "changes": lambda xs: float(sum(np.count_nonzero(np.diff(x)) for x in xs)),
 }
 
 
@@ -326,19 +349,30 @@ def _state(part: Reduction, variable: ResultVariable) -> float:
     return float(part.value or 0)
 
 
-def _settling(time: Array, outside: NDArray[np.bool_]) -> float:
-    at = np.flatnonzero(outside)
-    if not len(at):
-        return 0.0
-    if at[-1] + 1 == len(time):
+def _settling(pieces: Pieces, threshold: float) -> float:
+    begin, end = math.nan, 0.0
+    for time, x in pieces:
+        at = np.flatnonzero(np.abs(x) > threshold)
+        if len(at):
+            begin = float(time[at[0]]) if math.isnan(begin) else begin
+            end = float(time[at[-1] + 1]) if at[-1] + 1 < len(time) else math.inf
+    if end == math.inf:  # no piece came after it
         raise _NoValueError("it is beyond the threshold at the end")
-    return float(time[at[-1] + 1] - time[at[0]])
+    return 0.0 if math.isnan(begin) else end - begin
+
+
+def _integrand(part: Reduction, variable: ResultVariable, threshold: float) -> Callable[[Array], Array]:
+    """What is integrated of a signal."""
+    if part.reduce in ("share_above", "time_above"):
+        return lambda x: (x > threshold).astype(np.float64)
+    if part.reduce in _TAKES["value"]:
+        state = _state(part, variable)
+        return lambda x: (x == state).astype(np.float64)
+    if part.reduce == "integral_above":
+        return lambda x: np.maximum(x - threshold, 0.0)
+    return np.square if part.reduce == "rms" else np.asarray
 
 
 def _integral(time: Array, x: Array, held: bool) -> float:
     at = x[:-1] if held else 0.5 * (x[1:] + x[:-1])
     return float(np.sum(at * np.diff(time)))
-
-
-def _duration(results: Results) -> float:
-    return float(results.time[-1] - results.time[0])

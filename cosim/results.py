@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ConfigError, nearest
-from .rows import MemoryTable, Table
+from .rows import Grid, MemoryTable, Table
 from .writing import replacing
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ Array = NDArray[np.float64]
 
 CSV_NAME = "results.csv"
 MANIFEST_NAME = "run.json"
+PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each variable
 _CHUNK = 4096  # rows formatted at a time: 40 columns of text then take about 10 MB
 
 
@@ -66,8 +67,8 @@ class Results:
 
     `time` [s], shape (n,), and `data`, shape (n, m), hold row k of communication point k; `variables`
     describes the m columns. `results["vehicle.speed"]` is one column, `len(results)` is n.
-    `data` may be given as a Table that is not in memory: then `results.data` reads all of it, while a column
-    or `part` reads no more than is asked for.
+    `data` may be given as a Table that is not in memory, and `time` as a Grid: then `results.data` and
+    `results.time` make all of it, while `pieces`, a column or `part` take no more than is asked for.
     `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
     scenario (None and none for results that were read from a file).
 
@@ -78,35 +79,75 @@ class Results:
 
     def __init__(
         self,
-        time: ArrayLike,
+        time: ArrayLike | Grid,
         data: ArrayLike | Table,
         variables: Sequence[ResultVariable],
         manifest: Mapping[str, Any] | None = None,
         figure: FigureSpec | None = None,
         metrics: Sequence[MetricSpec] = (),
     ) -> None:
-        self.time: Array = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
+        self._grid = time if isinstance(time, Grid) else None
+        self._time: Array | None = None
+        if not isinstance(time, Grid):
+            self._time = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
         self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
         self.figure = figure
         self.metric_specs = tuple(metrics)
-        if self._table.shape != (len(self.time), len(self.variables)):
+        count = len(time) if isinstance(time, Grid) else len(self.time)
+        if self._table.shape != (count, len(self.variables)):
             raise ValueError(
-                f"data is {self._table.shape}, {len(self.time)} times and {len(self.variables)} variables "
-                f"need {(len(self.time), len(self.variables))}"
+                f"data is {self._table.shape}, {count} times and {len(self.variables)} variables "
+                f"need {(count, len(self.variables))}"
             )
         self._columns = {v.name: j for j, v in enumerate(self.variables)}
         if len(self._columns) != len(self.variables) or "time" in self._columns:
             raise ValueError("the names of the variables must differ from each other and from 'time'")
 
     @property
+    def time(self) -> Array:
+        """All times [s], shape (n,), in memory."""
+        if self._time is None:
+            starts = range(0, max(1, len(self)), PIECE)
+            self._time = np.concatenate([self.times(start, start + PIECE) for start in starts])
+        return self._time
+
+    def times(self, start: int, stop: int) -> Array:
+        """The times [s] of the rows from `start` to before `stop`, or to the end."""
+        if self._time is not None:
+            return self._time[start:stop]
+        assert self._grid is not None  # one of the two was given
+        return to_nanoseconds(self._grid[start:stop])
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first and the last time [s]. Raises IndexError without a row."""
+        last = max(0, len(self) - 1)
+        return float(self.times(0, 1)[0]), float(self.times(last, last + 1)[0])
+
+    @property
     def data(self) -> Array:
         """All values, shape (n, m), in memory."""
         return self._table.whole()
 
+    def pieces(
+        self, names: Sequence[str], first: int = 0, overlap: int = 0, rows: int | None = None
+    ) -> Iterator[tuple[Array, Array]]:
+        """Times, shape (n,), and values, shape (n, len(names)), from row `first` on, `rows` at a time
+        (default: PIECE).
+
+        Before them each piece but the first repeats `overlap` rows of the one before. Raises ConfigError as
+        `variable` does.
+        """
+        rows = rows or PIECE
+        columns = [self._columns[self.variable(name).name] for name in names]
+        for start in range(first, len(self), rows):
+            begin = max(first, start - overlap)
+            yield self.times(begin, start + rows), self._table.part(begin, start + rows, columns)
+
     def __len__(self) -> int:
-        return len(self.time)
+        return self._table.shape[0]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -128,7 +169,7 @@ class Results:
         return column.astype(np.bool_ if kind == "Boolean" else np.int64)
 
     def __repr__(self) -> str:
-        span = f"{self.time[0]:g} to {self.time[-1]:g} s" if len(self) else "no time"
+        span = "{:g} to {:g} s".format(*self.span) if len(self) else "no time"
         return f"<Results: {len(self.variables)} variables, {len(self)} communication points, {span}>"
 
     @property
@@ -163,6 +204,10 @@ class Results:
     def part(self, rows: NDArray[np.bool_] | slice, names: Sequence[str]) -> Results:
         """The results of some rows and variables, in memory. Raises ConfigError as `variable` does."""
         variables = [self.variable(name) for name in names]
+        if isinstance(rows, slice) and rows.step is None:
+            start, stop, _ = rows.indices(len(self))
+            data = self._table.part(start, stop, [self._columns[name] for name in names])
+            return Results(self.times(start, stop), data, variables, self.manifest)
         columns = [self.column(name)[rows] for name in names]
         time = self.time[rows]
         data = np.column_stack(columns) if columns else np.empty((len(time), 0))
@@ -179,7 +224,7 @@ class Results:
         file.write((",".join(["time", *map(_quoted, self.names)]) + "\n").encode())
         for start in range(0, len(self), _CHUNK):
             values = self._table.rows(start, start + _CHUNK)
-            columns = [list(map(repr, self.time[start : start + _CHUNK].tolist()))]
+            columns = [list(map(repr, self.times(start, start + _CHUNK).tolist()))]
             columns += [_texts(values[:, j], v.type) for j, v in enumerate(self.variables)]
             file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
 

@@ -1,13 +1,15 @@
 """Rows of numbers that a run appends: in memory while they are few, in a temporary file beyond that.
 
-A run of 8 hours at 100 Hz records a gigabyte. What looks at its results needs a stretch of rows or a column
-at a time, so that is all that is in memory of a Table in a file.
+A run of 8 hours at 100 Hz records a gigabyte. What looks at its results takes a stretch of rows at a time, so
+that is all that is in memory of a Table in a file. The times of equal steps are not kept at all (Grid).
 """
 
 from __future__ import annotations
 
+import dataclasses
 import tempfile
 import weakref
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -18,8 +20,25 @@ from .errors import RunError
 
 Array = NDArray[np.float64]
 
-MEMORY = 64 * 2**20  # bytes of rows that stay in memory: half an hour of 40 variables at 100 Hz
-_STRETCH = 2**20  # bytes that are read at a time to take a column
+MEMORY = 16 * 2**20  # bytes of rows that stay in memory: nine minutes of 40 variables at 100 Hz
+_STRETCH = 2**20  # bytes that are read at a time to take some of the columns
+
+
+@dataclasses.dataclass(frozen=True)
+class Grid:
+    """The times [s] start + k step, k = 0 ... count - 1."""
+
+    start: float
+    step: float
+    count: int
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, rows: slice) -> Array:
+        """The times of some rows, shape (n,)."""
+        steps = np.arange(*rows.indices(self.count), dtype=np.float64)
+        return self.start + self.step * steps
 
 
 @runtime_checkable
@@ -32,6 +51,9 @@ class Table(Protocol):
 
     def rows(self, start: int, stop: int) -> Array:
         """The rows from `start` to before `stop`, or to the end, shape (n, columns)."""
+
+    def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
+        """Some columns of the rows from `start` to before `stop`, or to the end, shape (n, len(columns))."""
 
     def column(self, j: int) -> Array:
         """Column j, shape (rows,)."""
@@ -50,6 +72,10 @@ class MemoryTable:
     def rows(self, start: int, stop: int) -> Array:
         """See `Table`."""
         return self._array[start:stop]
+
+    def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
+        """See `Table`."""
+        return self._array[start:stop, list(columns)]
 
     def column(self, j: int) -> Array:
         """See `Table`."""
@@ -99,13 +125,18 @@ class _FileTable:
         found[count:] = self._last[max(0, start - self._count) : max(0, stop - self._count)]
         return found
 
+    def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
+        """See `Table`."""
+        start, stop, _ = slice(start, stop).indices(self.shape[0])
+        found = np.empty((max(0, stop - start), len(columns)))
+        step = max(1, _STRETCH // (8 * self.shape[1]))
+        for k in range(0, len(found), step):
+            found[k : k + step] = self.rows(start + k, min(start + k + step, stop))[:, list(columns)]
+        return found
+
     def column(self, j: int) -> Array:
         """See `Table`."""
-        found = np.empty(self.shape[0])
-        step = max(1, _STRETCH // (8 * self.shape[1]))
-        for start in range(0, len(found), step):
-            found[start : start + step] = self.rows(start, start + step)[:, j]
-        return found
+        return self.part(0, self.shape[0], [j])[:, 0]
 
     def whole(self) -> Array:
         """See `Table`."""

@@ -22,8 +22,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-
 from ..cosim.canlog import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, counted, nearest
 from ..cosim.files import DATA
@@ -34,6 +32,7 @@ from ..cosim.presentation import check_specs, figure_spec, metric_specs
 from ..cosim.requirements import lacking
 from ..cosim.resolve import Options, check_effect, checked, participating, resolve
 from ..cosim.results import Results
+from ..cosim.rows import Grid
 from ..cosim.scenario import Scenario, load_scenario
 from ..cosim.swap import swapped
 from ..cosim.system import Algorithm, EngineName, Isolation, System, Value, load_system
@@ -303,9 +302,8 @@ class Simulation:
         """What was recorded up to now, with the manifest of the run."""
         table = self._engine.recorded()
         experiment = self.plan.experiment
-        times = experiment.start_time + experiment.step_size * np.arange(table.shape[0])
         return Results(
-            time=times,
+            time=Grid(experiment.start_time, experiment.step_size, table.shape[0]),
             variables=self.plan.columns,
             data=table,
             manifest=self.manifest(),

@@ -76,9 +76,7 @@ def of_failure(outcome: Outcome) -> str:
         why = f"interrupted at t = {number(outcome.simulation.time)} s"
     else:
         why = str(outcome.error)
-    kept = (
-        f"results up to t = {number(float(results.time[-1]))} s" if len(results) else "no step was recorded"
-    )
+    kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"
     return f"{why}\n{kept}; in {outcome.folder}: {', '.join(outcome.files)}"
 
 

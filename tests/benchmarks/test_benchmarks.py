@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import slaves, worker
+from benchmarks import coldstart, memory, slaves, worker
 from benchmarks.asking import Figure, ask
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -41,6 +42,43 @@ def test_an_fmu_costs_little_beside_its_model_and_the_calls(monkeypatch: pytest.
     assert 0.0 < found.model < found.fmu
     assert found.ratio < 1.5
     assert f"| Scooter | 10 | {1e6 * found.model:.2f} |" in slaves.report({"Scooter": found})
+
+
+LAZY = {
+    "list": {"numpy", "pydantic"},
+    "info scooter": {"numpy", "pydantic", "fmpy", "cantools"},
+    "run scooter --no-plot --engine python": {"numpy", "pydantic", "fmpy", "cantools"},
+    "run scooter --engine python": {"numpy", "pydantic", "fmpy", "cantools", "matplotlib"},
+}
+
+
+@pytest.mark.parametrize("command", LAZY)
+def test_a_command_imports_what_it_needs(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    assert coldstart.imported(command) == LAZY[command]
+
+
+def test_the_compiled_engine_needs_no_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    assert {"matplotlib", "pint"} & coldstart.imported("run scooter --no-plot") == set()
+
+
+def test_the_best_round_of_a_command_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    seconds = coldstart.measured(["--help"], rounds=2)
+    assert 0.0 < seconds[""] < seconds["--help"]
+    assert "| `evcosim --help` |" in coldstart.report(seconds, {"--help": set()})
+
+
+@pytest.mark.skipif(not hasattr(os, "wait4"), reason="this system does not tell a process's peak memory")
+def test_the_memory_of_a_run_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two runs the longer has more rows by as much as it is longer; a process is more than its rows."""
+    monkeypatch.chdir(ROOT)
+    options = ("--no-plot", "--engine", "python")
+    short, long = (memory.peak(length, options) for length in (10.0, 60.0))
+    assert long.rows - short.rows == pytest.approx(5000 / 1001 * short.rows, rel=1e-3)
+    assert short.rows < short.csv < short.memory
+    assert "| 1 min |" in memory.report([short, long])
 
 
 def test_a_result_that_is_not_the_reference_has_no_time() -> None:
@@ -81,7 +119,13 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
 
 
 def test_help_says_what_is_measured() -> None:
-    for module in ("benchmarks", "benchmarks.scaling", "benchmarks.slaves"):
+    for module in (
+        "benchmarks",
+        "benchmarks.scaling",
+        "benchmarks.slaves",
+        "benchmarks.coldstart",
+        "benchmarks.memory",
+    ):
         command = [sys.executable, "-m", module, "--help"]
         said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         assert "--write" in said

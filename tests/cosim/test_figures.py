@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from evcosim.cosim import figures
+from evcosim.cosim import results as results_module
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures import (
     FigureSpec,
@@ -261,6 +262,42 @@ def test_a_long_run_is_a_small_file_in_minutes_with_its_spike(tmp_path: Path) ->
     assert max(line.get_ydata().max() for line in figure.axes[0].get_lines()) == 99.0
     assert figure.axes[-1].get_xlabel() == "time [min]"
     assert figure.axes[-1].get_xlim()[1] == pytest.approx(t[-1] / 60.0)
+
+
+@pytest.mark.parametrize("rows", [3, 100, 4000])
+def test_a_figure_does_not_depend_on_the_pieces_that_a_run_is_read_in(
+    rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same panels, states and lines; where lines are thinned, with the same ends and extremes."""
+    results = scooter(20_001, 0.002)
+    results.data[12_345, results.names.index("vehicle.speed")] = 99.0
+    whole = draw(results)
+    monkeypatch.setattr(results_module, "PIECE", rows)
+    monkeypatch.setattr(figures, "PIECE", rows)
+    pieces = draw(results)
+    assert len(pieces.axes) == len(whole.axes) > 2
+    for a, b in zip(whole.axes, pieces.axes, strict=True):
+        assert (a.get_ylabel(), a.get_ylim()) == (b.get_ylabel(), b.get_ylim())
+        shades = [[bars.get_paths() for bars in axes.collections] for axes in (a, b)]
+        assert [[p.vertices.tolist() for p in paths] for paths in shades[0]] == [
+            [p.vertices.tolist() for p in paths] for paths in shades[1]
+        ]
+        for one, other in zip(a.get_lines(), b.get_lines(), strict=True):
+            assert {tuple(xy) for xy in one.get_xydata()} <= {tuple(xy) for xy in other.get_xydata()}
+
+
+def test_states_that_chatter_to_the_end_are_drawn_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = (np.arange(9000) % 7 // 3).astype(float)
+    variables = [ResultVariable("ecu.state", type="Enumeration", items=STATES), ResultVariable("a.x", "V")]
+    results = Results(np.arange(9000.0), np.column_stack([state, state]), variables)
+    few = Results(np.arange(20.0), results.data[:20], variables)
+    found = []
+    for rows in (100_000, 50):
+        monkeypatch.setattr(results_module, "PIECE", rows)
+        shades = [c for r in (results, few) for c in draw(r).axes[0].collections]
+        found.append([[p.vertices.tolist() for p in bars.get_paths()] for bars in shades])
+    assert found[0] == found[1]
+    assert sum(map(len, found[0][:3])) > 100
 
 
 def test_a_comparison_shows_what_differs_most() -> None:

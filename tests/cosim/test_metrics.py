@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from evcosim.cosim import results as results_module
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.files import validate
 from evcosim.cosim.metrics import MetricSpec, check, evaluate
@@ -270,3 +271,23 @@ def test_after_the_end_there_is_no_value(after, reason):
     nothing = metric(signal="vehicle.speed", unit="m/s", reduce="mean", after=after)
     assert math.isnan(nothing.value)
     assert reason in nothing.reason
+
+
+@pytest.mark.parametrize("rows", [1, 2, 7, 500])
+def test_a_metric_does_not_depend_on_the_pieces_that_a_run_is_read_in(rows, monkeypatch):
+    specs = [MetricSpec(name=f"{i}", **spec) for i, (spec, _) in enumerate(KNOWN)]
+    late = {"reduce": "settling", "unit": "s", "threshold": 3.0, "after": 0.1}
+    specs.append(MetricSpec(name="late", signal="vehicle.speed", minus="ecu.speed_bound", **late))
+    speed = np.random.default_rng(3).normal(9.0, 2.0, 1001)
+    noisy = run()
+    noisy.data[:800, 0] = speed[:800]
+    noisy.data[800:, 0] = 10.0
+    assert all(math.isfinite(m.value) for m in evaluate(noisy, specs))
+    for results in (run(), noisy):
+        whole = evaluate(results, specs)
+        with monkeypatch.context() as patch:
+            patch.setattr(results_module, "PIECE", rows)
+            pieces = evaluate(results, specs)
+        assert [m.reason for m in pieces] == [m.reason for m in whole]
+        values = [m.value for m in whole]
+        assert [m.value for m in pieces] == pytest.approx(values, rel=1e-12, abs=1e-12, nan_ok=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +12,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.errors import RunError
-from evcosim.cosim.results import Results, ResultVariable
-from evcosim.cosim.rows import MEMORY, RowStore
+from evcosim.cosim.figure_spec import FigureSpec
+from evcosim.cosim.figures import draw
+from evcosim.cosim.metrics import MetricSpec
+from evcosim.cosim.results import PIECE, Results, ResultVariable
+from evcosim.cosim.rows import MEMORY, Grid, RowStore
 
 WIDTH = 3
 VARIABLES = [
     ResultVariable("a.x"),
     ResultVariable("a.n", type="Integer"),
     ResultVariable("a.b", type="Boolean"),
+]
+LINE = FigureSpec.model_validate({"panels": [{"label": "x", "signals": ["a.x"]}]})
+SPECS = [
+    MetricSpec(name=how, signal="a.n", unit="1", reduce=how) for how in ("final", "max", "range", "changes")
 ]
 
 
@@ -49,6 +58,8 @@ def test_a_table_does_not_depend_on_where_the_rows_are(
     assert np.array_equal(table.rows(start, stop), expected[start:stop])
     for j in range(WIDTH):
         assert np.array_equal(table.column(j), expected[:, j])
+    for columns in ([], [2], [1, 0]):
+        assert np.array_equal(table.part(start, stop, columns), expected[start:stop, columns])
 
 
 @pytest.mark.parametrize("memory", [0, 10**9])
@@ -76,6 +87,50 @@ def test_results_read_the_same_from_a_file(tmp_path: Path) -> None:
     assert part.names == ("a.b", "a.x")
     assert np.array_equal(part.data, same.data)
     assert np.array_equal(part.time, kept.time[time > 10.0])
+    for rows in (slice(None), slice(-7, None), slice(4000, 9000), slice(7, 5), slice(None, None, 3)):
+        part = stored.part(rows, ["a.b", "a.x"])
+        assert np.array_equal(part.data, kept.data[rows][:, [2, 0]])
+        assert np.array_equal(part.time, kept.time[rows])
+
+
+def test_times_on_a_grid_are_those_of_an_array() -> None:
+    grid = Grid(-1.0, 0.01, 70_001)
+    rows = np.zeros((len(grid), WIDTH))
+    kept, made = Results(-1.0 + 0.01 * np.arange(len(rows)), rows, VARIABLES), Results(grid, rows, VARIABLES)
+    assert made.span == kept.span == (-1.0, 699.0)
+    assert np.array_equal(made.times(69_990, 70_500), kept.time[69_990:])
+    assert np.array_equal(made.time, kept.time)
+    assert np.array_equal(made.times(3, 5), kept.times(3, 5))
+    assert len(Results(Grid(0.0, 0.1, 0), np.zeros((0, WIDTH)), VARIABLES).time) == 0
+
+
+def reached(count: int, use: Callable[[Results], object]) -> int:
+    """The most bytes [B] that a use of so many rows in a file takes."""
+    store = RowStore(WIDTH, memory=0)
+    for start in range(0, count, 10_000):
+        block = np.sin(np.arange(start, start + 10_000.0))[:, None] * [3.0, 0.0, 0.0]
+        store.append(block)
+    results = Results(Grid(0.0, 0.01, count), store.table(), VARIABLES, metrics=SPECS)
+    tracemalloc.start()
+    use(results)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak
+
+
+@pytest.mark.parametrize(
+    "use", [Results.metrics, lambda r: draw(r, LINE), lambda r: r.part(slice(7), ["a.x"])]
+)
+def test_what_reads_a_long_run_holds_a_piece_of_it(use: Callable[[Results], object]) -> None:
+    """Twice the rows take no more memory: not even a column of those that came to them."""
+    count = 3 * PIECE // 10_000 * 10_000
+    use(Results([0.0], np.zeros((1, WIDTH)), VARIABLES, metrics=SPECS))  # what is loaded once for all
+    assert reached(2 * count, use) - reached(count, use) < 0.2 * 8 * count
+
+
+def test_writing_a_long_run_holds_a_piece_of_it(tmp_path: Path) -> None:
+    peaks = [reached(count, lambda r: r.to_csv(tmp_path / "a.csv")) for count in (20_000, 60_000)]
+    assert peaks[1] - peaks[0] < 0.2 * 8 * 40_000
 
 
 def test_few_rows_need_no_file(tmp_path: Path) -> None:
