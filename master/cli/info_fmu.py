@@ -154,6 +154,7 @@ def show(about: dict[str, Any]) -> None:
         ("name", about["name"]),
         ("description", about["description"]),
         ("kind", f"FMI {about['fmi_version']} {', '.join(about['kinds'])}"),
+        ("solver", _solver(about)),
         ("tool", about["tool"]),
         ("version", about["version"]),
         ("license", about["license"]),
@@ -175,6 +176,16 @@ def show(about: dict[str, Any]) -> None:
     total = about["number_of_variables"]
     if len(rows) != total:
         print(f"\n{len(rows)} of {counted(total, 'variable')}")
+
+
+def _solver(about: dict[str, Any]) -> str:
+    """How Model Exchange is solved here, and when; nothing where there is none."""
+    if _KINDS["modelExchange"] not in about["kinds"]:
+        return ""
+    if about["fmi_version"].startswith("1"):
+        return "Model Exchange of FMI 1.0 is not supported"
+    asked = "" if len(about["kinds"]) == 1 else ', where interface = "model_exchange" asks for it'
+    return f"CVODE with events solves Model Exchange{asked}"
 
 
 def _sources(about: dict[str, Any]) -> str:

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import Results
+from evcosim.master.cli import main
 from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.loading import load_unit
 from evcosim.master.simulation import simulate
@@ -264,6 +265,14 @@ def test_an_interface_that_an_fmu_lacks_is_refused(tmp_path: Path) -> None:
             ConfigError, match=rf'decay.fmu: interface = "{wanted}": it has no such interface'
         ):
             run(fmu, f'interface = "{wanted}"')
+
+
+def test_info_says_how_it_is_solved(tmp_path: Path, capsys) -> None:
+    for kinds, count in (("ME", 1), ("ME CS", 1), ("CS", 0)):
+        assert main(["info", str(equations_fmu(tmp_path / "decay.fmu", "decay", 3, kinds))]) == 0
+        shown = capsys.readouterr().out
+        assert shown.count("CVODE with events solves Model Exchange") == count, kinds
+        assert ("asks for it" in shown) == (kinds == "ME CS")
 
 
 def test_co_simulation_is_the_default_where_there_are_both(tmp_path: Path) -> None:
