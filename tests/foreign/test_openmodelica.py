@@ -46,7 +46,7 @@ def test_it_is_described_and_runs_as_in_fmpy(shipped: Path, tmp_path: Path, caps
     assert main(["info", str(fmu)]) == 0
     shown = capsys.readouterr().out
     assert "FMI 2.0 Co-Simulation, Model Exchange" in shown
-    assert 'CVODE with events solves Model Exchange, where interface = "model_exchange" asks for it' in shown
+    assert 'Model Exchange, where interface = "model_exchange" asks for it' in " ".join(shown.split())
     assert "OpenModelica Compiler" in shown
     ours = run(tmp_path, fmu, step)
     assert ours.manifest["units"]["unit"]["isolation"] == "process"
