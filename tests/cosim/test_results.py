@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -34,6 +34,7 @@ def same(a: Results, b: Results) -> None:
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
 
+@settings(deadline=None)  # what a disk takes for a file is not ours
 @given(data=arrays.arrays(np.float64, st.tuples(st.integers(0, 6), st.just(2)), elements=finite))
 def test_what_is_written_reads_back_bit_for_bit(data: np.ndarray, tmp_path_factory) -> None:
     folder = tmp_path_factory.mktemp("run")
