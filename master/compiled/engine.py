@@ -30,13 +30,14 @@ class CompiledEngine(Engine):
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         program = self._program
         assert program is not None  # it was made at the start
-        program.due(self.k)
-        program.act()
+        ops, self._places = program.chunk(self.k, count)
         state, first = self._state, self.k
         state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
+        state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
         log, starts = self._log_buffer(count)
         drives = np.ascontiguousarray(drives)
-        self._addresses[[L.DRIVES, L.ROWS_OF_RUN, L.LOG]] = [a.ctypes.data for a in (drives, rows, log)]
+        own = (ops, drives, rows, log)
+        self._addresses[[L.OPS, L.DRIVES, L.ROWS_OF_RUN, L.LOG]] = [a.ctypes.data for a in own]
         self._raised: BaseException | None = None
         try:
             result = self._kernel(self._addresses.ctypes.data)
@@ -46,8 +47,11 @@ class CompiledEngine(Engine):
         if self._raised is not None:
             raise self._raised
         if result != L.DONE:
-            program.judges[int(state[L.AT])](result, int(state[L.DETAIL]))
-            raise AssertionError(f"operation {state[L.AT]} ended with {result}, and nothing is wrong with it")
+            called = int(state[L.CALLED])
+            at = self._places[int(state[L.AT])]
+            judge = program.judges[at] if called < 0 else program.call_judges[called]
+            judge(result, int(state[L.DETAIL]))
+            raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
 
     # ---- what is made once
 
@@ -69,14 +73,13 @@ class CompiledEngine(Engine):
         self._numbers[[L.START, L.H, L.SECONDS]] = (
             experiment.start_time, experiment.step_size, CHUNK_SECONDS,
         )  # fmt: skip # beside their places
-        self._state[L.OPERATIONS] = len(program.judges)
         self._state[L.PYTHON] = address(self._python)
         self._set_clock()
         tables: dict[int, NDArray[Any]] = {
-            L.STATE: self._state, L.NUMBERS: self._numbers, L.MEMORY: self.memory, L.OPS: program.ops,
-            L.ROUTES: program.routes, L.EFFECTS: program.effect_table, L.CALLS: program.calls,
-            L.ITEMS: program.items, L.UNITS: program.units, L.SIGNALS: program.signal_table,
-            L.SINKS: program.sinks, L.RAWS: self._raws, L.WAITS: program.waits, L.ARRIVALS: program.arrivals,
+            L.STATE: self._state, L.NUMBERS: self._numbers, L.MEMORY: self.memory, L.ROUTES: program.routes,
+            L.EFFECTS: program.effect_table, L.CALLS: program.calls, L.ITEMS: program.items,
+            L.UNITS: program.units, L.SIGNALS: program.signal_table, L.SINKS: program.sinks,
+            L.RAWS: self._raws, L.WAITS: program.waits, L.ARRIVALS: program.arrivals,
             L.COLUMNS: program.columns, L.LOGS: self._logs, L.TICKS: self._ticks, L.TIMES_OF_OPS: self._times,
         }  # fmt: skip # the others are a chunk's own
         self._addresses = np.zeros(L.TABLES, dtype=np.int64)
@@ -146,8 +149,9 @@ class CompiledEngine(Engine):
                     instance.log.warnings += int(table[i, L.WARNINGS])
                 table[:, L.WARNINGS] = 0
         if self.profile is not None:
-            for part, seconds in zip(program.parts(), self._times.tolist(), strict=False):
-                self.profile.add(part, seconds)
+            parts = program.parts()
+            for place, seconds in zip(self._places, self._times.tolist(), strict=False):
+                self.profile.add(parts[place], seconds)
             self._times[:] = 0.0
         signals = program.signal_table
         for i in np.flatnonzero(signals[:, L.TIMES]).tolist():

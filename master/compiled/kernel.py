@@ -143,14 +143,22 @@ def take(t, m, c, kind):
 
 
 @inlined
-def call(t, m, c):
-    """The C call in row c, with the values before or after it."""
+def stopped(t, row, detail, result):
+    """What the call in a row came to, with what it is told by."""
+    put_word(word(t, L.STATE), L.CALLED, row)
+    put_word(word(t, L.STATE), L.DETAIL, detail)
+    return result
+
+
+@inlined
+def call(t, m, row):
+    """The C call in a row, with the values before or after it."""
+    c = word(t, L.CALLS) + 8 * L.CALL_WIDTH * row
     kind = word(c, L.FORMAT)
     if L.IN_PLACE < kind < L.GETS:
         place = fill(t, m, c, kind)
         if place >= 0:
-            put_word(word(t, L.STATE), L.DETAIL, place)
-            return L.NO_FIT
+            return stopped(t, row, place, L.NO_FIT)
     if word(c, L.TWICE):
         status = transfer_3(
             word(c, L.FUNCTION),
@@ -169,14 +177,12 @@ def call(t, m, c):
         )
     if status:
         if status != 1:
-            put_word(word(t, L.STATE), L.DETAIL, np.int64(status))
-            return L.BAD_STATUS
+            return stopped(t, row, np.int64(status), L.BAD_STATUS)
         put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
     if kind > L.GETS:
         place = take(t, m, c, kind - L.GETS)
         if place >= 0:
-            put_word(word(t, L.STATE), L.DETAIL, place)
-            return L.NO_FIT
+            return stopped(t, row, place, L.NO_FIT)
     return L.DONE
 
 
@@ -201,6 +207,15 @@ def step(t, c, begin):
             put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
         if answers and (peek(word(c, L.ENDING), np.int8) != 0 or peek(word(c, L.EARLY), np.int8) != 0):
             return L.BAD_END
+    return L.DONE
+
+
+@inlined
+def check(m, first, count):
+    """Whether so many values are finite."""
+    for j in range(first, first + count):
+        if not abs(number(m, j)) <= LARGEST:
+            return L.NOT_FINITE
     return L.DONE
 
 
@@ -299,13 +314,18 @@ def operate(t, m, o, s, k, time):
             )
             r += 8 * L.ROUTE
     elif kind == L.CALL:
-        return call(t, m, word(t, L.CALLS) + 8 * L.CALL_WIDTH * a)
+        result = call(t, m, a)
+        if result != L.DONE:
+            return result
+        return check(m, b, word(o, L.C))
     elif kind == L.STEP:
+        for row in range(b, b + word(o, L.C)):
+            result = call(t, m, row)
+            if result != L.DONE:
+                return result
         return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, time)
     elif kind == L.CHECK:
-        for j in range(a, a + b):
-            if not abs(number(m, j)) <= LARGEST:
-                return L.NOT_FINITE
+        return check(m, b, word(o, L.C))
     elif kind == L.COPY:
         for j in range(word(o, L.C)):
             put_number(m, b + j, number(m, a + j))

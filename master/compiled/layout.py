@@ -18,9 +18,9 @@ OPERATION = 7
 """Columns of OPS: done at step DUE, which then becomes DUE + EVERY; EVERY and FIRST are the action's."""
 
 TAKE = 0  # B ROUTES from row A on
-CALL = 1  # the C call in row A of CALLS, which sets or gets values
-STEP = 2  # the steps of the unit in row A of UNITS
-CHECK = 3  # B slots from A on hold finite numbers
+CALL = 1  # the C call in row A of CALLS, after which C slots from B on hold finite numbers
+STEP = 2  # C C calls from row B of CALLS on, then the steps of the unit in row A of UNITS
+CHECK = 3  # C slots from B on hold finite numbers
 COPY = 4  # C slots from A on to those from B on
 SEND = 5  # B SIGNALS from row A on; C: the message's place in LOGS, or -1
 RECORD = 6  # B COLUMNS
@@ -75,11 +75,13 @@ WAIT = 4
 
 # ---- a chunk
 
-WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, DETAIL, PYTHON, CLOCK, CLOCK_A, CLOCK_B = range(11)
-STATE_SIZE = 11
+WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
+CLOCK, CLOCK_A, CLOCK_B = range(9, 12)
+STATE_SIZE = 12
 """Places in STATE: steps wanted and done, the first one, how many OPS there are, for how many steps there are
-values of stimuli; the operation that the kernel stopped at, with a detail; addresses of the function of
-Python and of the clock, and the clock's arguments, of which one is the address of TICKS."""
+values of stimuli; the operation that the kernel stopped at, the row of CALLS within it (-1: none of them),
+and a detail; addresses of the function of Python and of the clock, and the clock's arguments, of which one
+is the address of TICKS."""
 START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)
 NUMBERS_SIZE = 6
 """Places in NUMBERS: start time and step size, how long a chunk may take, a value that Python is asked about,

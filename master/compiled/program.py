@@ -33,7 +33,7 @@ _FORMATS: dict[Any, int] = {
     ctypes.c_int64: L.I64, ctypes.c_uint64: L.U64,
 }  # fmt: skip # a table
 _MODES = {"nearest": L.NEAREST, "half_even": L.HALF_EVEN, "truncate": L.TRUNCATE}
-_NEVER = -1  # no step is due then
+_NO_LOG = -1
 
 
 def direct(turn: Turn) -> Instance | None:
@@ -48,7 +48,8 @@ def direct(turn: Turn) -> Instance | None:
 class Program:
     """The tables of an engine whose units are initialized.
 
-    `judges` and `actions` say for each operation what its errors are and which action it is a part of.
+    `judges` and `actions` say for each operation what its errors are and which action it is a part of,
+    `call_judges` for each row of calls what its errors are.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -57,7 +58,9 @@ class Program:
             name: []
             for name in ("ops", "routes", "calls", "items", "units", "signals", "sinks", "waits", "arrivals")
         }
+        self._apart = engine.profile is not None  # a profile tells apart what is else done at a stretch
         self.judges: list[Judge] = []
+        self.call_judges: list[Judge] = []
         self.actions: list[int] = []
         self.effects: list[tuple[int, int, Turn]] = []  # operation, its first row, whose effects they are
         self.signals: list[tuple[Sender, int]] = []  # the message of each row, and the signal's place in it
@@ -85,27 +88,30 @@ class Program:
         """Whether the kernel calls into this interpreter by itself: then it must hold Python's lock."""
         return any(instance.fmu.holds_python for instance in self.stepped)
 
-    def due(self, k: int) -> None:
-        """Note when each operation is due next, from step k on."""
+    def chunk(self, k: int, count: int) -> tuple[Table, list[int]]:
+        """The operations that are due in steps k to k + count - 1, noting when first, and their places.
+
+        The effects of events and of the user are those of now.
+        """
         first, every = self.ops[:, L.FIRST], self.ops[:, L.EVERY]
         passed = np.maximum(k - first, 0)
-        self.ops[:, L.DUE] = first + -(-passed // every) * every
-
-    def act(self) -> None:
-        """Let the effects of events and of the user act as they are now. Follows `due`."""
-        for op, first, turn in self.effects:
+        due = first + -(-passed // every) * every
+        self.ops[:, L.DUE] = due
+        busy = due < k + count
+        for op, row, turn in self.effects:
+            busy[op] &= bool(turn.effects)
             self.ops[op, L.B] = len(turn.effects)
-            for row, (slot, (action, value)) in enumerate(turn.effects.items(), first):
+            for i, (slot, (action, value)) in enumerate(turn.effects.items(), row):
                 _fill(
-                    self.effect_table, row,
+                    self.effect_table, i,
                     {L.SLOT: slot, L.OVERRIDES: int(action == "override"), L.VALUE_OF: float(value)},
                 )  # fmt: skip # a row
-            if not turn.effects:
-                self.ops[op, L.DUE] = _NEVER
+        places = np.flatnonzero(busy)
+        return self.ops[places], places.tolist()
 
     def parts(self) -> list[Part]:
         """What each operation is a part of, for a profile."""
-        kinds = self.ops[: len(self.actions), L.KIND].tolist()
+        kinds = self.ops[:, L.KIND].tolist()
         found = []
         for at, kind in zip(self.actions, kinds, strict=True):
             action = self._engine.schedule[at]
@@ -146,11 +152,7 @@ class Program:
         elif action.kind == "begin":
             self._begin(at, action, turn, instance)
         else:
-            for transfer in instance.outputs:
-                self._call(at, action, instance, transfer)
-            for values, block in turn.read:
-                slot = block.latest if block.kind == "continuous" else block.slot
-                self._operation(at, action, L.CHECK, slot, len(values), judge=lambda *_: turn.check_finite())
+            self._end(at, action, turn, instance)
 
     def _begin(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
         inputs = sum(len(b.variables) for b in turn.plan.blocks if b.kind == "input")
@@ -158,11 +160,15 @@ class Program:
             op = self._operation(at, action, L.EFFECT, self._effect_rows)
             self.effects.append((op, self._effect_rows, turn))
             self._effect_rows += inputs
+        calls = self._count("calls")
         for transfer in (*instance.inputs, *instance.through):
             if isinstance(transfer, Copy):
+                calls = self._calls(at, action, calls)
                 self._operation(at, action, L.COPY, transfer.source, transfer.target, transfer.count)
             else:
-                self._call(at, action, instance, transfer)
+                self._call(instance, transfer)
+        if self._apart:
+            calls = self._calls(at, action, calls)
         step = instance.step_call
         assert step is not None  # a unit that has been initialized has one
         row: dict[int, int | float] = {
@@ -174,11 +180,37 @@ class Program:
         def judge(result: int, detail: int) -> None:
             instance.judge_step(detail if result == L.BAD_STATUS else 0)
 
-        self._operation(at, action, L.STEP, self._count("units"), judge=judge)
+        count = self._count("calls") - calls
+        self._operation(at, action, L.STEP, self._count("units"), calls, count, judge=judge)
         self._rows["units"].append(row)
         self.stepped.append(instance)
 
-    def _call(self, at: int, action: Action, instance: Instance, transfer: Transfer) -> None:
+    def _end(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
+        def judge(result: int, detail: int) -> None:
+            turn.check_finite()
+
+        first = self._count("calls")
+        for transfer in instance.outputs:
+            self._call(instance, transfer)
+        checks = [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]
+        if checks and self._count("calls") > first:  # with the last call goes the first check
+            self._calls(at, action, first, self._count("calls") - 1)
+            self._operation(at, action, L.CALL, self._count("calls") - 1, *checks.pop(0), judge=judge)
+        else:
+            self._calls(at, action, first)
+        for check in checks:
+            self._operation(at, action, L.CHECK, 0, *check, judge=judge)
+
+    def _calls(self, at: int, action: Action, first: int, end: int | None = None) -> int:
+        """An operation for each row of calls from `first` on; the number of rows."""
+        count = self._count("calls")
+        for row in range(first, count if end is None else end):
+            self._operation(at, action, L.CALL, row)
+        return count
+
+    def _call(self, instance: Instance, transfer: Transfer) -> None:
+        """Add a row of calls."""
+
         def judge(result: int, detail: int) -> None:
             if result == L.BAD_STATUS:
                 instance.judge_transfer(transfer, detail)
@@ -186,7 +218,7 @@ class Program:
             value = transfer.values[detail] if transfer.gets else item.sign * self._engine.view[item.slot]
             instance.refuse(transfer, detail, value)
 
-        self._operation(at, action, L.CALL, self._count("calls"), judge=judge)
+        self.call_judges.append(judge)
         self._rows["calls"].append(
             {
                 L.FUNCTION: address(transfer.pointer),
@@ -213,7 +245,7 @@ class Program:
         if any(operation.kind == "exact" for operation in channel.operations):
             self._operation(at, action, L.PYTHON_ACT, at)  # integers that no double holds
             return
-        log = -1
+        log = _NO_LOG
         if channel.logs:
             log = len(self.logged)
             self.logged.append(sender)
@@ -252,15 +284,34 @@ class Program:
         judge: Judge | None = None,
     ) -> int:
         """Add an operation of action `at`; its row."""
-        self._rows["ops"].append(
-            {L.KIND: kind, L.EVERY: action.every, L.FIRST: action.first, L.A: a, L.B: b, L.C: c}
-        )
-        self.actions.append(at)
-        self.judges.append(judge or _cannot_fail)
-        return self._count("ops") - 1
+        row: Row = {L.KIND: kind, L.EVERY: action.every, L.FIRST: action.first, L.A: a, L.B: b, L.C: c}
+        ops = self._rows["ops"]
+        longer = _joined(ops[-1], row) if ops and not self._apart else None
+        if longer is not None:
+            ops[-1] = longer
+        else:
+            ops.append(row)
+            self.actions.append(at)
+            self.judges.append(judge or _cannot_fail)
+        return len(ops) - 1
 
     def _count(self, name: str) -> int:
         return len(self._rows[name])
+
+
+def _joined(before: Row, row: Row) -> Row | None:
+    """Two operations done one after the other as one; None where they cannot be."""
+    if any(before[column] != row[column] for column in (L.KIND, L.EVERY, L.FIRST)):
+        return None
+    a, b, c = (int(before[column]) for column in (L.A, L.B, L.C))
+    if row[L.KIND] == L.TAKE and row[L.A] == a + b:
+        return {**before, L.B: b + int(row[L.B])}
+    # all messages may be sampled before any is received: no output is a mailbox
+    if row[L.KIND] == L.SEND and row[L.A] == a + b and c == row[L.C] == _NO_LOG:
+        return {**before, L.B: b + int(row[L.B])}
+    if row[L.KIND] == L.COPY and row[L.A] == a + c and row[L.B] == b + c:
+        return {**before, L.C: c + int(row[L.C])}
+    return None
 
 
 def _cannot_fail(result: int, detail: int) -> None:
