@@ -95,16 +95,19 @@ def scaling(units: Sequence[Sequence[Figure]], signals: Sequence[Sequence[Figure
     save(figure, path)
 
 
-def memory(peaks: Sequence[Peak], name: Callable[[float], str], path: Path) -> None:
-    """The most memory of a run, and what its rows would take there, against its length."""
+def memory(peaks: Sequence[tuple[Peak, Peak]], name: Callable[[float], str], path: Path) -> None:
+    """The most memory of a run without and with a CAN log, and what its rows would take there, against its
+    length."""
     figure, axis = plt.subplots(figsize=(7, 4.2), layout="constrained")
-    lengths = [p.length for p in peaks]
-    axis.plot(
-        lengths, [p.memory / 1e6 for p in peaks], color="#0b6e4f", marker="o", label="whole process, at most"
-    )
-    axis.plot(
-        lengths, [p.rows / 1e6 for p in peaks], color="0.4", linestyle=":", marker="x", label="recorded rows"
-    )
+    lengths = [p.length for p, _ in peaks]
+    for place, color, line, marker, label in (
+        (0, "#0b6e4f", "-", "o", "whole process, at most"),
+        (1, "#b5562b", "--", "s", "the same with --can-log"),
+    ):
+        values = [pair[place].memory / 1e6 for pair in peaks]
+        axis.plot(lengths, values, color=color, linestyle=line, marker=marker, label=label)
+    rows = [p.rows / 1e6 for p, _ in peaks]
+    axis.plot(lengths, rows, color="0.4", linestyle=":", marker="x", label="recorded rows")
     logarithmic(axis, [])
     axis.set_xticks(lengths, [name(length) for length in lengths])
     axis.set_xlabel("length of the run at 100 Hz")

@@ -1,8 +1,8 @@
 """How much memory a run holds: python -m benchmarks.memory, from the project's folder.
 
 `evcosim run scooter` for a minute to 8 hours at 100 Hz with all that it leaves (results, metrics, figure),
-each in a process of its own. What counts is the most memory that the process has had, beside the size of what
-it recorded. Needs a system that tells the former: Linux or macOS.
+and the same with --can-log, each in a process of its own. What counts is the most memory that the process has
+had, beside the size of what it recorded. Needs a system that tells the former: Linux or macOS.
 """
 
 from __future__ import annotations
@@ -48,8 +48,9 @@ def main() -> None:
     arguments = parser.parse_args()
     peaks = []
     for length in arguments.lengths or LENGTHS:
-        peaks.append(peak(length))
-        print(f"{shown(length)}: {peaks[-1]}", file=sys.stderr, flush=True)
+        alone, with_frames = peak(length), peak(length, ["--can-log"])
+        peaks.append((alone, with_frames))
+        print(f"{shown(length)}: {alone}, {with_frames}", file=sys.stderr, flush=True)
     text = report(peaks)
     print(text)
     if arguments.write is not None:
@@ -83,12 +84,17 @@ def shown(length: float) -> str:
     return f"{length:.3g} s"
 
 
-def report(peaks: Sequence[Peak]) -> str:
-    """The table."""
-    header = ["run", "most memory, MB", "recorded rows, MB", "results.csv, MB", "whole command, s"]
+def report(peaks: Sequence[tuple[Peak, Peak]]) -> str:
+    """The table of runs without and with a CAN log."""
+    header = ["run", "most memory, MB", "with --can-log, MB", "recorded rows, MB", "results.csv, MB"]
+    header += ["whole command, s", "with --can-log, s"]
     rows = [
-        [shown(p.length), *(page.short(size / _MB) for size in (p.memory, p.rows, p.csv)), f"{p.seconds:.1f}"]
-        for p in peaks
+        [
+            shown(p.length),
+            *(page.short(size / _MB) for size in (p.memory, logged.memory, p.rows, p.csv)),
+            *(f"{seconds:.1f}" for seconds in (p.seconds, logged.seconds)),
+        ]
+        for p, logged in peaks
     ]
     return f"Measured on: {machine.about()}.\n\n{page.table(header, rows)}"
 

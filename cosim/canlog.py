@@ -17,9 +17,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from .channel import RawLog
 from .dbc import Message, Signal
 from .errors import ConfigError
+from .rawlog import RawLog
+from .writing import in_place_of
 
 _ASC_DATE = "Thu Jan 01 00:00:00.000 1970"
 
@@ -47,13 +48,13 @@ def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, st
     """Write the frames of `logs` in the format that the file's suffix names; return how many there were.
 
     `.log` is candump's, `.blf` and `.asc` are Vector's. Signals that no connection feeds are sent with their
-    start value. Written frame by frame. Raises ConfigError for another suffix, OSError where the file
-    cannot be written.
+    start value. Written frame by frame. Raises ConfigError for another suffix or where the file cannot be
+    written.
     """
     path = Path(path)
     check_suffix(path)
     count = 0
-    with _FORMATS[path.suffix.lower()](path) as write:
+    with in_place_of(path) as partial, _FORMATS[path.suffix.lower()](partial) as write:
         for frame in frames(logs, step_size, start_time):
             write(frame)
             count += 1
@@ -83,14 +84,14 @@ def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
     # an extended frame loses against a standard one with the same leading 11 bits
     order = message.frame_id * 2 + 1 if message.extended else message.frame_id << 19
     encode = encoder(message)
-    names = list(log.raws)
     start = {s.name: s.start_raw for s in message.signals.values()}
-    rows = zip(*(column.tolist() for column in log.raws.values()), strict=True)
     before, data = None, b""
-    for k, row in zip(log.steps.tolist(), rows, strict=True):
-        if row != before:  # a quantized value often stays
-            before, data = row, encode(start | dict(zip(names, row, strict=True)))
-        yield k, order, channel, message, data
+    for steps, raws in log.stretches():
+        rows = zip(*(column.tolist() for column in raws.values()), strict=True)
+        for k, row in zip(steps.tolist(), rows, strict=True):
+            if row != before:  # a quantized value often stays
+                before, data = row, encode(start | dict(zip(raws, row, strict=True)))
+            yield k, order, channel, message, data
 
 
 def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:

@@ -31,13 +31,13 @@ from .quantization import (
     quantize,
     reference,
 )
+from .rawlog import RawLog, raw_store
 from .units import Affine
 
 __all__ = [
     "BusSettings",
     "ChannelError",
     "MessageChannel",
-    "RawLog",
     "Saturation",
     "SignalOperation",
     "SignalRoute",
@@ -68,18 +68,6 @@ class Saturation:
     first_step: int
 
 
-@dataclasses.dataclass(frozen=True)
-class RawLog:
-    """The transmissions of a message: their communication steps, and each signal's raw values, one for each.
-
-    The raw values of an integer signal are whole float64, or integers where those could not hold them.
-    """
-
-    message: Message
-    steps: NDArray[np.int64]
-    raws: dict[str, NDArray[Any]]
-
-
 class MessageChannel:
     """One message of a bus, sent by `transmit(memory, k)`.
 
@@ -87,7 +75,8 @@ class MessageChannel:
     is only recorded: the caller knows when the message is due (`dbc.schedule`). All signals are read and
     checked before any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
 
-    With `log_raw` the raw values of each transmission are kept for `log` (`logs` tells whether).
+    With `log_raw` the raw values of each transmission are kept for `log` (`logs` tells whether), in memory
+    until `flush` puts them to the others, which are in a temporary file when they are many.
     Raises ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
     """
 
@@ -107,7 +96,7 @@ class MessageChannel:
         self._out = [
             _out_of_range(op, counter) for op, counter in zip(self.operations, self._counts, strict=True)
         ]
-        self._log = bytearray()
+        self._log, self._logged = bytearray(), raw_store(len(routes))
         self._row = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
         self.source = _source(self.routes, self.operations, log_raw)
         names = self._names() | {"extend": self._log.extend, "pack": self._row.pack}
@@ -122,11 +111,19 @@ class MessageChannel:
 
     @property
     def log(self) -> RawLog:
-        """The transmissions so far; without `log_raw`, none."""
-        types = ["<i8", *(_log_type(op)[1] for op in self.operations)]
-        rows = np.frombuffer(bytes(self._log), np.dtype([(f"f{i}", t) for i, t in enumerate(types)]))
-        raws = {op.signal.name: rows[f"f{i}"] for i, op in enumerate(self.operations, start=1)}
-        return RawLog(self.message, rows["f0"], raws)
+        """The transmissions so far; without `log_raw`, none. Raises RunError as `flush` does."""
+        self.flush()
+        types = {op.signal.name: _log_type(op)[1] for op in self.operations}
+        return RawLog(self.message, types, self._logged.table())
+
+    def flush(self) -> None:
+        """Put what was logged since the last time to what is kept; an engine does so now and then.
+
+        Raises RunError when the temporary file cannot be written.
+        """
+        rows = np.frombuffer(bytes(self._log), "<f8").reshape(-1, 1 + len(self.routes))
+        self._log.clear()
+        self._logged.append(rows)
 
     # ---- for an engine that does the transmissions itself, with the constants in `operations`
 

@@ -147,11 +147,20 @@ class RowStore:
     """Rows of `width` numbers, appended in order.
 
     Beyond `memory` bytes they are in a temporary file without a name in `folder` (default: the system's,
-    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends.
+    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. An error
+    says `what` cannot be kept there, and with what `advice` it could.
     """
 
-    def __init__(self, width: int, memory: int = MEMORY, folder: Path | None = None) -> None:
+    def __init__(
+        self,
+        width: int,
+        memory: int = MEMORY,
+        folder: Path | None = None,
+        what: str = "what the run records",
+        advice: str = "`record` less needs less",
+    ) -> None:
         self._width, self._memory, self._folder = width, memory, folder
+        self._what, self._advice = what, advice
         self._chunks: list[Array] = []
         self._file: _TemporaryFile | None = None
         self._in_file = self._in_memory = 0
@@ -183,8 +192,8 @@ class RowStore:
         except OSError as error:
             folder = self._folder or tempfile.gettempdir()
             raise RunError(
-                f"what the run records cannot be kept in {folder}: {error.strerror or error}; "
-                "TMPDIR names another folder, `record` less needs less"
+                f"{self._what} cannot be kept in {folder}: {error.strerror or error}; "
+                f"TMPDIR names another folder, {self._advice}"
             ) from error
         self._in_file += self._in_memory
         self._chunks, self._in_memory = [], 0

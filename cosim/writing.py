@@ -12,20 +12,27 @@ from .errors import ConfigError
 
 
 @contextlib.contextmanager
-def replacing(path: Path) -> Iterator[BinaryIO]:
-    """A binary file that takes the place of `path` once everything is written, or leaves no trace.
+def in_place_of(path: Path) -> Iterator[Path]:
+    """The name of a file to write, which takes the place of `path` once it is whole, or leaves no trace.
 
     Raises ConfigError naming the path and the reason when the folder or the disk refuses.
     """
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")  # beside it: a rename must not cross disks
+    # beside it: a rename must not cross disks
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            with partial.open("wb") as file:
-                yield file
+            yield partial
             partial.replace(path)
         finally:
             with contextlib.suppress(OSError):  # renamed, or a first error is on its way
                 partial.unlink()
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    """The same, as a binary file that is open."""
+    with in_place_of(path) as partial, partial.open("wb") as file:
+        yield file

@@ -212,6 +212,8 @@ class Engine:
         finally:
             done = self.k - first
             self._store.append(rows if done == count else rows[:done].copy())
+            for sender in self.senders:
+                sender.channel.flush()
         self._adapt(count, done, time.perf_counter() - begin)
 
     def _stimuli(self, count: int) -> NDArray[np.float64]:

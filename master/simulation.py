@@ -314,8 +314,8 @@ class Simulation:
     def write_can_log(self, path: str | Path) -> int:
         """Write the frames that crossed the buses; the suffix (.log candump, .blf, .asc) names the format.
 
-        Returns their number. Raises ConfigError when the run did not keep them (`log_frames`) or for
-        another suffix, OSError where the file cannot be written.
+        Returns their number. Raises ConfigError when the run did not keep them (`log_frames`), for another
+        suffix or where the file cannot be written.
         """
         if not self.log_frames:
             raise ConfigError("the frames of this run were not kept; ask for log_frames before the run")

@@ -89,11 +89,6 @@ def write_figure(folder: Path, results: Results) -> list[str]:
 
 def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:
     """Write the frames of the run in each format and return the names of the files. Raises ConfigError."""
-    from ...cosim.errors import ConfigError
-
     for name in CAN_LOGS:
-        try:
-            simulation.write_can_log(folder / name)
-        except OSError as error:
-            raise ConfigError(f"{folder / name}: cannot be written: {error.strerror or error}") from error
+        simulation.write_can_log(folder / name)
     return list(CAN_LOGS)

@@ -78,7 +78,7 @@ def test_the_memory_of_a_run_is_measured(monkeypatch: pytest.MonkeyPatch) -> Non
     short, long = (memory.peak(length, options) for length in (10.0, 60.0))
     assert long.rows - short.rows == pytest.approx(5000 / 1001 * short.rows, rel=1e-3)
     assert short.rows < short.csv < short.memory
-    assert "| 1 min |" in memory.report([short, long])
+    assert "| 1 min |" in memory.report([(short, short), (long, long)])
 
 
 def test_a_result_that_is_not_the_reference_has_no_time() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from evcosim.cosim.canlog import BusLog, frames, write_can_log
 from evcosim.cosim.channel import MessageChannel, SignalRoute
 from evcosim.cosim.dbc import Message, Signal, load_dbc, schedule
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.rawlog import RawLog
 from evcosim.cosim.units import Affine
 
 EV = Path(dbc.__file__).parent / "can" / "ev.dbc"
@@ -178,6 +180,30 @@ def test_two_buses_keep_apart(tmp_path: Path, suffix: str) -> None:
 def test_a_run_without_a_frame_gives_an_empty_log(tmp_path: Path, suffix: str) -> None:
     assert write_can_log(tmp_path / f"frames{suffix}", Run(0).log(), STEP) == 0
     assert read(tmp_path / f"frames{suffix}") == []
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_breaks_off_leaves_the_earlier_log(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"frames{suffix}"
+    write_can_log(path, Run(3).log(), STEP)
+    before, logs = path.read_bytes(), Run(5).log()
+    broken = [BusLog("can0", [*logs[0].messages, Interrupted(logs[0].messages[0])])]  # type: ignore[list-item]
+    with pytest.raises(KeyboardInterrupt):
+        write_can_log(path, broken, STEP)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+    assert path.read_bytes() == before
+
+
+class Interrupted:
+    """A log that is read up to its second transmission."""
+
+    def __init__(self, log: RawLog) -> None:
+        self.message, self._log = log.message, log
+
+    def stretches(self) -> Iterator[tuple[Any, Any]]:
+        for steps, raws in self._log.stretches():
+            yield steps[:1], {name: raw[:1] for name, raw in raws.items()}
+            raise KeyboardInterrupt
 
 
 def test_other_formats_are_refused_before_anything_is_written(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import timeit
+import tracemalloc
 from collections.abc import Callable
 from fractions import Fraction
 
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from evcosim.cosim import rawlog
 from evcosim.cosim.channel import (
     BusSettings,
     ChannelError,
@@ -219,6 +221,42 @@ def test_the_log_keeps_steps_and_raw_values() -> None:
     assert log.raws["Wide"].tolist() == [2**63, 2**63 + 2048, 2**63 + 4096]
     channel.transmit(memory_of(0.0), 6)  # a log that was read does not stop the channel
     assert len(channel.log.steps) == 4
+
+
+@given(st.lists(st.integers(0, 2**64 - 1), max_size=12), st.sets(st.integers(0, 11)))
+def test_a_log_in_a_file_is_that_in_memory(raws: list[int], flushes: set[int]) -> None:
+    """Also of integers whose bytes, taken for a double, are a NaN."""
+    wide = Signal("Wide", 0, 64)
+    channels = [MessageChannel(message(wide), [SignalRoute(wide, 0, Affine(), ())], log_raw=True)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rawlog, "_MEMORY", 0)
+        channels.append(MessageChannel(message(wide), [SignalRoute(wide, 0, Affine(), ())], log_raw=True))
+    for k, raw in enumerate(raws):
+        for channel in channels:
+            channel.transmit(memory_of(min(float(raw), 2.0**64 - 2048)), k)
+        if k in flushes:
+            channels[1].flush()
+    kept, filed = (channel.log for channel in channels)
+    assert kept.steps.tolist() == filed.steps.tolist() == list(range(len(raws)))
+    assert kept.raws["Wide"].tolist() == filed.raws["Wide"].tolist()
+    assert kept.raws["Wide"].tolist() == [min(int(float(raw)), 2**64 - 2048) for raw in raws]
+
+
+def test_a_long_log_is_not_in_memory() -> None:
+    """Three times the transmissions take no more of it, kept or read: not even their own bytes."""
+    peaks = []
+    for count in (60_000, 200_000):
+        channel = channel_of(THROTTLE, POWER, log_raw=True)
+        memory = memory_of(1.0, 2.0)
+        tracemalloc.start()
+        for k in range(count):
+            channel.transmit(memory, k)
+            if k % 1000 == 0:
+                channel.flush()
+        assert sum(len(steps) for steps, _ in channel.log.stretches()) == count
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] - peaks[0] < 0.2 * 24 * 140_000
 
 
 def test_without_log_raw_nothing_is_kept() -> None:
