@@ -28,12 +28,13 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
 
 
 def prepared() -> str:
-    """Compile the engine into its cache, if it is not there; a notice where that cannot be ("")."""
+    """Compile the engine into its cache, also that of a profile, if it is not there; a notice where that
+    cannot be ("")."""
     try:
         from .compiled.cache import compiled
     except ImportError as error:
         return _without_numba(error)
-    return compiled()[1]
+    return compiled()[1] or compiled(timed=True)[1]
 
 
 def _without_numba(error: ImportError) -> str:

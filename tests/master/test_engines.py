@@ -42,7 +42,8 @@ variable = "n0.u0"
 
 def run(engine, system, scenario=None, steps=None, **options):
     """Recorded bits, saturations, warnings and the error's text ("": none)."""
-    with Simulation(system, scenario, engine=engine, isolation="none", **options) as simulation:
+    options = {"isolation": "none"} | options
+    with Simulation(system, scenario, engine=engine, **options) as simulation:
         assert simulation.manifest()["experiment"]["engine"] == engine
         error = ""
         try:
@@ -120,6 +121,86 @@ def test_every_type_of_a_variable(tmp_path, fmi):
         f'name = "mixed"\n[experiment]\nstop_time = 1.0\n[units.a]\nfmu = "{fmu}"\n'
     )
     assert not same(tmp_path / "s.toml")[-1]
+
+
+ONE = 'name = "one"\n[experiment]\nstop_time = 1.0\n[units.a]\nfmu = "{fmu}"\n'
+RISING = '[[stimulus]]\nto = "a.{to}"\ntable = [[0.0, 0.0], [1.0, {end}]]\n'
+
+
+def one(folder, fmi, behavior=0, to="u", end=1.0):
+    """The system of sources/mixed.c alone, which does wrong in some way, and a scenario that drives it."""
+    need_c_compiler()
+    (folder / "s.toml").write_text(ONE.format(fmu=mixed_fmu(folder / "mixed.fmu", fmi, behavior)))
+    (folder / "rising.toml").write_text(RISING.format(to=to, end=end))
+    return folder / "s.toml", folder / "rising.toml"
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("behavior", "step", "reason"),
+    [
+        (12, 50, "DoStep returned Discard (2)"),
+        (17, 50, "DoStep returned no FMI status (7)"),
+        (73, 50, "returned Error (3)"),
+        (83, 49, "returned Error (3)"),
+        (2, 50, "a.y = nan: an output must be finite"),
+    ],
+)
+def test_what_a_unit_does_wrong(tmp_path, fmi, behavior, step, reason):
+    bits, *_, error = same(*one(tmp_path, fmi, behavior))
+    assert error.startswith(f"at t = {step / 100:g} s (step {step}): ")
+    assert reason in error
+    assert bits.shape[1] == step
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+@pytest.mark.parametrize("behavior", [11, 71, 81])
+def test_warnings_of_a_unit_are_counted(tmp_path, fmi, behavior):
+    *_, warnings, error = same(*one(tmp_path, fmi, behavior))
+    assert any(text.startswith("unit 'a' gave ") for text in warnings)
+    assert not error
+
+
+@pytest.mark.parametrize("behavior", [3, 4])
+def test_a_step_of_fmi_3_that_ends_otherwise(tmp_path, behavior):
+    assert same(*one(tmp_path, 3, behavior))[-1].startswith("at t = 0.5 s (step 50): unit 'a': fmi3DoStep ")
+
+
+def test_a_value_that_its_type_does_not_hold(tmp_path):
+    """200 t in an Int8: 128 comes first at t = 0.64 s."""
+    *_, error = same(*one(tmp_path, 3, to="int8_in", end=200.0))
+    assert error.startswith("at t = 0.64 s (step 64): unit 'a': int8_in cannot be set to 128: ")
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+def test_units_in_processes_of_their_own(ring, tmp_path, algorithm):
+    """All four pairs of an engine and where the units are."""
+    (tmp_path / "events.toml").write_text(EVENTS)
+    runs = [
+        same(ring(), tmp_path / "events.toml", algorithm=algorithm, isolation=isolation)
+        for isolation in ("none", "process")
+    ]
+    assert np.array_equal(runs[0][0], runs[1][0])
+    assert runs[0][1:] == runs[1][1:]
+
+
+@pytest.mark.parametrize("overflow", ["saturate", "wrap"])
+@pytest.mark.parametrize("rounding", ["nearest", "half_even", "truncate"])
+def test_signals_whose_raw_values_no_double_holds(ring, rounding, overflow):
+    """56 bits of 2^-50: the channel computes in integers."""
+    system = ring(f'rounding = "{rounding}"\noverflow = "{overflow}"', bias=100.0)
+    dbc = system.with_name("ring.dbc")
+    narrow = "16|16@1- (0.0009765625,0) [-30|30]"
+    assert dbc.read_text().count(narrow) == 3
+    dbc.write_text(
+        dbc.read_text()
+        .replace(narrow, "8|56@1- (8.881784197001252e-16,0) [-30|30]")
+        .replace("0|16@1- (0.0009765625,0)", "0|8@1- (0.25,0)")
+    )
+    with Simulation(system) as simulation:
+        kinds = {o.kind for sender in simulation._engine.senders for o in sender.channel.operations}
+    assert kinds == {"integer", "exact"}
+    assert not same(system)[-1]
 
 
 def mock(broken_at):

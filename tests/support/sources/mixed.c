@@ -3,6 +3,7 @@
    x <- x + h (gain u - x), y = x; every other output is its input, Integers plus 1, Booleans negated.
    Value references: tests/support/c_fmu.py. BEHAVIOR (a number, 0: good) makes one thing go wrong:
    10 s  doStep returns status s from t = 0.5 on    20 s  setReal returns status s    30 s  getReal does
+   70 s  as 20 s, but from t = 0.5 s on             80 s  as 30 s, but from t = 0.5 s on
    1     instantiate returns nothing                2     getReal gives NaN from t = 0.5 on
    50 on: from t = 0.5 s on, doStep 50 writes to address 0, 51 aborts, 52 and 53 call exit(0) and exit(3), 54 never
    returns, 55 recurses without end, 56 takes memory without end, 57 fills a file, 58 frees twice
@@ -42,7 +43,7 @@ typedef struct {
 } Unit;
 
 static int bad(Unit *u, int group) {
-    if (BEHAVIOR / 10 != group || (group == 1 && u->time < 0.4999)) return 0;
+    if (BEHAVIOR / 10 != group || (group != 2 && group != 3 && u->time < 0.4999)) return 0;
     int status = BEHAVIOR % 10;
 #if FMI == 3
     if (u->log) u->log(u->environment, status, "logStatus", "as it was told, 100 %");
@@ -144,7 +145,7 @@ typedef bool Bool;
 
 #define ACCESS(TYPE, C, STORE)                                                                            \
     EXPORT int F(Get##TYPE)(void *c, const Reference *r, size_t n, C *x EXTRA) {                          \
-        int status = bad(c, 3);                                                                           \
+        int status = bad(c, 3) | bad(c, 8);                                                               \
         for (size_t i = 0; i < n; i++) {                                                                  \
             if (r[i] >= COUNT) return 3;                                                                  \
             x[i] = (C)((Unit *)c)->STORE[r[i]];                                                           \
@@ -152,7 +153,7 @@ typedef bool Bool;
         return status;                                                                                    \
     }                                                                                                     \
     EXPORT int F(Set##TYPE)(void *c, const Reference *r, size_t n, const C *x EXTRA) {                    \
-        int status = bad(c, 2);                                                                           \
+        int status = bad(c, 2) | bad(c, 7);                                                               \
         for (size_t i = 0; i < n; i++) {                                                                  \
             if (r[i] >= COUNT) return 3;                                                                  \
             ((Unit *)c)->STORE[r[i]] = x[i];                                                              \
