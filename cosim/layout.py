@@ -76,9 +76,23 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         # a pattern means inputs and outputs; a local variable is recorded where it is named in full
         fits = {n for n, c in shown.items() if n == pattern or (c != "local" and fnmatchcase(n, pattern))}
         if not fits and pattern != "*":
-            raise ConfigError(f"{place}: record: '{pattern}' fits no variable{nearest(pattern, shown)}")
+            why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
+            raise ConfigError(f"{place}: record: '{pattern}' {why}")
         recorded |= fits
     return recorded
+
+
+def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
+    """Why a variable that there is cannot be recorded ("": there is none of this name)."""
+    unit, _, variable = name.partition(".")
+    if unit not in interfaces:
+        return ""
+    found = interfaces[unit].variables.get(variable)
+    if found is None:
+        return interfaces[unit].unusable.get(variable, "")
+    if found.type not in _NUMERIC:
+        return f"is of type {found.type}, and numbers are recorded"
+    return f"is of causality {found.causality}, not input, output or local"
 
 
 def _slotted(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from support.c_fmu import SOURCES, compile_fmu
@@ -35,10 +36,19 @@ _VARIABLES = [
 
 
 def equations_fmu(
-    path: Path, model: str, fmi: int, kinds: str = "ME", behavior: int = 0, tolerance: str = "1e-8"
+    path: Path,
+    model: str,
+    fmi: int,
+    kinds: str = "ME",
+    behavior: int = 0,
+    tolerance: str = "1e-8",
+    types: Mapping[str, str] | None = None,
+    more: str = "",
 ) -> Path:
-    """One of MODELS at `path` in FMI 2.0 or 3.0; `kinds` is "ME", "CS" or "ME CS"."""
-    describe = _describe_2 if fmi == 2 else _describe_3
+    """One of MODELS at `path` in FMI 2.0 or 3.0; `kinds` is "ME", "CS" or "ME CS".
+
+    In FMI 3.0 `types` are other types of some variables, and `more` is put to the variables' descriptions.
+    """
     experiment = f'<DefaultExperiment tolerance="{tolerance}"/>'
     interfaces = "".join(
         f'<{name} modelIdentifier="equations"{more}/>'
@@ -49,7 +59,10 @@ def equations_fmu(
         if kind in kinds.split()
     )
     flags = [f"-DFMI={fmi}", f"-DMODEL={model.upper()}", f"-DBEHAVIOR={behavior}"]
-    text = describe(model, interfaces, experiment)
+    if fmi == 2:
+        text = _describe_2(model, interfaces, experiment)
+    else:
+        text = _describe_3(model, interfaces, experiment, types or {}, more)
     return compile_fmu(path, SOURCES / "equations.c", text, "equations", fmi, flags)
 
 
@@ -74,7 +87,7 @@ def _describe_2(model: str, interfaces: str, experiment: str) -> str:
     )
 
 
-def _describe_3(model: str, interfaces: str, experiment: str) -> str:
+def _describe_3(model: str, interfaces: str, experiment: str, types: Mapping[str, str], more: str) -> str:
     states = _STATES.get(model, 0)
     lines = ['<Float64 name="time" valueReference="50" causality="independent"/>']
     lines.append('<Float64 name="z" valueReference="51"/>')
@@ -85,7 +98,7 @@ def _describe_3(model: str, interfaces: str, experiment: str) -> str:
         )
         number = int(name[-1]) if name.startswith("der_") else states
         about += f' derivative="{number}"' if number < states else ""
-        typed = _TYPES.get(kind, kind)
+        typed = types.get(name, _TYPES.get(kind, kind))
         if kind == "String":
             lines.append(
                 f'<String {about}><Start value="{start}"/></String>' if start else f"<String {about}/>"
@@ -98,6 +111,6 @@ def _describe_3(model: str, interfaces: str, experiment: str) -> str:
     structure += ['<EventIndicator valueReference="51"/>'] * _INDICATORS.get(model, 0)
     return (
         f'<fmiModelDescription fmiVersion="3.0" modelName="{model}" instantiationToken="e">'
-        f"{interfaces}{experiment}<ModelVariables>{''.join(lines)}</ModelVariables>"
+        f"{interfaces}{experiment}<ModelVariables>{''.join(lines)}{more}</ModelVariables>"
         f"<ModelStructure>{''.join(structure)}</ModelStructure></fmiModelDescription>"
     )

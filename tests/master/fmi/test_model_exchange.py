@@ -111,6 +111,67 @@ def test_discrete_inputs_act_in_an_event_at_their_communication_point(tmp_path: 
     np.testing.assert_array_equal(results["a.on"][:-1], k < 30)
 
 
+@pytest.mark.parametrize("kind", ["Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64"])
+def test_every_type_of_fmi_3_acts_in_events(tmp_path: Path, kind: str) -> None:
+    types = {"demand": kind, "seen": kind, "level": "Float32", "held": "Float32"}
+    other = equations_fmu(tmp_path / "other.fmu", "timer", 3, types=types)
+    usual = equations_fmu(tmp_path / "usual.fmu", "timer", 3)
+    found, wanted = (run(fmu, "parameters = { p0 = 100.0 }", DISCRETE, stop=0.5) for fmu in (other, usual))
+    assert len(set(wanted["a.seen"])) == len(set(wanted["a.held"])) == 2
+    for name in wanted.names:
+        assert np.array_equal(found[name], wanted[name]), name
+
+
+def test_a_continuous_input_in_single_precision_is_rounded_to_it(tmp_path: Path) -> None:
+    single = equations_fmu(tmp_path / "single.fmu", "relay", 3, types={"u": "Float32"})
+    double = equations_fmu(tmp_path / "double.fmu", "relay", 3)
+    found = [
+        run(fmu, scenario=f'[[stimulus]]\nto = "a.u"\nconstant = {value!r}\n', stop=1.0)["a.x0"]
+        for fmu, value in [(single, 0.1), (double, float(np.float32(0.1))), (double, 0.1)]
+    ]
+    assert np.array_equal(found[0], found[1])
+    assert not np.array_equal(found[0], found[2])
+
+
+@pytest.mark.parametrize(
+    ("variable", "reason"),
+    [
+        (
+            '<Binary name="odd" valueReference="60" causality="output"/>',
+            "is of type Binary, which is not supported",
+        ),
+        (
+            '<Clock name="odd" valueReference="60" causality="output" intervalVariability="triggered"/>',
+            "is of type Clock, which",
+        ),
+        (
+            '<Float64 name="odd" valueReference="60" causality="output"><Dimension start="2"/></Float64>',
+            "is an array, Float64[2]; arrays are not supported",
+        ),
+    ],
+)
+def test_what_cannot_be_exchanged_is_refused_by_name(tmp_path: Path, variable: str, reason: str) -> None:
+    """But for those who ask for it such a variable does no harm."""
+    fmu = equations_fmu(tmp_path / "decay.fmu", "decay", 3, more=variable)
+    assert len(run(fmu, stop=0.1)) == 11
+    with pytest.raises(ConfigError) as refusal:
+        run(fmu, stop=0.1, record='"a.odd"')
+    assert f"record: 'a.odd' {reason}" in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("label", "is of type String, and numbers are recorded"),
+        ("p0", "is of causality parameter, not input"),
+    ],
+)
+def test_what_is_not_recorded_is_refused_by_name(tmp_path: Path, name: str, reason: str) -> None:
+    fmu = equations_fmu(tmp_path / "decay.fmu", "decay", 2)
+    with pytest.raises(ConfigError, match=f"record: 'a.{name}' {reason}"):
+        run(fmu, record=f'"a.{name}"')
+
+
 SWITCHED = """
 [[stimulus]]
 to = "a.u"

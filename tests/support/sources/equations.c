@@ -135,7 +135,15 @@ typedef unsigned int Reference;
 
 #if FMI == 3
 ACCESS(Float64, double)
+ACCESS(Float32, float)
+ACCESS(Int8, int8_t)
+ACCESS(UInt8, uint8_t)
+ACCESS(Int16, int16_t)
+ACCESS(UInt16, uint16_t)
 ACCESS(Int32, int32_t)
+ACCESS(UInt32, uint32_t)
+ACCESS(Int64, int64_t)
+ACCESS(UInt64, uint64_t)
 #else
 ACCESS(Real, double)
 ACCESS(Integer, int)
