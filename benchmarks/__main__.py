@@ -4,7 +4,8 @@ Every master runs the same ring of units in turn, several rounds over, each in a
 processors and with one; its result must be the reference solution's before its time counts. What is printed
 is the least time a step of the whole loop, beside it the ratio to this project's, and the reason where there
 is no number. Needs a C compiler; the peers come with
-pip install libcosimpy ecospy tbb fmu-manipulation-toolbox.
+pip install libcosimpy ecospy tbb fmu-manipulation-toolbox, and one that needs other versions of packages
+from an environment of its own: --python cofmupy=PATH.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from .asking import Figure, measured
 from .case import Case, Kind
 
 MASTERS = (
-    "direct", "evcosim", "evcosim_python", "ecospy", "fmpy_loop", "fmpy_ssp", "libcosimpy", "fmpy_container",
-    "toolbox_container",
+    "direct", "evcosim", "evcosim_python", "ecospy", "fmpy_loop", "fmpy_ssp", "cofmupy", "libcosimpy",
+    "fmpy_container", "toolbox_container",
 )  # fmt: skip # one list
 NAMES = {
     "direct": "bare C calls (lower bound)",
@@ -29,6 +30,7 @@ NAMES = {
     "ecospy": "ecospy {}",
     "fmpy_loop": "FMPy {}, a loop of raw calls",
     "fmpy_ssp": "FMPy {} simulate_ssp",
+    "cofmupy": "CoFmuPy {}",
     "libcosimpy": "libcosimpy {}",
     "fmpy_container": "FMPy {} container FMU",
     "toolbox_container": "fmu-manipulation-toolbox {} container FMU",
@@ -52,7 +54,8 @@ def main() -> None:
     found = []
     for group in GROUPS:
         for units in arguments.units:
-            found.append(measured(MASTERS, case(group, units, arguments.steps), arguments.rounds))
+            asked = case(group, units, arguments.steps)
+            found.append(measured(MASTERS, asked, arguments.rounds, dict(arguments.python)))
             print(f"{found[-1][0].case.name}: {_in_short(found[-1])}", file=sys.stderr, flush=True)
     text = report(found)
     print(text)
@@ -69,9 +72,23 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--steps", type=int, default=10_000, help="steps of a run (default: 10000)")
     parser.add_argument("--units", type=int, nargs="+", default=[2, 5, 20, 100], help="units in the ring")
     parser.add_argument(
+        "--python", type=_interpreter, action="append", default=[], metavar="MASTER=PATH",
+        help=f"Python of a master that is installed elsewhere; masters: {', '.join(MASTERS)}",
+    )  # fmt: skip # as the others
+    parser.add_argument(
         "--write", type=Path, metavar="PAGE", help="put tables and figure into it: docs/performance.md"
     )
     return parser.parse_args()
+
+
+def _interpreter(text: str) -> tuple[str, str]:
+    """ "master=path", taken apart."""
+    master, _, path = text.partition("=")
+    if master not in MASTERS or not path:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: MASTER=PATH, with one of the masters {', '.join(MASTERS)}"
+        )
+    return master, path
 
 
 def case(group: Group, units: int, steps: int) -> Case:

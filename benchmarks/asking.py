@@ -7,7 +7,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import machine
@@ -32,10 +32,13 @@ class Figure:
     reason: str = ""
 
 
-def measured(masters: Sequence[str], case: Case, rounds: int) -> list[Figure]:
+def measured(
+    masters: Sequence[str], case: Case, rounds: int, pythons: Mapping[str, str] | None = None
+) -> list[Figure]:
     """The best of each master: in turn, `rounds` times over, with all processors and with one.
 
-    A master that cannot do the case is asked once.
+    A master that cannot do the case is asked once. `pythons` are the interpreters of masters that are
+    installed in environments of their own.
     """
     found: dict[str, Figure] = {}
     ways = [False, True] if len(machine.cores()) > 1 else [False]
@@ -43,7 +46,8 @@ def measured(masters: Sequence[str], case: Case, rounds: int) -> list[Figure]:
         for master in masters:
             before = found.get(master)
             if before is None or before.microseconds is not None:
-                found[master] = _better(before, ask(master, case, one_core))
+                python = (pythons or {}).get(master, sys.executable)
+                found[master] = _better(before, ask(master, case, one_core, python))
     return [found[master] for master in masters]
 
 
@@ -54,9 +58,9 @@ def _better(before: Figure | None, now: Figure) -> Figure:
     return now if now.microseconds is not None and now.microseconds < before.microseconds else before
 
 
-def ask(master: str, case: Case, one_core: bool = False) -> Figure:
+def ask(master: str, case: Case, one_core: bool = False, python: str = sys.executable) -> Figure:
     """Measure once, in a new process, which may use one processor or all."""
-    command = [sys.executable, "-m", "benchmarks.worker", master, json.dumps(dataclasses.asdict(case))]
+    command = [python, "-m", "benchmarks.worker", master, json.dumps(dataclasses.asdict(case))]
     before = machine.cores()
     try:
         if one_core and before:
@@ -80,3 +84,5 @@ def _answer(command: list[str]) -> dict[str, Any]:
         return {"error": f"took more than {_TIMEOUT:g} s"}
     except ValueError:
         return {"error": f"its process ended with code {done.returncode}"}
+    except OSError as error:
+        return {"error": f"{command[0]} cannot be started: {error.strerror or error}"}

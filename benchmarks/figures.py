@@ -17,8 +17,8 @@ from .memory import Peak
 _STYLES = {
     "direct": ("0.4", ":", "x"), "evcosim": ("#0b6e4f", "-", "o"), "evcosim_python": ("#0b6e4f", "--", "o"),
     "ecospy": ("#c1440e", "-", "s"), "fmpy_loop": ("#3b6fb6", "--", "^"), "fmpy_ssp": ("#3b6fb6", "-", "^"),
-    "libcosimpy": ("#7b4ea3", "-", "D"), "fmpy_container": ("#b08900", "-", "v"),
-    "toolbox_container": ("#b08900", "--", "v"),
+    "cofmupy": ("#8a3b52", "--", "P"), "libcosimpy": ("#7b4ea3", "-", "D"),
+    "fmpy_container": ("#b08900", "-", "v"), "toolbox_container": ("#b08900", "--", "v"),
 }  # fmt: skip # color, line and marker of each master
 
 

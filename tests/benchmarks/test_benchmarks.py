@@ -12,7 +12,7 @@ import pytest
 
 from benchmarks import __main__ as ring
 from benchmarks import coldstart, memory, slaves, worker
-from benchmarks.asking import Figure, ask
+from benchmarks.asking import Figure, ask, measured
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
 from benchmarks.runners import Measured
@@ -101,6 +101,28 @@ def test_a_peer_that_is_missing_is_a_line_that_says_so() -> None:
     text = ring.report([found])
     assert "| evcosim, compiled engine | 0.5 |" in text
     assert "- ecospy: not installed (ecospy)" in text
+
+
+def test_a_master_in_an_environment_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    other = tmp_path / "python"
+    other.write_text(f'#!/bin/sh\ntouch {tmp_path / "used"}\nexec {sys.executable} "$@"\n')
+    other.chmod(0o755)
+    case = Case("c", 1, 50)
+    (there,) = measured(["evcosim"], case, 1, {"evcosim": str(other)})
+    assert there.microseconds is not None
+    assert (tmp_path / "used").exists()
+    (nowhere,) = measured(["evcosim"], case, 1, {"evcosim": str(tmp_path / "none")})
+    assert nowhere.reason == f"{tmp_path / 'none'} cannot be started: No such file or directory"
+
+
+@pytest.mark.parametrize("wrong", ["cofmupi=python", "cofmupy", "cofmupy="])
+def test_a_python_is_given_to_a_master(wrong: str) -> None:
+    command = [sys.executable, "-m", "benchmarks", "--python", wrong]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert f"'{wrong}': MASTER=PATH, with one of the masters direct, evcosim" in done.stderr
 
 
 def test_a_ratio_is_to_this_project() -> None:
