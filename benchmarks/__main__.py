@@ -36,7 +36,7 @@ NAMES = {
     "toolbox_container": "fmu-manipulation-toolbox {} container FMU",
 }
 _OWN = "evcosim"
-_UNIT_STEPS = {"c": 40_000, "python": 20_000}
+_UNIT_STEPS = {"c": 200_000, "python": 20_000}
 """Steps of all units together, where a run has many units: so long that a step's time is steady."""
 
 Group = tuple[Kind, bool, bool]
@@ -82,7 +82,7 @@ def _arguments() -> argparse.Namespace:
 
 
 def _interpreter(text: str) -> tuple[str, str]:
-    """ "master=path", taken apart."""
+    """The master and the path of MASTER=PATH."""
     master, _, path = text.partition("=")
     if master not in MASTERS or not path:
         raise argparse.ArgumentTypeError(

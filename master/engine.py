@@ -29,7 +29,7 @@ Act = Callable[[int, float], None]
 
 CHUNK_SECONDS = 0.1
 """A chunk of steps ends after about so long, for the look at progress and Ctrl-C that is between two."""
-_FIRST_CHUNK = 256
+_LEAST, _FIRST = 256, 4096  # steps of a chunk that room is made for; of the first one at most
 _ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
 
 
@@ -154,7 +154,8 @@ class Engine:
         self.view = floats(self.memory)
         self.columns = np.array(plan.column_slots, dtype=np.intp)
         self._store = RowStore(len(self.columns))
-        self._chunk = _FIRST_CHUNK
+        self._most = max(_LEAST, _ROOM // (8 * (len(self.columns) + len(plan.drives) + 1)))
+        self._chunk = min(_FIRST, self._most)
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
         h = plan.experiment.step_size
@@ -228,8 +229,7 @@ class Engine:
         if done < count:
             self._chunk = max(64, 2 * done)
         elif count == self._chunk and seconds < CHUNK_SECONDS / 8:
-            width = len(self.columns) + len(self.plan.drives) + 1
-            self._chunk = max(_FIRST_CHUNK, min(8 * count, _ROOM // (8 * width)))
+            self._chunk = min(8 * count, self._most)
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         """Do `count` steps, or as many as CHUNK_SECONDS allow but one, each counted in `k` when it is done.

@@ -99,7 +99,9 @@ class Program:
         self.ops[:, L.DUE] = due
         busy = due < k + count
         for op, row, turn in self.effects:
-            busy[op] &= bool(turn.effects)
+            if not turn.effects:
+                busy[op] = False
+                continue
             self.ops[op, L.B] = len(turn.effects)
             for i, (slot, (action, value)) in enumerate(turn.effects.items(), row):
                 _fill(
