@@ -29,7 +29,7 @@ Act = Callable[[int, float], None]
 
 CHUNK_SECONDS = 0.1
 """A chunk of steps ends after about so long, for the look at progress and Ctrl-C that is between two."""
-_LEAST, _FIRST = 256, 4096  # steps of a chunk that room is made for; of the first one at most
+_LEAST, _FIRST = 256, 16384  # steps of a chunk that room is made for; of the first one at most
 _ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
 
 
@@ -219,6 +219,8 @@ class Engine:
 
     def _stimuli(self, count: int) -> NDArray[np.float64]:
         """The values of the stimuli at the next `count` communication points, shape (drives, count)."""
+        if not self.plan.drives:
+            return np.empty((0, count))
         experiment = self.plan.experiment
         steps = np.arange(self.k, self.k + count, dtype=np.float64)
         times = experiment.start_time + steps * experiment.step_size

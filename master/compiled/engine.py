@@ -36,11 +36,12 @@ class CompiledEngine(Engine):
         state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
         log, starts = self._log_buffer(count)
         drives = np.ascontiguousarray(drives)
-        own = (ops, drives, rows, log)
-        self._addresses[[L.OPS, L.DRIVES, L.ROWS_OF_RUN, L.LOG]] = [a.ctypes.data for a in own]
+        addresses = self._addresses
+        addresses[L.OPS], addresses[L.DRIVES] = ops.ctypes.data, drives.ctypes.data
+        addresses[L.ROWS_OF_RUN], addresses[L.LOG] = rows.ctypes.data, log.ctypes.data
         self._raised: BaseException | None = None
         try:
-            result = self._kernel(self._addresses.ctypes.data)
+            result = self._kernel(addresses.ctypes.data)
         finally:  # also where Ctrl-C came within
             self.k = first + int(state[L.STEPS_DONE])
             self._collect(log, starts)
@@ -140,24 +141,30 @@ class CompiledEngine(Engine):
         return np.empty(max(1, starts[-1])), starts
 
     def _collect(self, log: NDArray[np.float64], starts: list[int]) -> None:
-        """Give warnings, saturations and logged frames to units and channels."""
+        """Give what a chunk has left to units, channels and profile."""
         program = self._program
         assert program is not None
-        for table, instances in ((program.calls, program.called), (program.units, program.stepped)):
-            if table[:, L.WARNINGS].any():
-                for i, instance in enumerate(instances):
-                    instance.log.warnings += int(table[i, L.WARNINGS])
-                table[:, L.WARNINGS] = 0
+        if self._state[L.NOTED]:
+            self._collect_noted(program)
         if self.profile is not None:
             parts = program.parts()
             for place, seconds in zip(self._places, self._times.tolist(), strict=False):
                 self.profile.add(parts[place], seconds)
             self._times[:] = 0.0
+        for i, sender in enumerate(program.logged):
+            found = log[starts[i] : self._logs[i]].reshape(-1, 1 + len(sender.channel.routes))
+            sender.channel.keep(found[:, 0].astype(np.int64), found[:, 1:])
+
+    def _collect_noted(self, program: Program) -> None:
+        """Give warnings and saturations to units and channels."""
+        self._state[L.NOTED] = 0
+        for table, instances in ((program.calls, program.called), (program.units, program.stepped)):
+            if table[:, L.WARNINGS].any():
+                for i, instance in enumerate(instances):
+                    instance.log.warnings += int(table[i, L.WARNINGS])
+                table[:, L.WARNINGS] = 0
         signals = program.signal_table
         for i in np.flatnonzero(signals[:, L.TIMES]).tolist():
             sender, place = program.signals[i]
             sender.channel.count(place, int(signals[i, L.TIMES]), int(signals[i, L.FIRST_TIME]))
         signals[:, [L.TIMES, L.FIRST_TIME]] = 0
-        for i, sender in enumerate(program.logged):
-            found = log[starts[i] : self._logs[i]].reshape(-1, 1 + len(sender.channel.routes))
-            sender.channel.keep(found[:, 0].astype(np.int64), found[:, 1:])

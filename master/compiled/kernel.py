@@ -151,6 +151,13 @@ def stopped(t, row, detail, result):
 
 
 @inlined
+def warned(t, c):
+    """Count that the function in row c answered Warning."""
+    put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
+    put_word(word(t, L.STATE), L.NOTED, 1)
+
+
+@inlined
 def call(t, m, row):
     """The C call in a row, with the values before or after it."""
     c = word(t, L.CALLS) + 8 * L.CALL_WIDTH * row
@@ -178,7 +185,7 @@ def call(t, m, row):
     if status:
         if status != 1:
             return stopped(t, row, np.int64(status), L.BAD_STATUS)
-        put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
+        warned(t, c)
     if kind > L.GETS:
         place = take(t, m, c, kind - L.GETS)
         if place >= 0:
@@ -204,7 +211,7 @@ def step(t, c, begin):
             if status != 1:
                 put_word(word(t, L.STATE), L.DETAIL, np.int64(status))
                 return L.BAD_STATUS
-            put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
+            warned(t, c)
         if answers and (peek(word(c, L.ENDING), np.int8) != 0 or peek(word(c, L.EARLY), np.int8) != 0):
             return L.BAD_END
     return L.DONE
@@ -244,6 +251,7 @@ def out_of_range(t, i, s, x, k):
         if word(s, L.TIMES) == 0:
             put_word(s, L.FIRST_TIME, k)
         put_word(s, L.TIMES, word(s, L.TIMES) + 1)
+        put_word(word(t, L.STATE), L.NOTED, 1)
         return number(s, L.ABOVE) if x > number(s, L.GREATEST) else number(s, L.BELOW), True
     asked = word(t, L.NUMBERS)
     put_number(asked, L.VALUE, x)

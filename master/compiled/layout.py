@@ -76,12 +76,12 @@ WAIT = 4
 # ---- a chunk
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
-CLOCK, CLOCK_A, CLOCK_B = range(9, 12)
-STATE_SIZE = 12
+CLOCK, CLOCK_A, CLOCK_B, NOTED = range(9, 13)
+STATE_SIZE = 13
 """Places in STATE: steps wanted and done, the first one, how many OPS there are, for how many steps there are
 values of stimuli; the operation that the kernel stopped at, the row of CALLS within it (-1: none of them),
 and a detail; addresses of the function of Python and of the clock, and the clock's arguments, of which one
-is the address of TICKS."""
+is the address of TICKS; whether there is anything in a column WARNINGS or TIMES."""
 START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)
 NUMBERS_SIZE = 6
 """Places in NUMBERS: start time and step size, how long a chunk may take, a value that Python is asked about,
