@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -77,7 +78,12 @@ def ask(master: str, case: Case, one_core: bool = False, python: str = sys.execu
 
 def _answer(command: list[str]) -> dict[str, Any]:
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
+        # some masters unpack FMUs and never delete them
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as scratch:
+            own = os.environ | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=_TIMEOUT, check=False, env=own
+            )
         answer: dict[str, Any] = json.loads(done.stdout)
         return answer
     except subprocess.TimeoutExpired:

@@ -52,9 +52,12 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
     from ..fmus import build
 
     try:
-        return build.built(name) if folder is None else build.build(name, folder)
+        path = build.built(name) if folder is None else build.build(name, folder)
     except OSError as error:
         raise ConfigError(f"{folder}: {name}.fmu cannot be written: {error.strerror or error}") from error
+    if folder is None and path.parent != cache_folder():  # it lasts as long as this process
+        raise ConfigError(f"{cache_folder()}: {name}.fmu cannot be kept there; --output DIR builds elsewhere")
+    return path
 
 
 def fmu_file(name: str, beside: Path | None = None) -> Path:

@@ -117,6 +117,18 @@ def test_a_master_in_an_environment_of_its_own(monkeypatch: pytest.MonkeyPatch, 
     assert nowhere.reason == f"{tmp_path / 'none'} cannot be started: No such file or directory"
 
 
+def test_what_a_master_leaves_in_the_temporary_folder_is_deleted(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(ROOT)
+    messy = tmp_path / "python"
+    messy.write_text(f'#!/bin/sh\necho "$TMPDIR" > {tmp_path / "where"}\ntouch "$TMPDIR/left"\n')
+    messy.chmod(0o755)
+    (found,) = measured(["evcosim"], Case("c", 1, 50), 1, {"evcosim": str(messy)})
+    assert found.reason == "its process ended with code 0"
+    assert not Path((tmp_path / "where").read_text().strip()).exists()
+
+
 @pytest.mark.parametrize("wrong", ["cofmupi=python", "cofmupy", "cofmupy="])
 def test_a_python_is_given_to_a_master(wrong: str) -> None:
     command = [sys.executable, "-m", "benchmarks", "--python", wrong]

@@ -216,6 +216,14 @@ def test_output_below_a_file(evcosim, tmp_path):
     refused(evcosim("build", "Battery", "-o", "file/fmus"), "file/fmus", "cannot be written")
 
 
+def test_build_needs_a_cache_that_lasts(evcosim, tmp_path, monkeypatch):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    monkeypatch.setenv("EVCOSIM_CACHE", str(blocked))
+    refused(evcosim("build", "Battery"), f"{blocked}: Battery.fmu cannot be kept there", "--output DIR")
+    assert evcosim("build", "Battery", "-o", "made").out.strip() == "made/Battery.fmu"
+
+
 @pytest.mark.parametrize("name", ["figure.png", "results.csv", "run.json"])
 def test_a_file_of_the_users_own_is_not_replaced(evcosim, tmp_path, name):
     (tmp_path / "out").mkdir()
