@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .results import Results
+    from .results.results import Results
 
 
 class ConfigError(ValueError):

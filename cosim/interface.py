@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
+from typing import Literal
 
 from .errors import ConfigError, nearest
 from .units import UnitOfMeasure
 
+Value = bool | int | float | str
+InterfaceType = Literal["co_simulation", "model_exchange"]
 TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ..cosim.variation import BusVariation
+    from ..cosim.system.variation import BusVariation
     from .simulation import Simulation, simulate
 
 __all__ = ["BusVariation", "Simulation", "simulate"]

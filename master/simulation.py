@@ -22,30 +22,32 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from ..cosim.canlog import BusLog, write_can_log
+from ..cosim.can.frames import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, counted, nearest
-from ..cosim.files import DATA
-from ..cosim.interface import UnitInterface
-from ..cosim.mapping import present, without_absent
-from ..cosim.plan import Plan, UnitPlan
-from ..cosim.presentation import check_specs, figure_spec, metric_specs
-from ..cosim.requirements import lacking
-from ..cosim.resolve import Options, check_effect, checked, participating, resolve
-from ..cosim.results import Results
-from ..cosim.rows import Grid
-from ..cosim.scenario import Scenario, load_scenario
-from ..cosim.swap import swapped
-from ..cosim.system import Algorithm, EngineName, Isolation, System, Value, load_system
-from ..cosim.variation import BusVariation, varied
+from ..cosim.figures.check import check_specs
+from ..cosim.interface import UnitInterface, Value
+from ..cosim.plan.plan import Plan
+from ..cosim.plan.resolve import Options, check_effect, checked, participating, resolve
+from ..cosim.plan.unit_plan import UnitPlan
+from ..cosim.results.results import Results
+from ..cosim.row_store import Grid
+from ..cosim.swap.mapping import present, without_absent
+from ..cosim.swap.requirements import lacking
+from ..cosim.swap.swap_file import swapped
+from ..cosim.system.scenario import Scenario, load_scenario
+from ..cosim.system.selection import figure_spec, metric_specs
+from ..cosim.system.system import Algorithm, EngineName, Isolation, System, load_system
+from ..cosim.system.toml import DATA
+from ..cosim.system.variation import BusVariation, varied
 from .builtin import fmu_file
-from .engines import engine_class
+from .engine.initialization import initialize, ordered_links
+from .engine.plausibility import Extremes, implausible
+from .engine.profile import Profile
+from .engine.selection import engine_class
 from .fmi.fmu import Fmu, check_runnable, read_fmu
-from .initialization import initialize, ordered_links
-from .isolation.choice import chosen, limits
+from .fmi.loading import load_unit
+from .isolation.decision import chosen, limits
 from .isolation.unit import IsolatedUnit
-from .loading import load_unit
-from .plausibility import Extremes, implausible
-from .profile import Profile
 from .unit import Unit
 
 _SHOWN_DEFECTS = 5  # of an FMU's description, as warnings

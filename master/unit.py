@@ -8,10 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cosim.errors import RunError
-from ..cosim.interface import UnitInterface
-from ..cosim.unit_plan import UnitPlan
-
-Value = float | int | bool | str
+from ..cosim.interface import UnitInterface, Value
+from ..cosim.plan.unit_plan import UnitPlan
 
 
 def floats(memory: NDArray[np.float64]) -> memoryview[float]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from evcosim.cosim.system import EngineName
+from evcosim.cosim.system.system import EngineName
 from evcosim.master.simulation import Simulation
 
 from ..case import STEP_SIZE, Case

@@ -19,7 +19,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ...cosim.budget import Budget
+    from ...cosim.analysis.bus_budget import Budget
 
 _PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
 
@@ -43,8 +43,8 @@ def budget(
     Bus delay, signal resolution and message cycle are stepped up, each by itself, and the system is judged by
     the metric of its [budget] table. Writes budget.md, budget.json and a figure.
     """
-    from ...cosim.budget import as_data
-    from ..budget import budget as measured
+    from ...cosim.analysis.bus_budget import as_data
+    from ..studies.bus_budget import budget as measured
     from .arguments import as_typed, parse_files, parse_settings
     from .console import print_json, progress_bar
     from .outputs import prepared
@@ -70,8 +70,8 @@ def budget(
 
 
 def _default_folder(system: str, scenario: str | None) -> Path:
-    from ...cosim.scenario import load_scenario
-    from ...cosim.system import load_system
+    from ...cosim.system.scenario import load_scenario
+    from ...cosim.system.system import load_system
 
     read = load_system(system)
     names = (read.file.name, load_scenario(read, scenario).name, "budget")
@@ -80,9 +80,9 @@ def _default_folder(system: str, scenario: str | None) -> Path:
 
 def _write(folder: Path, found: Budget) -> list[str]:
     """Write page, data and figure and return the names of the files. Raises ConfigError."""
-    from ...cosim import figures
-    from ...cosim.budget import as_data, as_markdown
-    from ...cosim.budget_figure import draw_budget
+    from ...cosim.analysis.bus_budget import as_data, as_markdown
+    from ...cosim.figures import draw as figures
+    from ...cosim.figures.bus_budget import draw_budget
 
     _write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
     _write_text(folder / _DATA, json.dumps(as_data(found), indent=2, ensure_ascii=False) + "\n")

@@ -20,7 +20,7 @@ def build(
     """Build the built-in FMUs and print where they are; compile the engine for later runs."""
     from ...cosim.errors import ConfigError, nearest
     from ..builtin import build_fmu, builtin_names
-    from ..engines import prepared
+    from ..engine.selection import prepared
     from .failures import complain
 
     known = builtin_names()

@@ -13,12 +13,12 @@ from .options import ScenarioOption, StrictOption
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...cosim.fit import Row
     from ...cosim.interface import UnitInterface
-    from ...cosim.scenario import Scenario
-    from ...cosim.swap import SwapFile
-    from ...cosim.system import System
-    from ..trial.trial import Trial
+    from ...cosim.swap.matching import Row
+    from ...cosim.swap.swap_file import SwapFile
+    from ...cosim.system.scenario import Scenario
+    from ...cosim.system.system import System
+    from ..studies.trial.trial import Trial
 
 
 def check(
@@ -42,7 +42,7 @@ def check(
     Exit code 0: it fits, and the trial found no problem; 1: something is missing, to choose or a problem;
     2: it cannot be checked at all.
     """
-    from ...cosim.fit import fits
+    from ...cosim.swap.matching import fits
     from .arguments import seconds
     from .console import print_json
 
@@ -78,12 +78,12 @@ class _Checked:
 
 def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
     from ...cosim.errors import ConfigError, nearest
-    from ...cosim.files import read_toml
-    from ...cosim.fit import fit
-    from ...cosim.requirements import requirements
-    from ...cosim.scenario import load_scenario
-    from ...cosim.swap import SwapFile
-    from ...cosim.system import load_system
+    from ...cosim.swap.matching import fit
+    from ...cosim.swap.requirements import requirements
+    from ...cosim.swap.swap_file import SwapFile
+    from ...cosim.system.scenario import load_scenario
+    from ...cosim.system.system import load_system
+    from ...cosim.system.toml import read_toml
     from ..builtin import fmu_file
     from ..fmi.fmu import check_runnable, read_fmu
 
@@ -105,7 +105,7 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
 def _there_now(system: System, unit: str) -> UnitInterface:
     """What the unit that the system has now offers. Raises ConfigError that says what it is needed for."""
     from ...cosim.errors import ConfigError
-    from ...cosim.mapping import present
+    from ...cosim.swap.mapping import present
     from ..builtin import fmu_file
     from ..fmi.fmu import read_fmu
 
@@ -121,8 +121,8 @@ def _there_now(system: System, unit: str) -> UnitInterface:
 
 
 def _tried(checked: _Checked, duration: float) -> Trial:
-    from ...cosim.swap import entry_of
-    from ..trial.trial import try_unit
+    from ...cosim.swap.swap_file import entry_of
+    from ..studies.trial.trial import try_unit
 
     entry = entry_of(str(checked.fmu.resolve()), checked.rows, checked.entry)
     names = [row.need for row in checked.rows if row.need and row.role != "parameter"]
@@ -130,7 +130,7 @@ def _tried(checked: _Checked, duration: float) -> Trial:
 
 
 def _write(checked: _Checked, path: Path, tried: Trial | None) -> None:
-    from ...cosim.swap import written
+    from ...cosim.swap.swap_file import written
 
     proposal = tried.proposal if tried else None
     written(path, str(checked.fmu), checked.place, checked.rows, checked.entry, proposal)

@@ -28,8 +28,8 @@ def compare(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
     """Compare two results; exit code 1 when they differ."""
-    from ...cosim import compare as comparing
-    from ...cosim.results import Results
+    from ...cosim.results import compare as comparing
+    from ...cosim.results.results import Results
     from .console import print_json, print_table
     from .plot import chosen
 
@@ -39,7 +39,7 @@ def compare(
         second = second.part(slice(None), [name for name in first.names if name in second])
     found = comparing.compare(first, second, tolerance, relative)
     if plot is not None:
-        from ...cosim import figures
+        from ...cosim.figures import draw as figures
 
         names = second.names if signals else None
         figures.write(figures.draw_comparison(first, second, names, labels=(str(a), str(b))), plot)

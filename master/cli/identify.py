@@ -12,9 +12,9 @@ import typer
 from .options import AlgorithmOption, FmusOption, IdealOption, QuietOption
 
 if TYPE_CHECKING:
-    from ...cosim.identification import Estimate
-    from ...cosim.identification_spec import IdentificationSpec
-    from ..identify import Identification
+    from ...cosim.analysis.first_order import Estimate
+    from ...cosim.system.identification_spec import IdentificationSpec
+    from ..studies.identification import Identification
 
 DATA = "identification.json"
 
@@ -78,8 +78,9 @@ def identify(
     quiet: QuietOption = False,
 ) -> int:
     """Identify gain and pole from an input to an output."""
+    from ...cosim.analysis.sweep import sweep_of
     from ...cosim.errors import ConfigError
-    from .. import identify as library
+    from ..studies import identification as library
     from .arguments import parse_files
     from .outputs import prepared
 
@@ -89,7 +90,7 @@ def identify(
         "sweep": _pair(sweep, "--sweep"), "band": _pair(band, "--band"),
     }  # fmt: skip # related options side by side
     spec = _spec(target, scenario, {key: value for key, value in given.items() if value not in (None, [])})
-    spec.chirp()
+    sweep_of(spec)
     if ideal and library.is_fmu(target):
         raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
     options: dict[str, Any] = {
@@ -122,9 +123,9 @@ def _pair(text: str | None, option: str) -> tuple[float, float] | None:
 def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> IdentificationSpec:
     """The scenario's table with the user's options on top."""
     from ...cosim.errors import ConfigError
-    from ...cosim.files import validate
-    from ...cosim.identification_spec import IdentificationSpec
-    from ..identify import spec_of
+    from ...cosim.system.identification_spec import IdentificationSpec
+    from ...cosim.system.toml import validate
+    from ..studies.identification import spec_of
 
     base = spec_of(target, scenario)
     known = base.model_dump() if base is not None else {}
@@ -153,7 +154,7 @@ def _measure(
     options: dict[str, Any],
     bar: bool,
 ) -> list[Identification]:
-    from .. import identify as library
+    from ..studies import identification as library
     from .arguments import as_typed, parse_settings
     from .console import progress_bar
     from .interrupts import Interrupts
@@ -194,8 +195,8 @@ def _write(folder: Path, found: list[Identification], figures: bool) -> list[str
 
 
 def _draw(folder: Path, found: list[Identification]) -> list[str]:
-    from ...cosim import figures
-    from ...cosim import identification_figures as drawing
+    from ...cosim.figures import draw as figures
+    from ...cosim.figures import identification as drawing
 
     paths: list[Path] = []
     for number, each in enumerate(found, 1):

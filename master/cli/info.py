@@ -29,7 +29,7 @@ def info(
 ) -> None:
     """Show what an FMU offers or how a system is connected."""
     from ...cosim.errors import ConfigError
-    from ...cosim.system import system_names
+    from ...cosim.system.system import system_names
     from . import info_fmu, info_system
     from .console import print_json
 
@@ -53,9 +53,9 @@ def info(
 
 
 def _draw(system: str, path: Path) -> None:
-    from ...cosim import figures
-    from ...cosim.diagram import draw_diagram
-    from ...cosim.system import load_system
+    from ...cosim.figures import draw as figures
+    from ...cosim.figures.system_diagram import draw_diagram
+    from ...cosim.system.system import load_system
 
     figures.write(draw_diagram(load_system(system).file), path)
     print(path)
@@ -64,7 +64,7 @@ def _draw(system: str, path: Path) -> None:
 def fmu_path(name: str) -> Path:
     """The file of an FMU by path or built-in name. Raises ConfigError with the nearest system or FMU."""
     from ...cosim.errors import ConfigError, nearest
-    from ...cosim.system import system_names
+    from ...cosim.system.system import system_names
     from ..builtin import builtin_names, fmu_file
 
     known = (*system_names(), *builtin_names())

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 from .console import number, print_fields, print_table, print_title
 
 if TYPE_CHECKING:
-    from ...cosim.plan import MessagePlan, Plan
-    from ...cosim.system import System
+    from ...cosim.plan.plan import MessagePlan, Plan
+    from ...cosim.system.system import System
     from ...cosim.units import Affine
 
 
 def described(name: str) -> dict[str, Any]:
     """All that is shown of a system. Raises ConfigError for everything that is wrong in it."""
-    from ...cosim.scenario import load_scenario, scenario_names
-    from ...cosim.system import load_system
+    from ...cosim.system.scenario import load_scenario, scenario_names
+    from ...cosim.system.system import load_system
 
     system = load_system(name)
     plan = _whole_plan(system)
@@ -43,8 +43,8 @@ def described(name: str) -> dict[str, Any]:
 
 def _whole_plan(system: System) -> Plan:
     """The plan with all units, none left out by a scenario."""
-    from ...cosim.resolve import Options, resolve
-    from ...cosim.scenario import Scenario, ScenarioFile
+    from ...cosim.plan.resolve import Options, resolve
+    from ...cosim.system.scenario import Scenario, ScenarioFile
     from ..builtin import fmu_file
     from ..fmi.fmu import read_fmu
 

@@ -23,8 +23,8 @@ def list_(
 
 
 def _systems() -> list[dict[str, Any]]:
-    from ...cosim.scenario import load_scenario, scenario_names
-    from ...cosim.system import load_system, system_names
+    from ...cosim.system.scenario import load_scenario, scenario_names
+    from ...cosim.system.system import load_system, system_names
 
     found = []
     for name in system_names():

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...cosim.results import Results
+    from ...cosim.results.results import Results
     from ..simulation import Simulation
 
 FIGURES = ("figure.png", "figure.svg")
@@ -39,7 +39,7 @@ def prepared_for_results(folder: Path) -> Path:
     Raises ConfigError also where a file that would be replaced or removed is somebody's own.
     """
     from ...cosim.errors import ConfigError
-    from ...cosim.results import CSV_NAME, MANIFEST_NAME
+    from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
 
     names = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
     taken = [name for name in names if (folder / name).exists()]
@@ -66,7 +66,7 @@ def write_results(folder: Path, results: Results) -> list[str]:
     a folder holds one run. Where they cannot be written they go to a temporary folder, and RunError says so.
     """
     from ...cosim.errors import ConfigError, RunError
-    from ...cosim.results import CSV_NAME, MANIFEST_NAME
+    from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
 
     for name in (*FIGURES, *CAN_LOGS):
         with contextlib.suppress(OSError):  # if it stays, writing below says why
@@ -82,7 +82,7 @@ def write_results(folder: Path, results: Results) -> list[str]:
 
 def write_figure(folder: Path, results: Results) -> list[str]:
     """Draw and write the figure and return the names of its files. Raises ConfigError."""
-    from ...cosim import figures
+    from ...cosim.figures import draw as figures
 
     return [path.name for path in figures.save(results.plot(), folder)]
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from ...cosim.figure_spec import FigureSpec
-    from ...cosim.results import Results
+    from ...cosim.results.results import Results
+    from ...cosim.system.figure_spec import FigureSpec
 
 
 def plot(
@@ -29,8 +29,8 @@ def plot(
     ] = None,
 ) -> None:
     """Draw results again, or chosen signals of them."""
-    from ...cosim import figures
-    from ...cosim.results import Results
+    from ...cosim.figures import draw as figures
+    from ...cosim.results.results import Results
 
     results = Results.read(result)
     if signals:
@@ -64,11 +64,11 @@ def _matches(name: str, pattern: str) -> bool:
 
 def spec_of(results: Results) -> FigureSpec | None:
     """The figure of the system and scenario that run.json names, if they are there and it fits."""
-    from ...cosim import figures
     from ...cosim.errors import ConfigError
-    from ...cosim.presentation import figure_spec
-    from ...cosim.scenario import load_scenario
-    from ...cosim.system import load_system
+    from ...cosim.figures import draw as figures
+    from ...cosim.system.scenario import load_scenario
+    from ...cosim.system.selection import figure_spec
+    from ...cosim.system.system import load_system
 
     names = [results.manifest.get(key) for key in ("system", "scenario")]
     files = results.manifest.get("files", {})

@@ -27,7 +27,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ...cosim.results import Results
+    from ...cosim.results.results import Results
     from ..simulation import Simulation
     from .console import Show
     from .interrupts import Interrupts

@@ -22,9 +22,9 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.interface import UnitInterface, VariableInfo
-from ...cosim.plan import UnitPlan
-from ..unit import UnitError, Value, floats
+from ...cosim.interface import UnitInterface, Value, VariableInfo
+from ...cosim.plan.unit_plan import UnitPlan
+from ..unit import UnitError, floats
 from .cvode import Cvode, Function, SolverError
 from .fmu import Fmu
 from .instance import Instance

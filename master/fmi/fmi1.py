@@ -10,8 +10,7 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
-from ...cosim.interface import UnitInterface, VariableInfo
-from ..unit import Value
+from ...cosim.interface import UnitInterface, Value, VariableInfo
 from .fmu import Fmu, FmuError
 from .instance import Instance
 from .library import Library

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...cosim.errors import counted, nearest
-from ...cosim.interface import UnitInterface, VariableInfo
-from ...cosim.system import InterfaceType
+from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description

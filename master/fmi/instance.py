@@ -27,9 +27,9 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.interface import UnitInterface, VariableInfo
-from ...cosim.unit_plan import Block, UnitPlan
-from ..unit import UnitError, Value, floats
+from ...cosim.interface import UnitInterface, Value, VariableInfo
+from ...cosim.plan.unit_plan import Block, UnitPlan
+from ..unit import UnitError, floats
 from . import binary, folders
 from .fmu import Fmu, FmuError, check_runnable, is_true
 from .library import Library

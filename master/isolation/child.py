@@ -18,8 +18,8 @@ import sys
 import threading
 from typing import Any
 
-from . import shared, wire
-from .line import Line
+from . import framing, shared
+from .handover import Line
 from .shared import Shared
 
 _SET_CHILD_SUBREAPER = 36  # linux/prctl.h
@@ -35,9 +35,9 @@ def main() -> None:
     _limit(resource.RLIMIT_CORE, 0.0)
     _limit(resource.RLIMIT_AS, float(sys.argv[4]))
     _limit(resource.RLIMIT_FSIZE, float(sys.argv[5]))
-    with open(wire.LOADING, "rb") as file:
+    with open(framing.LOADING, "rb") as file:
         arguments = pickle.load(file)  # the master's, and no code of the FMU has run
-    os.remove(wire.LOADING)
+    os.remove(framing.LOADING)
     _Server(socket.socket(fileno=connection), Shared(memory)).serve(arguments)
 
 
@@ -100,7 +100,7 @@ class _Server:
         except EOFError:
             os._exit(0)
         except OSError:
-            os._exit(wire.LOST)
+            os._exit(framing.LOST)
 
     def _turn(self, number: float) -> None:
         unit, slots = self.unit, self.slots
@@ -134,12 +134,12 @@ class _Server:
         slots[shared.FRAME] = 1.0 if frame else 0.0
         self.line.post(number)
         if frame:
-            wire.send(self.connection, frame)
+            framing.send(self.connection, frame)
 
     def do_load(self, fmu: Any, name: str, interface: Any, tolerance: Any) -> None:
         """Instantiate the FMU."""
+        from ..fmi.loading import load_unit
         from ..fmi.log import UnitLog
-        from ..loading import load_unit
 
         UnitLog.listener = self.memory.hear
         self.unit = load_unit(fmu, name, interface, tolerance)
@@ -152,7 +152,7 @@ class _Server:
 def _failure(error: Exception) -> bytes:
     kind = type(error).__name__
     said = str(error) if kind in ("FmuError", "UnitError", "ConfigError") else f"{kind}: {error}"
-    return json.dumps({"error": said[: wire.LONGEST // 8], "kind": kind}).encode()
+    return json.dumps({"error": said[: framing.LONGEST // 8], "kind": kind}).encode()
 
 
 if __name__ == "__main__":

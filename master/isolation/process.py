@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from . import wire
+from . import framing
 
 _ENDING = 2.0  # s
 _SAID = 2000  # characters of its output that are shown
@@ -52,7 +52,7 @@ class Process:
         self.connection.settimeout(_LOOK)
         try:
             with theirs, os.fdopen(end, "rb", 0):
-                (self._folder / wire.LOADING).write_bytes(pickle.dumps(loading))
+                (self._folder / framing.LOADING).write_bytes(pickle.dumps(loading))
                 self._start((theirs.fileno(), memory, end), limits)
         except BaseException:
             self.close()
@@ -83,7 +83,7 @@ class Process:
             code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
             return "closed its connection and was ended"
-        if code == wire.LOST:
+        if code == framing.LOST:
             return "lost its connection to the master: the FMU closed or replaced files that are not its own"
         if code < 0:
             with contextlib.suppress(ValueError):  # a signal that Python has no name for

@@ -17,7 +17,7 @@ import tempfile
 
 import numpy as np
 
-from ...cosim.unit_plan import Block, UnitPlan
+from ...cosim.plan.unit_plan import Block, UnitPlan
 from ..unit import floats
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.errors import ConfigError
-from ...cosim.interface import UnitInterface
-from ...cosim.unit_plan import UnitPlan
+from ...cosim.interface import UnitInterface, Value
+from ...cosim.plan.unit_plan import UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
-from ..unit import UnitError, Value, floats
-from . import line, shared, wire
+from ..unit import UnitError, floats
+from . import framing, handover, shared
 from .process import Limits, Process
 from .waiting import WAITING
 
@@ -53,11 +53,11 @@ class IsolatedUnit:
         try:
             self._shared = shared.Shared(descriptor)
             self._slots = self._shared.slots
-            self._slots[shared.SPIN] = line.spin_time()
+            self._slots[shared.SPIN] = handover.spin_time()
             self._process = Process((there, name, interface, tolerance), descriptor, limits)
         finally:
             os.close(descriptor)
-        self._line = line.Line(
+        self._line = handover.Line(
             self._process.connection,
             self._slots,
             (shared.REQUEST, shared.MASTER_SLEEPS),
@@ -81,7 +81,7 @@ class IsolatedUnit:
         self._asked = name + (f" of {arguments[0]}" if name in _OF_ONE_VARIABLE else "")
         self._request(shared.CALL)
         try:
-            wire.send(self._process.connection, pickle.dumps((name, arguments)), self._impatience)
+            framing.send(self._process.connection, pickle.dumps((name, arguments)), self._impatience)
         except OSError as error:
             self._ended(error)
         return self._answer(self._frame())
@@ -110,7 +110,7 @@ class IsolatedUnit:
     def _sleep(self) -> bytes:
         self._deadline = time.monotonic() + self._time
         try:
-            return self._line.sleep_until(self._number, wire.LONGEST, self._impatience)
+            return self._line.sleep_until(self._number, framing.LONGEST, self._impatience)
         except (OSError, EOFError) as error:
             self._ended(error)
 
@@ -118,7 +118,7 @@ class IsolatedUnit:
         self._deadline = time.monotonic() + self._time
         try:
             with WAITING:
-                return self._line.frame(wire.LONGEST, self._impatience)
+                return self._line.frame(framing.LONGEST, self._impatience)
         except (OSError, EOFError) as error:
             self._ended(error)
 

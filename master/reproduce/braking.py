@@ -8,8 +8,8 @@ from typing import Any
 
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road
-from ..parallel import Task
 from ..simulation import simulate
+from ..studies.parallel import Task
 from .braking_pictures import pictures
 from .braking_runs import (
     CONTROLLED,

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim import figures
-from ...cosim.results import Array, Results
+from ...cosim.figures import draw as figures
+from ...cosim.results.results import Array, Results
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road, friction_coefficient
 from .braking_runs import CONTROLLED, NOMINAL, critical, locking, stop_of

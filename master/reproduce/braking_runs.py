@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...cosim.results import Results
-from ...cosim.system import System, Value, load_system
+from ...cosim.interface import Value
+from ...cosim.results.results import Results
+from ...cosim.system.system import System, load_system
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road
 from ..simulation import Simulation

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim import figures
-from ...cosim.figure_spec import FigureSpec, PanelSpec, SignalSpec
+from ...cosim.figures import draw as figures
+from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models import lane_keeping_analysis as analysis
 from ...models.lane_keeping_controller import LaneKeepingController
-from ..parallel import Task
 from ..simulation import simulate
+from ..studies.parallel import Task
 from .page import Page, Paper, Picture, Row, at_most, holds, near, not_reproducible
 
 _P = LaneKeepingController.Parameters()

@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...cosim.results import Array, Results
-from ...cosim.system import Value
+from ...cosim.interface import Value
+from ...cosim.results.results import Array, Results
 from ...models import multi_drive_analysis as analysis
 from ...models.electronic_differential import ElectronicDifferential
 from ...models.two_motor_vehicle import TwoMotorVehicle
 from ...models.wheel_speed_controller import TORQUE_LIMIT, WheelSpeedController
-from ..parallel import Task
 from ..simulation import simulate
+from ..studies.parallel import Task
 from .multi_drive_pictures import Effect, pictures
 from .page import Page, Paper, Row, at_least, at_most, holds, near, not_reproducible
 

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...cosim import figures
-from ...cosim.figure_spec import FigureSpec, PanelSpec, SignalSpec
-from ...cosim.results import Array, Results, ResultVariable
+from ...cosim.figures import draw as figures
+from ...cosim.results.results import Array, Results, ResultVariable
+from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models.induction_motor_drive import InductionMotorDrive
 from .page import Picture
 

@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..parallel import Task
+from ..studies.parallel import Task
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.errors import ConfigError, nearest
-from ..parallel import Progress, run_all
+from ..studies.parallel import Progress, run_all
 from .page import Page, Paper
 from .render import write_index, write_page
 

@@ -7,7 +7,7 @@ import html
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...cosim import figures
+from ...cosim.figures import draw as figures
 from ...cosim.writing import replacing
 from .page import Page, Row
 

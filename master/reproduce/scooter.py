@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim import figures
-from ..parallel import Task
+from ...cosim.figures import draw as figures
 from ..simulation import simulate
+from ..studies.parallel import Task
 from . import scooter_numbers as numbers
 from .page import Page, Paper, Picture, Row, at_least, at_most, holds, near
 from .scooter_identification import (

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...cosim.identification_spec import IdentificationSpec
-from ..identify import Identification, Progress, identify
+from ...cosim.system.identification_spec import IdentificationSpec
+from ..studies.identification import Identification, Progress, identify
 from .scooter_numbers import steady_throttle
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class ScooterIdentification:
 
     def figures(self) -> dict[str, Figure]:
         """Figs. 2, 3 and 4 as `fig2`, `fig3`, `fig4`."""
-        from ...cosim import identification_figures as figures
+        from ...cosim.figures import identification as figures
 
         found = self.measured
         swept = (found.sweep.start, found.sweep.stop)
@@ -82,7 +82,7 @@ class ScooterIdentification:
 
     def save(self, folder: Path) -> list[Path]:
         """Write the figures as fig2.png, fig2.svg and so on, and return their paths. Raises ConfigError."""
-        from ...cosim.figures import save
+        from ...cosim.figures.draw import save
 
         return [path for stem, figure in self.figures().items() for path in save(figure, folder, stem)]
 

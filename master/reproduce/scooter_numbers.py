@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.results import Results
+from ...cosim.results.results import Results
 from ...models.scooter import Scooter, level_road_load, maximum_force
 from ..simulation import Simulation, simulate
 

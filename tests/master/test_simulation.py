@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.results import Results
+from evcosim.cosim.results.results import Results
 from evcosim.fmus import build
 from evcosim.master import Simulation, simulate
 from evcosim.master.fmi.fmu import FmuError

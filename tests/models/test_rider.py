@@ -16,7 +16,7 @@ from evcosim.models.scooter import Scooter
 
 DT = 0.01
 P = Rider.Parameters()
-CYCLES = Path(__file__).parents[2] / "cosim" / "cycles"
+CYCLES = Path(__file__).parents[2] / "cosim" / "data" / "cycles"
 
 
 def cycle(name: str, highest: float = math.inf) -> list[float]:

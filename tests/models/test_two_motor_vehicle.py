@@ -9,12 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evcosim.models.base import violations
-from evcosim.models.two_motor_vehicle import (
-    TwoMotorVehicle,
-    friction,
-    resistance_torques,
-    slip,
-)
+from evcosim.models.two_motor_vehicle import TwoMotorVehicle, friction, resistance_torques, slip
 
 P = TwoMotorVehicle.Parameters()
 CRUISE = TwoMotorVehicle.Parameters(initial_speed=60.0 / 3.6)

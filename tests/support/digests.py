@@ -17,8 +17,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from evcosim.cosim.scenario import scenario_names
-from evcosim.cosim.system import load_system, system_names
+from evcosim.cosim.system.scenario import scenario_names
+from evcosim.cosim.system.system import load_system, system_names
 from evcosim.master import simulate
 
 FILE = Path(__file__).parent.parent / "systems" / "golden" / "digests.txt"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from evcosim.cosim.results import Results
+from evcosim.cosim.results.results import Results
 from evcosim.master import simulate
 
 FOLDER = Path(__file__).parent.parent / "systems" / "golden"

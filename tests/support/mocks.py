@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.plan import Block, Plan, UnitPlan
-from evcosim.cosim.resolve import Options, participating, resolve
-from evcosim.cosim.scenario import Scenario, ScenarioFile
-from evcosim.cosim.system import System, SystemFile
-from evcosim.master.algorithm import PythonEngine
-from evcosim.master.initialization import initialize
-from evcosim.master.unit import Value
+from evcosim.cosim.interface import UnitInterface, Value, VariableInfo
+from evcosim.cosim.plan.plan import Plan
+from evcosim.cosim.plan.resolve import Options, participating, resolve
+from evcosim.cosim.plan.unit_plan import Block, UnitPlan
+from evcosim.cosim.system.scenario import Scenario, ScenarioFile
+from evcosim.cosim.system.system import System, SystemFile
+from evcosim.master.engine.initialization import initialize
+from evcosim.master.engine.python_engine import PythonEngine
 
 Values = dict[str, Any]
 

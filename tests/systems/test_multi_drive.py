@@ -12,9 +12,9 @@ import math
 import numpy as np
 import pytest
 
-from evcosim.cosim import metrics
-from evcosim.cosim.scenario import load_scenario
-from evcosim.cosim.system import load_system
+from evcosim.cosim.results import metrics
+from evcosim.cosim.system.scenario import load_scenario
+from evcosim.cosim.system.system import load_system
 from evcosim.master import Simulation, simulate
 from evcosim.models import multi_drive_analysis as analysis
 from evcosim.models.electronic_differential import ElectronicDifferential

@@ -7,7 +7,7 @@ import pytest
 
 from evcosim.master.fmi.compilation import compile_fmu
 from evcosim.master.fmi.fmu import FmuError, read_fmu
-from evcosim.master.loading import load_unit
+from evcosim.master.fmi.loading import load_unit
 from support.c_fmu import SOURCES, mixed_fmu
 from support.needs import need_c_compiler
 

@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.results import Results
+from evcosim.cosim.results.results import Results
 from evcosim.master.cli import main
 from evcosim.master.fmi.fmu import read_fmu
-from evcosim.master.loading import load_unit
+from evcosim.master.fmi.loading import load_unit
 from evcosim.master.simulation import simulate
 from support.equations import MODELS, equations_fmu
 

@@ -10,7 +10,7 @@ import pytest
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.interface import UnitInterface
 from evcosim.master.fmi.fmu import FmuError, read_fmu
-from evcosim.master.loading import load_unit
+from evcosim.master.fmi.loading import load_unit
 from evcosim.master.simulation import simulate
 from evcosim.master.unit import Unit
 from support.c_fmu import mixed_fmu

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.system import Algorithm
-from evcosim.master.isolation import choice, line
+from evcosim.cosim.system.system import Algorithm
+from evcosim.master.isolation import decision, handover
 from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu
 
@@ -193,13 +193,13 @@ def test_units_give_the_same_where_both_sides_only_sleep(
 ) -> None:
     path = pair(tmp_path, 0)
     looking = simulate(path)
-    monkeypatch.setattr(line, "SPIN", 0.0)
+    monkeypatch.setattr(handover, "SPIN", 0.0)
     assert np.array_equal(simulate(path).data, looking.data)
 
 
 def test_no_processes_where_the_system_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = pair(tmp_path, 0)
-    monkeypatch.setattr(choice, "available", lambda: False)
+    monkeypatch.setattr(decision, "available", lambda: False)
     with pytest.raises(ConfigError, match=r"unit 'a': evcosim did not build mixed.fmu, .*--isolation none"):
         simulate(path)
     assert simulate(path, isolation="none").manifest["units"]["a"]["isolation"] == "none"

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.results import Results
+from evcosim.cosim.results.results import Results
 from evcosim.master.simulation import simulate
 from support.hostile import units
 from support.hostile.case import WHOLE, Case

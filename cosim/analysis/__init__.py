@@ -1,0 +1,1 @@
+"""Mathematics on arrays: sweeps, responses, first-order fits, bus budgets."""

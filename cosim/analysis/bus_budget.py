@@ -1,0 +1,184 @@
+"""How much a system's buses may cost it: its own metric over delay, resolution and cycle, each by itself.
+
+A point is one run with a variation of all buses (`variation.BusVariation`); the nominal point, the system as
+its file says, is one of each series. A point is broken when the metric is beyond the limit, or when there is
+no metric: the run failed, or diverged to what is no number.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from ..results.metrics import Metric
+from ..system.variation import BusVariation
+
+
+@dataclasses.dataclass(frozen=True)
+class Point:
+    """One run: what was changed, in words and as it is; the metric, or NaN and the `reason` why."""
+
+    label: str
+    bus: BusVariation
+    value: float = math.nan
+    reason: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Series:
+    """The points of one variation, from the best bus to the worst."""
+
+    name: str
+    points: tuple[Point, ...]
+
+    @property
+    def nominal(self) -> int:
+        """The place of the system as it is."""
+        return next(i for i, point in enumerate(self.points) if point.bus == BusVariation())
+
+
+def series(step_size: float) -> tuple[Series, ...]:
+    """What is run: 0 to 3 steps of `step_size` [s] more delay; signals not quantized, as in the DBC, 2, 4 and
+    8 times as coarse; messages 1, 2, 4 and 8 times as seldom."""
+    times = (1, 2, 4, 8)
+    return (
+        Series(
+            "bus delay", tuple(Point(_delay(n, step_size), BusVariation(delay_steps=n)) for n in range(4))
+        ),
+        Series(
+            "signal resolution",
+            (
+                Point("ideal", BusVariation(resolution="ideal")),
+                *(Point("DBC" if n == 1 else f"DBC x {n}", BusVariation(resolution=float(n))) for n in times),
+            ),
+        ),
+        Series("message cycle", tuple(Point(f"x {n}", BusVariation(cycle=n)) for n in times)),
+    )
+
+
+def _delay(steps: int, step_size: float) -> str:
+    if not steps:
+        return "+0 steps"
+    return f"+{steps} step{'' if steps == 1 else 's'} ({1000.0 * steps * step_size:g} ms)"
+
+
+@dataclasses.dataclass(frozen=True)
+class Budget:
+    """The outcome: the series, and what judges them: a metric in `unit` and its limit, upper or lower."""
+
+    system: str
+    scenario: str
+    metric: str
+    unit: str
+    limit: float
+    kind: Literal["max", "min"]
+    series: tuple[Series, ...]
+
+    def broken(self, point: Point) -> bool:
+        """Whether the metric is beyond the limit, or there is none."""
+        return not (point.value <= self.limit if self.kind == "max" else point.value >= self.limit)
+
+    def first_broken(self, series: Series) -> Point | None:
+        """The first broken point from the nominal one on."""
+        return next((p for p in series.points[series.nominal :] if self.broken(p)), None)
+
+    def summary(self, series: Series) -> str:
+        """Where this series breaks, in a few words."""
+        first, nominal = self.first_broken(series), series.points[series.nominal]
+        if first is nominal:
+            said = "broken as it is"
+        elif first is not None:
+            said = f"breaks at {first.label}"
+        else:
+            said = f"holds up to {series.points[-1].label}"
+        better = [p.label for p in series.points[: series.nominal] if self.broken(p) and first is not nominal]
+        return said + "".join(f"; broken at {label} too" for label in better)
+
+    @property
+    def rule(self) -> str:
+        """What is required, in words."""
+        limit = Metric("", self.limit, self.unit).text
+        return f"{self.metric}: at {'most' if self.kind == 'max' else 'least'} {limit}"
+
+    def text(self, point: Point) -> str:
+        """The value of a point with its unit."""
+        return "-" if math.isnan(point.value) else Metric("", point.value, self.unit).text
+
+    def verdict(self, point: Point) -> str:
+        """What a point comes to; a failed run with the first line of its reason."""
+        if not self.broken(point):
+            return "holds"
+        reason = point.reason.strip().splitlines()
+        return f"broken: {reason[0]}" if reason else "broken"
+
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Series, point (* the nominal one), value and verdict of every point."""
+        return [
+            (
+                each.name if i == 0 else "",
+                f"{point.label} *" if i == each.nominal else point.label,
+                self.text(point),
+                self.verdict(point),
+            )
+            for each in self.series
+            for i, point in enumerate(each.points)
+        ]
+
+
+def as_data(budget: Budget) -> dict[str, Any]:
+    """The budget for JSON: a value that there is not is None."""
+    keys = ("system", "scenario", "metric", "unit", "limit", "kind")
+    return {key: getattr(budget, key) for key in keys} | {
+        "series": [
+            {
+                "name": each.name,
+                "summary": budget.summary(each),
+                "first_broken": _label(budget.first_broken(each)),
+                "points": [_point(budget, point) for point in each.points],
+            }
+            for each in budget.series
+        ]
+    }
+
+
+def _label(point: Point | None) -> str | None:
+    return None if point is None else point.label
+
+
+def _point(budget: Budget, point: Point) -> dict[str, Any]:
+    return {
+        "label": point.label,
+        "nominal": point.bus == BusVariation(),
+        "bus": dataclasses.asdict(point.bus),
+        "value": point.value if math.isfinite(point.value) else None,
+        "broken": budget.broken(point),
+        "reason": point.reason,
+    }
+
+
+def as_markdown(budget: Budget, figure: str) -> str:
+    """A page: what was asked, where it breaks, the table, and the figure in the file `figure`."""
+    name = " ".join(part for part in (budget.system, budget.scenario) if part)
+    return "\n".join(
+        [
+            f"# Bus budget of {name}",
+            "",
+            f"{budget.rule}. Each variation by itself; * is the system as it is.",
+            "",
+            *(f"- {each.name}: {budget.summary(each)}" for each in budget.series),
+            "",
+            *table(("variation", "", budget.metric, "verdict"), budget.rows()),
+            "",
+            f"![{budget.metric} over each variation]({figure})",
+            "",
+        ]
+    )
+
+
+def table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A Markdown table as lines."""
+    escaped = [[cell.replace("|", "\\|").replace("*", "\\*") for cell in row] for row in (headers, *rows)]
+    first, *others = (f"| {' | '.join(cells)} |" for cells in escaped)
+    return [first, "|---" * len(headers) + "|", *others]

@@ -1,0 +1,273 @@
+"""The channel: what a CAN message does to the values that cross it.
+
+At each of its cycle times a message samples all its signals together: sender's value -> DBC signal's unit ->
+raw value -> physical value -> receivers' units (module quantization says how, exactly). Between two
+transmissions a receiver's slot of the memory is not written, so it holds the last value; before the first
+one it holds what it started with.
+
+A MessageChannel writes its own `transmit` as straight-line Python with the constants folded in, since it
+runs at every communication step: about 0.2 us a signal. `source` shows it. Values that saturate leave the
+line for a function that counts them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import struct
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ConfigError
+from ..units import Affine
+from .dbc import Message, Signal
+from .quantization import BusSettings, ChannelError, SignalOperation, decode, operation, quantize, reference
+from .transmissions import RawLog, raw_store
+
+__all__ = [
+    "BusSettings",
+    "ChannelError",
+    "MessageChannel",
+    "Saturation",
+    "SignalOperation",
+    "SignalRoute",
+    "operation",
+    "reference",
+]
+
+
+@dataclasses.dataclass(frozen=True)
+class SignalRoute:
+    """The way of one signal through the engine's memory.
+
+    `source` is the slot of the sender's value and `to_bus` the map to the DBC signal's unit. `sinks` are the
+    receivers' slots, each with the map from the DBC signal's unit.
+    """
+
+    signal: Signal
+    source: int
+    to_bus: Affine
+    sinks: tuple[tuple[int, Affine], ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Saturation:
+    """How many values of a signal were out of range, and the communication step of the first."""
+
+    count: int
+    first_step: int
+
+
+class MessageChannel:
+    """One message of a bus, sent by `transmit(memory, k)`.
+
+    `memory` is an indexable of floats (fastest: a memoryview of doubles), `k` the communication step, which
+    is only recorded: the caller knows when the message is due (`dbc.schedule`). All signals are read and
+    checked before any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
+
+    With `log_raw` the raw values of each transmission are kept for `log` (`logs` tells whether), in memory
+    until `flush` puts them to the others, which are in a temporary file when they are many.
+    Raises ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
+    """
+
+    transmit: Callable[[Any, int], None]
+
+    def __init__(
+        self,
+        message: Message,
+        routes: Sequence[SignalRoute],
+        settings: BusSettings | None = None,
+        log_raw: bool = False,
+    ) -> None:
+        _check(message, routes)
+        self.message, self.routes, self.logs = message, tuple(routes), log_raw
+        self.operations = tuple(operation(route.signal, settings or BusSettings()) for route in routes)
+        self._counts = [[0, 0] for _ in routes]  # how often out of range, and the first step
+        self._out = [
+            _out_of_range(op, counter) for op, counter in zip(self.operations, self._counts, strict=True)
+        ]
+        self._log, self._logged = bytearray(), raw_store(len(routes))
+        self._row = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
+        self.source = _source(self.routes, self.operations, log_raw)
+        names = self._names() | {"extend": self._log.extend, "pack": self._row.pack}
+        exec(compile(self.source, f"<channel {message.name}>", "exec"), names)
+        self.transmit = names["transmit"]
+
+    @property
+    def saturations(self) -> dict[str, Saturation]:
+        """The signals that had values out of range (under "wrap": values that wrapped)."""
+        counted = zip(self.operations, self._counts, strict=True)
+        return {op.signal.name: Saturation(count, first) for op, (count, first) in counted if count}
+
+    @property
+    def log(self) -> RawLog:
+        """The transmissions so far; without `log_raw`, none. Raises RunError as `flush` does."""
+        self.flush()
+        types = {op.signal.name: _log_type(op)[1] for op in self.operations}
+        return RawLog(self.message, types, self._logged.table())
+
+    def flush(self) -> None:
+        """Put what was logged since the last time to what is kept; an engine does so now and then.
+
+        Raises RunError when the temporary file cannot be written.
+        """
+        rows = np.frombuffer(bytes(self._log), "<f8").reshape(-1, 1 + len(self.routes))
+        self._log.clear()
+        self._logged.append(rows)
+
+    # ---- for an engine that does the transmissions itself, with the constants in `operations`
+
+    def out_of_range(self, i: int, x: float, k: int) -> float:
+        """The raw value of signal i for a value outside [low, high], counted. Raises ChannelError."""
+        return self._out[i](x, k)
+
+    def count(self, i: int, times: int, first_step: int) -> None:
+        """Add to what is counted of signal i."""
+        counter = self._counts[i]
+        if not counter[0]:
+            counter[1] = first_step
+        counter[0] += times
+
+    def keep(self, steps: NDArray[np.int64], raws: NDArray[np.float64]) -> None:
+        """Add transmissions to the log: `raws` has a row for each and a column for each signal."""
+        rows = np.empty((len(steps), 1 + raws.shape[1]), dtype="<f8")
+        rows.view("<i8")[:, 0] = steps
+        rows[:, 1:] = raws
+        self._log.extend(rows.tobytes())
+
+    def _names(self) -> dict[str, Any]:
+        """What the source refers to: for signal i, what to do out of range and what doubles cannot do."""
+        names: dict[str, Any] = {}
+        for i, op in enumerate(self.operations):
+            names[f"out_{i}"] = self._out[i]
+            if op.kind == "exact":
+                names[f"raw_{i}"] = _exact_raw(op)
+                names[f"value_{i}"] = _exact_value(op)
+            elif op.kind == "float32":
+                names[f"single_{i}"] = memoryview(bytearray(4)).cast("f")
+        return names
+
+
+def _check(message: Message, routes: Sequence[SignalRoute]) -> None:
+    names = [route.signal.name for route in routes]
+    for name, route in zip(names, routes, strict=True):
+        if message.require(name) != route.signal:
+            raise ConfigError(f"{message.file}: {message.name}.{name} is declared otherwise than the route's")
+        if names.count(name) > 1:
+            raise ConfigError(f"{message.file}: {message.name}.{name} is sent by two connections")
+
+
+def _out_of_range(op: SignalOperation, counter: list[int]) -> Callable[[float, int], float]:
+    """The slow path: raw value for a value outside [low, high], counted in `counter`."""
+    settings = BusSettings(op.rounding, op.overflow)
+
+    def out(x: float, k: int) -> float:
+        raw = reference(op.signal, settings, x)[0]
+        if not counter[0]:
+            counter[1] = k
+        counter[0] += 1
+        return raw if op.kind == "exact" else float(raw)
+
+    return out
+
+
+def _exact_raw(op: SignalOperation) -> Callable[[float], float]:
+    return lambda x: quantize(op.signal, op.rounding, x)
+
+
+def _exact_value(op: SignalOperation) -> Callable[[float], float]:
+    return lambda raw: decode(op.signal, raw)
+
+
+def _log_type(op: SignalOperation) -> tuple[str, str]:
+    """Format of `struct` and type of numpy for a raw value of this signal."""
+    if op.kind == "exact":
+        return ("q", "<i8") if op.signal.signed else ("Q", "<u8")
+    return "d", "<f8"
+
+
+# ---- the source text ----
+
+
+def _source(routes: Sequence[SignalRoute], operations: Sequence[SignalOperation], log_raw: bool) -> str:
+    lines = ["def transmit(m, k):"]
+    for i, (route, op) in enumerate(zip(routes, operations, strict=True)):
+        lines += _send(i, route, op)
+    for i, (route, op) in enumerate(zip(routes, operations, strict=True)):
+        lines += _receive(i, route, op)
+    if log_raw:
+        lines.append(f"extend(pack({', '.join(['k', *(f'r{i}' for i in range(len(routes)))])}))")
+    if len(lines) == 1:
+        lines.append("pass")
+    return "\n    ".join(lines) + "\n"
+
+
+def _send(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
+    """From the sender's slot to the raw value r<i>."""
+    return [
+        f"# {_one_line(op.signal.name)} [{_one_line(op.signal.unit)}]: {op.rounding}, {op.overflow}",
+        f"x = {route.to_bus.expression(f'm[{route.source}]')}",
+        f"if {op.low!r} <= x <= {op.high!r}:",
+        *(f"    {line}" for line in _quantize_lines(i, op)),
+        "else:",
+        f"    r{i} = out_{i}(x, k)",
+    ]
+
+
+def _one_line(text: str) -> str:
+    """A text of the DBC file as part of a comment: a line break in it must not end the comment."""
+    return text.encode("unicode_escape").decode("ascii")
+
+
+def _quantize_lines(i: int, op: SignalOperation) -> list[str]:
+    if op.kind == "exact":
+        return [f"r{i} = raw_{i}(x)"]
+    q = _raw_steps(op)
+    if op.kind == "float32":
+        return [f"single_{i}[0] = {q}", f"r{i} = single_{i}[0]"]
+    if op.kind == "float64":
+        return [f"r{i} = {q}"]
+    if op.rounding == "half_even":
+        # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
+        return [f"r{i} = {q} + 6755399441055744.0 - 6755399441055744.0"]
+    # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
+    half = "0.49999999999999994" if op.rounding == "nearest" else "0.0"
+    if _never_negative(op):
+        return [f"r{i} = ({q} + {half}) // 1.0"]
+    up, down = f"(q + {half}) // 1.0", f"0.0 - ({half} - q) // 1.0"  # 0.0 - 0.0 is no -0.0
+    return [f"q = {q}", f"r{i} = {up} if q >= 0.0 else {down}"]
+
+
+def _raw_steps(op: SignalOperation) -> str:
+    """(x - offset) / scale. A division stays one: a product with the inverse is not the same double."""
+    x = "x"
+    if op.offset:
+        x = f"(x - {op.offset!r})" if op.offset > 0 else f"(x + {-op.offset!r})"
+    return f"{x} / {op.scale!r}" if op.scale != 1.0 else x
+
+
+def _never_negative(op: SignalOperation) -> bool:
+    least = op.low if op.scale > 0 else op.high
+    return (least - op.offset) / op.scale >= 0.0
+
+
+def _receive(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
+    """From the raw value r<i> to the receivers' slots."""
+    if not route.sinks:
+        return []
+    value = f"value_{i}(r{i})" if op.kind == "exact" else _value(f"r{i}", op)
+    if len(route.sinks) == 1:
+        ((slot, affine),) = route.sinks
+        inner = value if affine.scale == 1.0 or value.isidentifier() else f"({value})"
+        return [f"m[{slot}] = {affine.expression(inner)}"]
+    lines = [f"v = {value}"]
+    lines += [f"m[{slot}] = {affine.expression('v')}" for slot, affine in route.sinks]
+    return lines
+
+
+def _value(r: str, op: SignalOperation) -> str:
+    """r * scale + offset, without what does nothing."""
+    product = f"{r} * {op.scale!r}" if op.scale != 1.0 else r
+    return f"{product} + {op.offset!r}" if op.adds_offset else product

@@ -1,0 +1,214 @@
+"""The frames that crossed a bus, as a log file that other tools read: candump, BLF or ASC.
+
+A frame stands at the time of the communication point at which its message was sampled, so a receiver's
+value in the results is what its frame decodes to (on a bus with a delay, that much later). Frames of one
+instant stand in the order in which they would win the bus: by frame id.
+
+The same run writes the same bytes: times count from the start of the run's clock, and no file holds the
+date at which it was written. ASC, which needs a date, has a fixed one; BLF has none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import heapq
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import ConfigError
+from ..writing import in_place_of
+from .dbc import Message, Signal
+from .transmissions import RawLog
+
+_ASC_DATE = "Thu Jan 01 00:00:00.000 1970"
+
+
+@dataclasses.dataclass(frozen=True)
+class BusLog:
+    """What crossed one bus: the messages' transmissions (`MessageChannel.log`)."""
+
+    bus: str
+    messages: Sequence[RawLog]
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """One frame: `time` in s, `channel` the place of its bus among the logged ones."""
+
+    time: float
+    channel: int
+    bus: str
+    message: Message
+    data: bytes
+
+
+def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> int:
+    """Write the frames of `logs` in the format that the file's suffix names; return how many there were.
+
+    `.log` is candump's, `.blf` and `.asc` are Vector's. Signals that no connection feeds are sent with their
+    start value. Written frame by frame. Raises ConfigError for another suffix or where the file cannot be
+    written.
+    """
+    path = Path(path)
+    check_suffix(path)
+    count = 0
+    with in_place_of(path) as partial, _FORMATS[path.suffix.lower()](partial) as write:
+        for frame in frames(logs, step_size, start_time):
+            write(frame)
+            count += 1
+    return count
+
+
+def check_suffix(path: str | Path) -> None:
+    """Raise ConfigError when no log format has this file's suffix."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in _FORMATS:
+        raise ConfigError(f"{path}: CAN logs are written as {', '.join(_FORMATS)}, not as '{suffix}'")
+
+
+def frames(logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> Iterator[Frame]:
+    """The frames of all buses in the order of time, those of one instant by frame id."""
+    streams = [_payloads(channel, log) for channel, bus_log in enumerate(logs) for log in bus_log.messages]
+    for k, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
+        yield Frame(start_time + k * step_size, channel, logs[channel].bus, message, data)
+
+
+_Payload = tuple[int, int, int, Message, bytes]
+
+
+def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
+    """Step, arbitration order, channel, message and payload of each transmission of one message."""
+    message = log.message
+    # an extended frame loses against a standard one with the same leading 11 bits
+    order = message.frame_id * 2 + 1 if message.extended else message.frame_id << 19
+    encode = encoder(message)
+    start = {s.name: s.start_raw for s in message.signals.values()}
+    before, data = None, b""
+    for steps, raws in log.stretches():
+        rows = zip(*(column.tolist() for column in raws.values()), strict=True)
+        for k, row in zip(steps.tolist(), rows, strict=True):
+            if row != before:  # a quantized value often stays
+                before, data = row, encode(start | dict(zip(raws, row, strict=True)))
+            yield k, order, channel, message, data
+
+
+def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:
+    """A function from the raw values of all signals to the payload, by cantools; unused bits are 0."""
+    from cantools.database.can import Message as CodecMessage
+
+    codec = CodecMessage(
+        frame_id=message.frame_id,
+        is_extended_frame=message.extended,
+        name=message.name,
+        length=message.length,
+        signals=[_codec_signal(s) for s in message.signals.values()],
+        is_fd=message.fd,
+    )
+
+    def encode(raws: dict[str, int | float]) -> bytes:
+        data: bytes = codec.encode(raws, scaling=False, strict=False)
+        return data
+
+    return encode
+
+
+def _codec_signal(signal: Signal) -> Any:
+    from cantools.database.can import Signal as CodecSignal
+    from cantools.database.conversion import BaseConversion
+
+    return CodecSignal(
+        name=signal.name,
+        start=signal.start,
+        length=signal.length,
+        byte_order="little_endian" if signal.little_endian else "big_endian",
+        is_signed=signal.signed,
+        conversion=BaseConversion.factory(is_float=signal.is_float),
+    )
+
+
+# ---- formats ----
+
+
+@contextlib.contextmanager
+def _candump(path: Path) -> Iterator[Callable[[Frame], None]]:
+    """candump -L. Not by python-can's writer, whose lines end in the direction, which tshark refuses."""
+    with path.open("w", encoding="ascii", newline="\n") as file:
+
+        def write(frame: Frame) -> None:
+            m = frame.message
+            frame_id = f"{m.frame_id:08X}" if m.extended else f"{m.frame_id:03X}"
+            separator = "##0" if m.fd else "#"  # CAN FD: no bit rate switch
+            payload = frame.data.hex().upper()
+            file.write(f"({frame.time:.6f}) {frame.bus} {frame_id}{separator}{payload}\n")
+
+        yield write
+
+
+@contextlib.contextmanager
+def _blf(path: Path) -> Iterator[Callable[[Frame], None]]:
+    import can
+
+    with path.open("wb") as file, contextlib.closing(_Stopped(can.BLFWriter(file))) as log:
+        log.writer.start_timestamp = 0.0  # else times count from the first frame
+
+        def write(frame: Frame) -> None:
+            # the writer cuts times to whole nanoseconds; half of one more makes it round
+            log.writer.on_message_received(_can_message(frame, frame.time + 0.5e-9))
+
+        yield write
+
+
+@contextlib.contextmanager
+def _asc(path: Path) -> Iterator[Callable[[Frame], None]]:
+    import can
+
+    class FixedDateWriter(can.ASCWriter):  # type: ignore[misc] # python-can is not followed by mypy
+        """Writes _ASC_DATE where python-can writes the date of today, in the local time zone and language."""
+
+        def _format_header_datetime(self, dt: object) -> str:
+            return _ASC_DATE
+
+    with (
+        path.open("w", encoding="ascii", newline="\n") as file,
+        contextlib.closing(_Stopped(FixedDateWriter(file))) as log,
+    ):
+        file.write(f"Begin Triggerblock {_ASC_DATE}\n")
+        log.writer.header_written = True  # else times count from the first frame
+        log.writer.log_event("Start of measurement", 0.0)
+
+        def write(frame: Frame) -> None:
+            log.writer.on_message_received(_can_message(frame, frame.time))
+
+        yield write
+
+
+@dataclasses.dataclass(frozen=True)
+class _Stopped:
+    """A python-can writer to be closed: its `stop` writes the end of the file."""
+
+    writer: Any
+
+    def close(self) -> None:
+        self.writer.stop()
+
+
+def _can_message(frame: Frame, timestamp: float) -> Any:
+    import can
+
+    return can.Message(
+        timestamp=timestamp,
+        arbitration_id=frame.message.frame_id,
+        is_extended_id=frame.message.extended,
+        is_fd=frame.message.fd,
+        channel=frame.channel,
+        data=frame.data,
+    )
+
+
+_FORMATS: dict[str, Callable[[Path], contextlib.AbstractContextManager[Callable[[Frame], None]]]] = {
+    ".log": _candump,
+    ".blf": _blf,
+    ".asc": _asc,
+}

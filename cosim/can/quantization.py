@@ -1,0 +1,258 @@
+"""What a CAN signal does to a value: the definition, and the constants every engine computes with.
+
+In the unit of the DBC signal, a value x becomes
+
+    s = x saturated to [minimum, maximum]                                                  (1)
+    q = (s - offset) / scale                                                               (2)
+    n = q rounded to an integer (a float signal: as it is)                                 (3)
+    r = n clipped to the raw range (a float signal: then rounded to its 32 or 64 bits)     (4)
+    y = scale * r + offset                                                                 (5)
+
+`reference` says this one line at a time; it is what the generated code is tested against. For values in
+range and rounding "half_even" it is what encode and decode of cantools give, bit for bit.
+
+`operation` folds a signal and the settings of its bus into a SignalOperation. Since (1) to (4) are monotone,
+all values that nothing saturates lie in one interval [low, high], so an engine compares twice, then computes
+(2), (3), (5); every value outside becomes one of two constants. Where that is done, it is exact: low and high
+are doubles, and the next double outside saturates.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import struct
+import sys
+from collections.abc import Callable
+from typing import Literal
+
+from ..errors import ConfigError, RunError
+from .dbc import Signal
+
+Rounding = Literal["nearest", "half_even", "truncate"]
+Overflow = Literal["saturate", "wrap", "error"]
+Kind = Literal["integer", "exact", "float32", "float64"]
+
+_EXACT = 2.0**50  # up to here every rounding of the generated code is exact in doubles, with a margin
+
+
+class ChannelError(RunError):
+    """A value that a channel cannot carry: `signal`, `value` in the DBC signal's unit, and the `rule`."""
+
+    def __init__(self, signal: str, value: float, rule: str) -> None:
+        super().__init__(f"{signal}: {rule}")
+        self.signal, self.value, self.rule = signal, value, rule
+
+
+@dataclasses.dataclass(frozen=True)
+class BusSettings:
+    """How the senders of a bus turn values into raw values; public codecs disagree.
+
+    `rounding`, step (3):
+        nearest     to the nearest integer, a half away from zero (2.5 -> 3, -2.5 -> -3)
+        half_even   to the nearest integer, a half to the even one (2.5 -> 2), as cantools
+        truncate    toward zero (2.9 -> 2, -2.9 -> -2), as C code that casts, for example cantools'. Note that
+                    a value that has crossed such a bus may lose one more raw step on the next one
+    `overflow`, what happens to a value outside [minimum, maximum] or the raw range:
+        saturate    steps (1) and (4): it is sent as the nearest limit; +-Inf too
+        wrap        as C code without a range check: step (1) is left out, and step (4) keeps the low bits of
+                    the integer (120 % in 8 bits of 0.4 % arrives as 17.6 %). A float becomes +-Inf.
+                    +-Inf has no low bits and is a ChannelError in an integer signal
+        error       it is a ChannelError; +-Inf too
+    NaN is a ChannelError always.
+    """
+
+    rounding: Rounding = "nearest"
+    overflow: Overflow = "saturate"
+
+    def __post_init__(self) -> None:
+        for name, known in (("rounding", Rounding), ("overflow", Overflow)):
+            value, allowed = getattr(self, name), known.__args__  # type: ignore[attr-defined] # of a Literal
+            if value not in allowed:
+                raise ConfigError(f"{name} = {value!r}: must be one of {', '.join(map(repr, allowed))}")
+
+
+def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int | float, float]:
+    """The raw value sent for `value` and the value received, both sides in the DBC signal's unit.
+
+    Raises ChannelError for NaN and what `settings` make an error.
+    """
+    if math.isnan(value):
+        raise ChannelError(signal.name, value, "the value is NaN")
+    wraps = settings.overflow == "wrap"
+    x = value if wraps else _saturate(signal, value)  # (1)
+    n = quantize(signal, settings.rounding, x)  # (2), (3)
+    low, high = signal.raw_range
+    if settings.overflow == "error" and (x != value or not low <= n <= high):
+        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_limits(signal)}")
+    raw = _wrap(signal, n, value) if wraps else _clip(signal, n)  # (4)
+    return raw, decode(signal, raw)  # (5)
+
+
+def quantize(signal: Signal, rounding: Rounding, x: float) -> int | float:
+    """Steps (2) and (3): the raw value before it is clipped; +-inf beyond all doubles."""
+    q = (x - signal.offset) / signal.scale
+    if signal.is_float or math.isinf(q):
+        return q
+    if rounding == "half_even":
+        return round(q)
+    whole = math.trunc(q)
+    if rounding == "nearest" and abs(q - whole) >= 0.5:  # the difference is exact
+        whole += 1 if q > 0 else -1
+    return whole
+
+
+def decode(signal: Signal, raw: int | float) -> float:
+    """Step (5). With an integer scale and offset in integers, rounded once, as cantools does."""
+    if signal.scale == 1 and signal.offset == 0:
+        return float(raw)
+    return float(raw * signal.scale + signal.offset)
+
+
+def _saturate(signal: Signal, x: float) -> float:
+    if signal.minimum is not None and x < signal.minimum:
+        return signal.minimum
+    if signal.maximum is not None and x > signal.maximum:
+        return signal.maximum
+    return x
+
+
+def _clip(signal: Signal, n: int | float) -> int | float:
+    low, high = signal.raw_range
+    if n < low:
+        return low
+    if n > high:
+        return high
+    return _to_float(signal, n) if signal.is_float else n
+
+
+def _wrap(signal: Signal, n: int | float, value: float) -> int | float:
+    if signal.is_float:
+        return _to_float(signal, n)
+    if math.isinf(n):
+        raise ChannelError(signal.name, value, f"the value {value!r} has no low bits to wrap to")
+    low = int(signal.raw_type_range[0])
+    return (int(n) - low) % (1 << signal.length) + low
+
+
+def _to_float(signal: Signal, q: float) -> float:
+    """q in the signal's floating-point format, to nearest even; beyond its range Inf, as a C cast does."""
+    if signal.length == 64:
+        return q
+    try:
+        return float(struct.unpack("<f", struct.pack("<f", q))[0])
+    except OverflowError:
+        return math.copysign(math.inf, q)
+
+
+def _limits(signal: Signal) -> str:
+    low = signal.minimum if signal.minimum is not None else "-inf"
+    high = signal.maximum if signal.maximum is not None else "inf"
+    first, last = signal.raw_range
+    return f"[{low}, {high}] {signal.unit} or raw {first!r} to {last!r}".replace("]  or", "] or")
+
+
+@dataclasses.dataclass(frozen=True)
+class SignalOperation:
+    """The constants of one signal on one bus, for an engine.
+
+    A value with `low` <= x <= `high` is sent as raw = rounding((x - offset) / scale) and received as
+    raw * scale + offset. Any other value saturates (or wraps, or is an error: `overflow`): `raw_above` is
+    sent for one above `high`, `raw_below` for one below `low` (both None unless overflow is "saturate").
+    `kind` says what arithmetic does that right: "integer": doubles, since |raw| <= 2**50; "exact": integers
+    of any size (`quantize` and `decode`); "float32", "float64": no rounding, but to that format.
+    """
+
+    signal: Signal
+    kind: Kind
+    rounding: Rounding
+    overflow: Overflow
+    scale: float
+    offset: float
+    low: float
+    high: float
+    raw_below: int | float | None
+    raw_above: int | float | None
+
+    @property
+    def adds_offset(self) -> bool:
+        """Whether decoding adds the offset: one of 0.0 makes 0.0 of -0.0, where there can be one."""
+        if self.scale == 1.0 and self.offset == 0.0:
+            return False
+        return bool(self.offset) or self.scale < 0 or self.kind != "integer"
+
+
+def operation(signal: Signal, settings: BusSettings) -> SignalOperation:
+    """Fold a signal and the settings of its bus. Raises ConfigError when no value at all can be sent."""
+    low, high = _unsaturated(signal, settings)
+    if low > high:
+        raise ConfigError(f"signal '{signal.name}': no value in {_limits(signal)} can be sent")
+    saturates = settings.overflow == "saturate"
+    return SignalOperation(
+        signal=signal,
+        kind=_kind(signal),
+        rounding=settings.rounding,
+        overflow=settings.overflow,
+        scale=float(signal.scale),
+        offset=float(signal.offset),
+        low=low,
+        high=high,
+        raw_below=reference(signal, settings, -math.inf)[0] if saturates else None,
+        raw_above=reference(signal, settings, math.inf)[0] if saturates else None,
+    )
+
+
+def _kind(signal: Signal) -> Kind:
+    if signal.is_float:
+        return "float32" if signal.length == 32 else "float64"
+    # cantools computes with integers while scale and offset are integers: the same in doubles while small
+    raw = max(abs(r) for r in signal.raw_type_range)
+    product = raw * abs(signal.scale) if isinstance(signal.scale, int) else 0
+    total = product + abs(signal.offset) if isinstance(signal.offset, int) else product
+    return "integer" if max(raw, product, total) <= _EXACT else "exact"
+
+
+def _unsaturated(signal: Signal, settings: BusSettings) -> tuple[float, float]:
+    """The least and the greatest x that steps (1) and (4) leave alone."""
+    wraps = settings.overflow == "wrap"
+    first, last = signal.raw_type_range if wraps else signal.raw_range
+
+    def too_low(x: float) -> bool:
+        n = quantize(signal, settings.rounding, x)
+        return n < first if signal.scale > 0 else n > last
+
+    def too_high(x: float) -> bool:
+        n = quantize(signal, settings.rounding, x)
+        return n > last if signal.scale > 0 else n < first
+
+    low, high = _first_double(lambda x: not too_low(x)), -_first_double(lambda x: not too_high(-x))
+    if not wraps:
+        low = low if signal.minimum is None else max(low, float(signal.minimum))
+        high = high if signal.maximum is None else min(high, float(signal.maximum))
+    return low, high
+
+
+def _first_double(holds: Callable[[float], bool]) -> float:
+    """The least finite double at which `holds`, which stays true from there on; Inf when it never does."""
+    low, high = -_rank(sys.float_info.max), _rank(sys.float_info.max)
+    if not holds(_double(high)):
+        return math.inf
+    while low < high:
+        middle = (low + high) // 2
+        if holds(_double(middle)):
+            high = middle
+        else:
+            low = middle + 1
+    return _double(high)
+
+
+def _rank(x: float) -> int:
+    """The place of a double in the order of all doubles, 0.0 being 0."""
+    bits: int = struct.unpack("<q", struct.pack("<d", abs(x)))[0]
+    return bits if x >= 0 else -bits
+
+
+def _double(rank: int) -> float:
+    """The double of a rank."""
+    x: float = struct.unpack("<d", struct.pack("<q", abs(rank)))[0]
+    return x if rank >= 0 else -x

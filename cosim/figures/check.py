@@ -1,0 +1,54 @@
+"""Whether a figure, and what else a system and a scenario ask for, can be made of what a run records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from .. import units
+from ..errors import ConfigError, nearest
+from ..results import metrics
+from ..results.results import ResultVariable
+from ..system.figure_spec import FigureSpec
+from ..system.scenario import Scenario
+from ..system.selection import figure_spec, metric_specs
+from ..system.system import System
+
+
+def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:
+    """Check that a figure can be drawn from these variables. Raises ConfigError naming `place`."""
+    for i, panel in enumerate(spec.panels, 1):
+        for signal in panel.signals:
+            here = f"{place}: panel {i}"
+            panel_conversion(_known(signal.name, variables, here), panel.unit, here)
+    if spec.shade is not None and not _known(spec.shade, variables, f"{place}: shade").items:
+        raise ConfigError(f"{place}: shade: '{spec.shade}' is not an enumeration, so it has no states")
+
+
+def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> ResultVariable:
+    if name not in variables:
+        raise ConfigError(f"{place}: no variable '{name}' is recorded{nearest(name, variables)}")
+    return variables[name]
+
+
+def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.Affine:
+    """From the variable's unit to the panel's. Without a declared unit nothing is converted."""
+    if variable.unit in ("", unit):
+        return units.Affine()
+    try:
+        return units.conversion(units.defined(variable.unit), units.defined(unit))
+    except ConfigError as error:
+        raise ConfigError(f"{place}: '{variable.name}' [{variable.unit}] in [{unit}]: {error}") from error
+
+
+def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:
+    """Find before the run what would be wrong after it: a figure or metric of what is not recorded.
+
+    Raises ConfigError naming the files.
+    """
+    recorded = {v.name: v for v in variables}
+    places = [str(path) for path in (system.path, scenario.path) if path is not None]
+    metrics.check(metric_specs(system, scenario), recorded, " with ".join(places))
+    spec = figure_spec(system, scenario)
+    if spec is not None:
+        place = system.path if scenario.file.figure is None else scenario.path
+        check(spec, recorded, f"{place}: figure")

@@ -1,0 +1,157 @@
+"""The figure of a system that names none: signals that measure the same quantity together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import units
+from ..errors import ConfigError
+from ..results.results import Results, ResultVariable
+from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
+from .check import panel_conversion
+
+# What the units that this field uses measure, for axes that nobody has named.
+_QUANTITIES = {
+    "m/s": "speed",
+    "km/h": "speed",
+    "m/s2": "acceleration",
+    "rad/s": "angular speed",
+    "rpm": "angular speed",
+    "rad": "angle",
+    "deg": "angle",
+    "rad/s2": "angular acceleration",
+    "m": "distance",
+    "km": "distance",
+    "N": "force",
+    "N.m": "torque",
+    "W": "power",
+    "kW": "power",
+    "J": "energy",
+    "Wh": "energy",
+    "V": "voltage",
+    "A": "current",
+    "A.h": "charge",
+    "K": "temperature",
+    "degC": "temperature",
+    "s": "time",
+    "Hz": "frequency",
+    "ohm": "resistance",
+}
+
+MAX_PANELS = 6
+MAX_SIGNALS = 8
+
+
+def default_spec(results: Results) -> FigureSpec:
+    """A figure for any results: signals that measure the same quantity together.
+
+    Inputs that repeat an output are left out (see `_repeats`). The enumeration that changes first shades
+    the panels, the others have a panel. Of more than six panels or eight signals in one, those
+    that change stay, outputs first, and the note names the others.
+    """
+    shade = _shading(results)
+    shown = [v for v in _distinct(results) if v is not shade]
+    groups: dict[object, list[ResultVariable]] = {}
+    for v in shown:
+        groups.setdefault(_group(results, v), []).append(v)
+    ranked = {
+        key: sorted(group, key=lambda v: (not _changes(results, v), v.causality == "input"))
+        for key, group in groups.items()
+    }
+    moving = sorted(ranked, key=lambda key: not _changes(results, ranked[key][0]))[:MAX_PANELS]
+    chosen = [_panel(group[:MAX_SIGNALS]) for key, group in ranked.items() if key in moving]
+    if not chosen and shade is not None:
+        chosen, shade = [_panel([shade])], None
+    if not chosen:
+        raise ConfigError("the results have no variable to draw")
+    drawn = {signal.name for panel in chosen for signal in panel.signals}
+    left_out = [v.name for v in shown if v.name not in drawn]
+    return FigureSpec(shade=shade.name if shade else None, panels=chosen, note=_note(left_out))
+
+
+def _note(left_out: list[str]) -> str | None:
+    if not left_out:
+        return None
+    more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
+    return f"Not shown: {', '.join(left_out[:8])}{more}"
+
+
+def _changes(results: Results, variable: ResultVariable) -> bool:
+    pieces = (values for _, values in results.pieces([variable.name], overlap=1))
+    return any(bool(np.any(values != values[0])) for values in pieces)
+
+
+def _shading(results: Results) -> ResultVariable | None:
+    candidates = [v for v in results.variables if v.items and _changes(results, v)]
+    return min(candidates, key=lambda v: v.causality == "input", default=None)
+
+
+def _distinct(results: Results) -> list[ResultVariable]:
+    """The variables but for parameters, the time, and inputs that repeat what another one shows."""
+    wanted = [v for v in results.variables if "arameter" not in v.causality and v.causality != "independent"]
+    kept = [v for v in wanted if v.causality != "input"]
+    for v in wanted:
+        if v.causality == "input" and not any(_repeats(results, v, other) for other in kept):
+            kept.append(v)
+    same_order = {v.name for v in kept}
+    return [v for v in wanted if v.name in same_order and not _is_time(results, v)]
+
+
+def _is_time(results: Results, variable: ResultVariable) -> bool:
+    # k * step_size as it is, where the time of results is rounded
+    return variable.unit == "s" and all(
+        np.allclose(values[:, 0], time, rtol=1e-12, atol=1e-9)
+        for time, values in results.pieces([variable.name])
+    )
+
+
+def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) -> bool:
+    """Whether two variables would draw the same line: they differ by 0.5 % (rms) of the range.
+
+    The quantization of a throttle of 0.4 % is below that, that of a speed of 1 km/h above it.
+    """
+    if (variable.type == "Real") != (other.type == "Real") or variable.items != other.items:
+        return False
+    try:
+        convert = panel_conversion(variable, other.unit, "figure")
+    except ConfigError:
+        return False
+    low, high, equal, squares = math.inf, -math.inf, True, 0.0
+    for _, values in results.pieces([variable.name, other.name]):
+        a, b = convert.scale * values[:, 0] + convert.offset, values[:, 1]
+        low, high = min(low, float(np.min(b))), max(high, float(np.max(b)))
+        equal = equal and np.array_equal(a, b)
+        squares += float(np.sum((a - b) ** 2))
+    return equal or (high > low and math.sqrt(squares / len(results)) <= 5e-3 * (high - low))
+
+
+def _group(results: Results, variable: ResultVariable) -> object:
+    """What variables must share to stand in one panel."""
+    if variable.items:
+        return variable.items
+    if variable.type != "Real":
+        return variable.type
+    if variable.unit in ("", "1", "%"):
+        # nothing says that bare numbers belong together, but a common size at least makes them readable
+        pieces = (values for _, values in results.pieces([variable.name]))
+        size = max((float(np.max(np.abs(values))) for values in pieces), default=0.0)
+        decade = math.floor(math.log10(size)) if 0.0 < size < math.inf else 0
+        return (variable.unit, decade if variable.unit == "" else 0)
+    try:
+        unit = units.defined(variable.unit)
+    except ConfigError:
+        return variable.unit
+    return unit.exponents
+
+
+def _panel(variables: list[ResultVariable]) -> PanelSpec:
+    counts: dict[str, int] = {}
+    for v in variables:
+        counts[v.unit] = counts.get(v.unit, 0) + 1
+    unit = max(counts, key=lambda name: counts[name])
+    label = _QUANTITIES.get(unit, "")
+    if not unit and len(variables) == 1:
+        label = variables[0].name
+    return PanelSpec(label=label, unit=unit, signals=[SignalSpec(name=v.name) for v in variables])

@@ -1,0 +1,1 @@
+"""From files and interfaces to the plan of a run."""

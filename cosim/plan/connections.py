@@ -1,0 +1,318 @@
+"""The connections of a system, resolved: routes within a step, messages on buses, what drives each input."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+
+from ..can.channel import SignalRoute
+from ..can.dbc import Database, Message, Signal, check_signal, load_dbc, schedule
+from ..errors import ConfigError, nearest
+from ..interface import UnitInterface, VariableInfo
+from ..system.system import Algorithm, Connection, Experiment, System
+from ..system.toml import data_file
+from ..system.variation import with_resolution
+from ..units import Affine, UnitOfMeasure, conversion, defined
+from .plan import InputPlan, Link, MessagePlan
+from .slots import Layout
+from .steps import steps_in
+from .unit_plan import Route
+
+
+@dataclasses.dataclass
+class Network:
+    """What `connect` found; inputs by "unit.variable"."""
+
+    routes: dict[str, list[Route]]
+    links: list[Link] = dataclasses.field(default_factory=list)
+    messages: list[MessagePlan] = dataclasses.field(default_factory=list)
+    inputs: dict[str, InputPlan] = dataclasses.field(default_factory=dict)
+    initial: dict[str, float] = dataclasses.field(default_factory=dict)
+    warnings: list[str] = dataclasses.field(default_factory=list)
+
+    def drive(self, name: str, plan: InputPlan, place: str) -> None:
+        """Note what drives an input. Raises ConfigError when something drives it already."""
+        if name in self.inputs:
+            raise ConfigError(f"{place}: {name} is driven already, by {self.inputs[name].driver}")
+        self.inputs[name] = plan
+
+    def add_mailbox(self, unit: str, name: str, layout: Layout, driver: str) -> int:
+        """Give an input a mailbox and the route from it."""
+        mailbox, slot = layout.take(1), layout.valid[unit, name]
+        self.routes[unit].append(Route(mailbox, slot))
+        self.inputs[f"{unit}.{name}"] = InputPlan(slot, mailbox, driver)
+        return mailbox
+
+    def input_of(self, name: str, interfaces: Mapping[str, UnitInterface], place: str) -> tuple[str, str]:
+        """Split "unit.variable" of an input. Raises ConfigError with the nearest name there is."""
+        return _split(name, ("input",), interfaces, place)
+
+
+def _split(
+    name: str, causalities: Sequence[str], interfaces: Mapping[str, UnitInterface], place: str
+) -> tuple[str, str]:
+    unit, _, variable = name.partition(".")
+    if unit not in interfaces:
+        raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
+    interfaces[unit].require(unit, variable, causalities, place)
+    return unit, variable
+
+
+@dataclasses.dataclass
+class _Connector:
+    """The inputs of `connect`, in one place for its helpers."""
+
+    system: System
+    interfaces: Mapping[str, UnitInterface]
+    layout: Layout
+    network: Network
+    every: Mapping[str, int]
+    ideal: bool
+    databases: dict[str, Database] = dataclasses.field(default_factory=dict)
+    senders: dict[tuple[str, str], dict[str, str]] = dataclasses.field(default_factory=dict)
+    signal_routes: dict[tuple[str, str], list[SignalRoute]] = dataclasses.field(default_factory=dict)
+
+
+def connect(
+    system: System,
+    interfaces: Mapping[str, UnitInterface],
+    layout: Layout,
+    every: Mapping[str, int],
+    experiment: Experiment,
+    algorithm: Algorithm,
+    ideal: bool,
+) -> Network:
+    """Resolve the connections between the participating units; `every` is each unit's period in steps.
+
+    A connection of a unit that was left out is dropped; with `ideal` a bus signal becomes a direct
+    connection. Raises ConfigError naming the system file, the connection, the rule and the values.
+    """
+    work = _Connector(system, interfaces, layout, Network({unit: [] for unit in interfaces}), every, ideal)
+    for name, entry in system.file.buses.items():
+        work.databases[name] = load_dbc(data_file(entry.dbc, system.path))
+    for connection in system.file.connect:
+        _check_names(connection, system)
+        _connect(work, connection)
+    order = list(interfaces)
+    for (bus, message), routes in work.signal_routes.items():
+        work.network.messages.append(_message(work, bus, message, routes, experiment, algorithm, order))
+    return work.network
+
+
+def _check_names(connection: Connection, system: System) -> None:
+    for name in (connection.source, *connection.to):
+        unit = name.partition(".")[0]
+        if unit not in system.file.units:
+            raise ConfigError(
+                f"{_place(system, connection)}: there is no unit '{unit}'{nearest(unit, system.file.units)}"
+            )
+
+
+def _place(system: System, connection: Connection) -> str:
+    return f"{system.path}: connect {connection.source} -> {', '.join(connection.to) or connection.via}"
+
+
+def _connect(work: _Connector, connection: Connection) -> None:
+    place = _place(work.system, connection)
+    if connection.source.partition(".")[0] not in work.interfaces:
+        return  # the sender was left out: its receivers are free inputs
+    source = _split(connection.source, ("output", "local"), work.interfaces, place)
+    sinks = [
+        _split(name, ("input",), work.interfaces, place)
+        for name in connection.to
+        if name.partition(".")[0] in work.interfaces
+    ]
+    if connection.via is None and not connection.to:
+        raise ConfigError(f"{place}: a connection needs a receiver in 'to' or a signal in 'via'")
+    # the signal is looked up with `ideal` too, so that a system file is right or wrong in both
+    message, signal = _find_signal(work, connection.via, place) if connection.via else (None, None)
+    if message is None or signal is None or work.ideal:
+        for sink in sinks:
+            _direct(work, source, sink, place)
+        return
+    _over_bus(work, connection, source, sinks, message, signal, place)
+
+
+def _direct(work: _Connector, source: tuple[str, str], sink: tuple[str, str], place: str) -> None:
+    sender, receiver = _variable(work, source), _variable(work, sink)
+    _check_types(source, sender, sink, receiver, place)
+    map_ = _unit_map(
+        work, (".".join(source), sender.unit, _defined_by(work, source)),
+        (".".join(sink), receiver.unit, _defined_by(work, sink)), place,
+    )  # fmt: skip # two triples side by side
+    slot = work.layout.valid[sink]
+    work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
+    work.network.routes[sink[0]].append(Route(work.layout.source(*source, work.every[source[0]]), slot, map_))
+    work.network.links.append(Link(source, sink, map_))
+
+
+def _over_bus(
+    work: _Connector,
+    connection: Connection,
+    source: tuple[str, str],
+    sinks: Sequence[tuple[str, str]],
+    message: Message,
+    signal: Signal,
+    place: str,
+) -> None:
+    bus = str(connection.via).split(".")[0]
+    key = (bus, message.name)
+    senders = work.senders.setdefault(key, {})
+    if signal.name in senders:
+        raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
+    senders[signal.name] = connection.source
+    wire: _End = (connection.via or "", signal.unit, {})
+    sender = _variable(work, source)
+    to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), wire, place)
+    signal = _coarser(work, bus, message, signal, [source, *sinks], place)
+    ends = []
+    for sink in sinks:
+        receiver = _variable(work, sink)
+        to_receiver = _unit_map(work, wire, (".".join(sink), receiver.unit, _defined_by(work, sink)), place)
+        if receiver.type != "Real" and not (
+            float(signal.scale).is_integer() and float(signal.offset).is_integer()
+        ):
+            raise ConfigError(
+                f"{place}: {'.'.join(sink)} is an {receiver.type}, the signal has scale {signal.scale} "
+                f"and offset {signal.offset}"
+            )
+        name = ".".join(sink)
+        work.network.drive(name, InputPlan(work.layout.valid[sink], None, ""), place)
+        mailbox = work.network.add_mailbox(*sink, work.layout, f"{connection.source} via {connection.via}")
+        if connection.initial is not None:
+            work.network.initial[name] = connection.initial
+        ends.append((mailbox, to_receiver))
+    route = SignalRoute(signal=signal, source=work.layout.valid[source], to_bus=to_bus, sinks=tuple(ends))
+    work.signal_routes.setdefault(key, []).append(route)
+
+
+def _coarser(
+    work: _Connector,
+    bus: str,
+    message: Message,
+    signal: Signal,
+    ends: Sequence[tuple[str, str]],
+    place: str,
+) -> Signal:
+    """The signal in the resolution that the bus asks for. A state or a count, which stands behind a variable
+    that is not Real, has no resolution."""
+    resolution = work.system.file.buses[bus].resolution
+    if resolution == 1.0 or any(_variable(work, end).type != "Real" for end in ends):
+        return signal
+    changed = with_resolution(signal, resolution)
+    check_signal(message, changed, f"{place}: with resolution = {resolution!r}")
+    return changed
+
+
+def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signal]:
+    bus, message_name, signal_name = via.split(".")
+    if bus not in work.databases:
+        raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
+    message = work.databases[bus].require(message_name, place)
+    return message, message.require(signal_name, place)
+
+
+def _message(
+    work: _Connector,
+    bus: str,
+    name: str,
+    routes: list[SignalRoute],
+    experiment: Experiment,
+    algorithm: Algorithm,
+    order: list[str],
+) -> MessagePlan:
+    message = work.databases[bus].require(name)
+    entry, step_size = work.system.file.buses[bus], experiment.step_size
+    every, first = schedule(message, step_size, str(work.system.path))
+    delay = steps_in(entry.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
+    arrivals: list[tuple[int, int]] = []
+    if delay:
+        routes = [_staged(work.layout, route, arrivals) for route in routes]
+    senders = work.senders[bus, name]
+    after = None
+    if algorithm == "gauss_seidel":
+        sampled = [
+            order.index(unit)
+            for unit, variable in (sender.split(".", 1) for sender in senders.values())
+            if work.interfaces[unit].variables[variable].variability != "continuous"
+        ]
+        after = max(sampled, default=None)
+    return MessagePlan(
+        bus=bus,
+        message=dataclasses.replace(
+            message, signals=message.signals | {route.signal.name: route.signal for route in routes}
+        ),
+        settings=entry.settings,
+        routes=tuple(routes),
+        senders=dict(senders),
+        every=every * entry.cycle,
+        first=first,
+        after=after,
+        delay=delay,
+        arrivals=tuple(arrivals),
+    )
+
+
+def _staged(layout: Layout, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
+    """The route into slots of its own instead of mailboxes; `arrivals` gets the pairs (slot, mailbox)."""
+    sinks = [(layout.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
+    arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
+    return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))
+
+
+def _variable(work: _Connector, name: tuple[str, str]) -> VariableInfo:
+    return work.interfaces[name[0]].variables[name[1]]
+
+
+def _defined_by(work: _Connector, name: tuple[str, str]) -> dict[str, UnitOfMeasure]:
+    return work.interfaces[name[0]].units_of_measure
+
+
+_End = tuple[str, str, Mapping[str, UnitOfMeasure]]
+"""Of one end of a connection: its name, its unit of measure and the definitions of its own FMU."""
+
+
+def _unit_map(work: _Connector, source: _End, target: _End, place: str) -> Affine:
+    """The map from the unit of `source` to that of `target`.
+
+    Each FMU's own definition comes first, then those of the others (a DBC defines none), then pint's.
+    """
+    (source_name, source_unit, source_defs), (target_name, target_unit, target_defs) = source, target
+    if source_unit == target_unit and not (source_defs and target_defs):
+        return Affine()
+    others = [interface.units_of_measure for interface in work.interfaces.values()]
+    if not source_unit or not target_unit:
+        _note_missing_unit(work, source_name, source_unit, target_name, target_unit)
+        return Affine()
+    try:
+        return conversion(
+            defined(source_unit, source_defs, *others), defined(target_unit, target_defs, *others)
+        )
+    except ConfigError as error:
+        raise ConfigError(
+            f"{place}: {source_name} [{source_unit}] cannot feed {target_name} [{target_unit}]: {error}"
+        ) from error
+
+
+def _note_missing_unit(
+    work: _Connector, source_name: str, source_unit: str, target_name: str, target_unit: str
+) -> None:
+    if {source_unit, target_unit} <= {"", "1"}:
+        return
+    bare, other = (source_name, target_unit) if not source_unit else (target_name, source_unit)
+    work.network.warnings.append(f"{bare} declares no unit of measure; it is taken as [{other}]")
+
+
+def _check_types(
+    source: tuple[str, str], sender: VariableInfo, sink: tuple[str, str], receiver: VariableInfo, place: str
+) -> None:
+    whole = ("Integer", "Enumeration")
+    fits = (
+        sender.type == receiver.type
+        or (receiver.type == "Real" and sender.type != "String")
+        or (receiver.type in whole and sender.type in (*whole, "Boolean"))
+    )
+    if not fits:
+        raise ConfigError(
+            f"{place}: {'.'.join(source)} is of type {sender.type}, {'.'.join(sink)} of type {receiver.type}"
+        )

@@ -1,0 +1,107 @@
+"""What a run does, resolved to slots of one array: the schedule that every engine runs.
+
+All values of a run stand in one float64 array, `memory`. Each recorded input and output has a slot;
+Integer, Boolean and Enumeration values are stored as floats. A continuous output has two slots: `valid`
+holds its value at the current communication point t_k, `latest` the one after the unit's last step
+(t_{k+1} once it has stepped). An input over a bus, or one that nothing drives, has a mailbox beside its
+slot: the value last received, or set by the user. An input slot is written from its route each step,
+so an override or a bias acts on what the unit receives and never on what was sent.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+
+from ..can.channel import SignalRoute
+from ..can.dbc import Message
+from ..can.quantization import BusSettings
+from ..results.results import ResultVariable
+from ..system.scenario import EventEntry
+from ..system.stimuli import Signal
+from ..system.system import Algorithm, Experiment
+from ..units import Affine
+from .unit_plan import Block, BlockKind, Route, UnitPlan
+
+__all__ = ["Block", "BlockKind", "Drive", "InputPlan", "Link", "MessagePlan", "Plan", "Route", "UnitPlan"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Link:
+    """A direct connection, by variable name, for initialization. `map` converts into the receiver's unit."""
+
+    source: tuple[str, str]
+    sink: tuple[str, str]
+    map: Affine
+
+
+@dataclasses.dataclass(frozen=True)
+class Drive:
+    """A stimulus: `signal` over time in its own unit, mapped, drives the input slot `sink`."""
+
+    variable: str
+    sink: int
+    signal: Signal
+    map: Affine
+
+
+@dataclasses.dataclass(frozen=True)
+class MessagePlan:
+    """A message that is sent at the steps k with k >= first and (k - first) % every == 0.
+
+    It is sampled at the start of the step (`after` is None), or right after the turn of the unit with
+    index `after`, where signals of variability discrete come from that unit's step. `senders` are the
+    variables behind the signals, for messages to the user.
+
+    With a `delay` of d > 0 steps the routes end in slots of their own, and what a transmission writes there
+    reaches the mailboxes d steps later, at the same place in the step: `arrivals` are the pairs (slot,
+    mailbox).
+    """
+
+    bus: str
+    message: Message
+    settings: BusSettings
+    routes: tuple[SignalRoute, ...]
+    senders: dict[str, str]
+    every: int
+    first: int
+    after: int | None
+    delay: int = 0
+    arrivals: tuple[tuple[int, int], ...] = ()
+
+
+@dataclasses.dataclass(frozen=True)
+class Plan:
+    """A system with a scenario, ready to run. Times in s; `steps` communication steps to the stop time."""
+
+    system: str
+    scenario: str
+    experiment: Experiment
+    algorithm: Algorithm
+    steps: int
+    ideal: bool
+    units: tuple[UnitPlan, ...]
+    links: tuple[Link, ...]
+    messages: tuple[MessagePlan, ...]
+    drives: tuple[Drive, ...]
+    events: tuple[tuple[int, EventEntry], ...]
+    inputs: dict[str, InputPlan]
+    columns: tuple[ResultVariable, ...]
+    column_slots: tuple[int, ...]
+    initial: dict[int, float]
+    memory_size: int
+    warnings: tuple[str, ...]
+
+    @functools.cached_property
+    def slots(self) -> dict[str, int]:
+        """The slots that show the recorded variables at the current communication point, by name."""
+        return {c.name: slot for c, slot in zip(self.columns, self.column_slots, strict=True)}
+
+
+@dataclasses.dataclass(frozen=True)
+class InputPlan:
+    """An input: its slot, its mailbox (None: it has none), and what drives it ("": nothing)."""
+
+    slot: int
+    mailbox: int | None
+    driver: str

@@ -1,0 +1,325 @@
+"""From a system, a scenario and the units' interfaces to the plan of a run; every error is found here."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..errors import ConfigError, nearest
+from ..interface import UnitInterface, Value, VariableInfo
+from ..results.results import ResultVariable
+from ..system.scenario import EventEntry, Scenario
+from ..system.stimuli import stimulus
+from ..system.system import Algorithm, Experiment, System, UnitEntry
+from ..units import Affine, conversion, defined
+from .connections import Network, connect
+from .plan import Drive, InputPlan, Plan
+from .slots import Layout, lay_out
+from .steps import steps_in
+from .unit_plan import UnitPlan
+
+_MOST_VALUES = 2**31
+"""What a run records stays in memory: 16 GiB."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """What the user asks for beside the files: overrides of parameters ("unit.parameter"), and how to run."""
+
+    parameters: Mapping[str, Value] = dataclasses.field(default_factory=dict)
+    algorithm: Algorithm | None = None
+    stop_time: float | None = None
+    ideal: bool = False
+
+
+def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
+    """The units that take part, in the order in which they step."""
+    units = dict(system.file.units)
+    for name in scenario.file.leave_out:
+        if name not in units:
+            raise ConfigError(
+                f"{scenario.path}: leave_out: no unit '{name}' in {system.path}{nearest(name, units)}"
+            )
+        del units[name]
+    if not units:
+        raise ConfigError(f"{scenario.path}: leave_out leaves no unit")
+    return units
+
+
+def resolve(
+    system: System, scenario: Scenario, interfaces: Mapping[str, UnitInterface], options: Options
+) -> Plan:
+    """The plan of a run. `interfaces` are those of the participating units, in their order.
+
+    Raises ConfigError naming place, rule and values, before any unit is instantiated.
+    """
+    experiment, algorithm = _experiment(system, scenario, options)
+    entries = participating(system, scenario)
+    place = str(system.path)
+    record = scenario.file.record if scenario.file.record is not None else system.file.record
+    connected = {c.source for c in system.file.connect}
+    layout, columns = lay_out(interfaces, record, connected, place)
+    every = {
+        name: _every(entry.period, experiment.step_size, f"{place}: units.{name}.period")
+        for name, entry in entries.items()
+    }
+    network = connect(system, interfaces, layout, every, experiment, algorithm, options.ideal)
+    drives = _drives(scenario, interfaces, network, layout)
+    _mailboxes_of_the_rest(interfaces, network, layout)
+    parameters = _parameters(system, scenario, entries, interfaces, options)
+    starts = {u: _starts(system, scenario, u, entries[u], interfaces[u]) for u in entries}
+    return Plan(
+        system=system.file.name,
+        scenario=scenario.name,
+        experiment=experiment,
+        algorithm=algorithm,
+        steps=_steps(experiment, len(columns), place),
+        ideal=options.ideal,
+        units=tuple(
+            UnitPlan(
+                name=name,
+                fmu=entry.fmu,
+                interface=interfaces[name],
+                parameters=parameters[name],
+                start=starts[name],
+                every=every[name],
+                substeps=entry.substeps,
+                blocks=tuple(layout.blocks[name]),
+                routes=tuple(network.routes[name]),
+            )
+            for name, entry in entries.items()
+        ),
+        links=tuple(network.links),
+        messages=tuple(network.messages),
+        drives=drives,
+        events=_events(scenario, interfaces, network.inputs, experiment),
+        inputs=network.inputs,
+        columns=tuple(result_variable(unit, v) for unit, v in columns),
+        column_slots=tuple(layout.valid[unit, v.name] for unit, v in columns),
+        initial=_initial(interfaces, starts, network),
+        memory_size=layout.size,
+        warnings=tuple(network.warnings),
+    )
+
+
+def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
+    """How the results describe a variable of a unit."""
+    return ResultVariable(
+        name=f"{unit}.{v.name}",
+        unit=v.unit,
+        type=v.type,
+        causality=v.causality,
+        variability=v.variability,
+        description=v.description,
+        items=v.items,
+    )
+
+
+def _experiment(system: System, scenario: Scenario, options: Options) -> tuple[Experiment, Algorithm]:
+    changes = scenario.file.experiment.model_dump(exclude_none=True)
+    if options.stop_time is not None:
+        changes["stop_time"] = options.stop_time
+    experiment = system.file.experiment.model_copy(update=changes)
+    algorithm = options.algorithm or experiment.algorithm
+    if algorithm not in ("gauss_seidel", "jacobi"):
+        raise ConfigError(f"algorithm is gauss_seidel or jacobi, not {algorithm!r}")
+    return experiment, algorithm
+
+
+def _steps(experiment: Experiment, columns: int, place: str) -> int:
+    """How many steps the run has, each recorded in so many columns."""
+    duration = experiment.stop_time - experiment.start_time
+    if not (math.isfinite(duration) and duration > 0.0):
+        raise ConfigError(
+            f"{place}: stop_time {experiment.stop_time} s is not after start_time {experiment.start_time} s"
+        )
+    steps = _multiple(duration, experiment.step_size, f"{place}: stop_time - start_time")
+    if steps * (columns + 1) > _MOST_VALUES:
+        raise ConfigError(
+            f"{place}: {steps:.3g} steps of {experiment.step_size:g} s with {columns} recorded variables are "
+            f"more than the {_MOST_VALUES:.3g} values that a run keeps; stop earlier, take longer steps or "
+            "`record` less"
+        )
+    return steps
+
+
+def _every(period: float | None, step_size: float, place: str) -> int:
+    return 1 if period is None else _multiple(period, step_size, place)
+
+
+def _multiple(time: float, step_size: float, place: str) -> int:
+    """How many steps `time` is, at least one."""
+    if (count := steps_in(time, step_size, place)) < 1:
+        raise ConfigError(f"{place} = {time} s is not a multiple of the communication step {step_size} s")
+    return count
+
+
+def _parameters(
+    system: System,
+    scenario: Scenario,
+    entries: Mapping[str, UnitEntry],
+    interfaces: Mapping[str, UnitInterface],
+    options: Options,
+) -> dict[str, dict[str, Value]]:
+    """Every unit's parameters: the system's, then the scenario's, then the user's."""
+    given: list[tuple[str, str, str, Value]] = []
+    for unit, entry in entries.items():
+        given += [
+            (unit, k, f"{system.path}: units.{unit}.parameters.{k}", x) for k, x in entry.parameters.items()
+        ]
+    for unit, values in scenario.file.parameters.items():
+        given += [(unit, k, f"{scenario.path}: parameters.{unit}.{k}", x) for k, x in values.items()]
+    for name, value in options.parameters.items():
+        unit, _, parameter = name.partition(".")
+        given.append((unit, parameter, f"parameter {name}", value))
+    result: dict[str, dict[str, Value]] = {unit: {} for unit in entries}
+    for unit, name, place, value in given:
+        if unit not in interfaces:
+            raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
+        variable = interfaces[unit].require(unit, name, ("parameter",), place)
+        result[unit][name] = checked(value, variable, place)
+    return result
+
+
+def _starts(
+    system: System, scenario: Scenario, unit: str, entry: UnitEntry, interface: UnitInterface
+) -> dict[str, Value]:
+    starts = {}
+    given = {
+        name: (f"{system.path}: units.{unit}.start.{name}", value) for name, value in entry.start.items()
+    }
+    for name, value in scenario.file.start.get(unit, {}).items():
+        given[name] = (f"{scenario.path}: start.{unit}.{name}", value)
+    for name, (place, value) in given.items():
+        variable = interface.require(unit, name, ("input",), place)
+        starts[name] = checked(value, variable, place)
+    return starts
+
+
+def checked(value: Any, variable: VariableInfo, place: str) -> Value:
+    """The value in the variable's type. Raises ConfigError when it has another type or is out of range."""
+    unit = f" {variable.unit}" if variable.unit else ""
+    if variable.type == "String":
+        if not isinstance(value, str):
+            raise ConfigError(f"{place}: {variable.name} is a String, not {value!r}")
+        return value
+    if variable.type == "Enumeration" and isinstance(value, str):
+        return _item(value, variable, place)
+    if variable.type == "Boolean":
+        if value not in (True, False):
+            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {value!r}")
+        return bool(value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {value!r}")
+    if variable.type != "Real" and value != int(value):
+        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {value!r}")
+    if variable.min is not None and value < variable.min:
+        raise ConfigError(
+            f"{place}: {value}{unit} is below the minimum {variable.min}{unit} of {variable.name}"
+        )
+    if variable.max is not None and value > variable.max:
+        raise ConfigError(
+            f"{place}: {value}{unit} is above the maximum {variable.max}{unit} of {variable.name}"
+        )
+    return float(value) if variable.type == "Real" else int(value)
+
+
+def _item(name: str, variable: VariableInfo, place: str) -> int:
+    values = {text: number for number, text in variable.items}
+    if name not in values:
+        raise ConfigError(
+            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {list(values)}"
+        )
+    return values[name]
+
+
+def _drives(
+    scenario: Scenario, interfaces: Mapping[str, UnitInterface], network: Network, layout: Layout
+) -> tuple[Drive, ...]:
+    drives = []
+    for number, entry in enumerate(scenario.file.stimuli):
+        place = f"{scenario.path}: stimulus {number + 1} ({entry.to})"
+        unit, name = network.input_of(entry.to, interfaces, place)
+        variable, interface = interfaces[unit].variables[name], interfaces[unit]
+        map_ = Affine()
+        if entry.unit is not None:
+            known = interface.units_of_measure
+            try:
+                map_ = conversion(defined(entry.unit, known), defined(variable.unit, known))
+            except ConfigError as error:
+                raise ConfigError(f"{place}: {error}") from error
+        slot = layout.valid[unit, name]
+        network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), place)
+        drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path), map_))
+    return tuple(drives)
+
+
+def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, layout: Layout) -> None:
+    for unit, interface in interfaces.items():
+        for v in interface.of_causality("input"):
+            if v.type != "String" and f"{unit}.{v.name}" not in network.inputs:
+                network.add_mailbox(unit, v.name, layout, "")
+
+
+def _events(
+    scenario: Scenario,
+    interfaces: Mapping[str, UnitInterface],
+    inputs: Mapping[str, InputPlan],
+    experiment: Experiment,
+) -> tuple[tuple[int, EventEntry], ...]:
+    events = []
+    for number, entry in enumerate(scenario.file.events, 1):
+        place = f"{scenario.path}: event {number}"
+        check_effect(entry.variable, entry.action, entry.value, interfaces, inputs, place)
+        step = math.ceil((entry.time - experiment.start_time) / experiment.step_size - 1e-6)
+        events.append((max(step, 0), entry))
+    return tuple(sorted(events, key=lambda event: event[0]))  # stable: events of one time stay in order
+
+
+def check_effect(
+    name: str,
+    action: str,
+    value: float | None,
+    interfaces: Mapping[str, UnitInterface],
+    inputs: Mapping[str, InputPlan],
+    place: str,
+) -> None:
+    """Raise ConfigError unless an override or bias by `value`, or a reset, can act on what `name` receives.
+
+    A value beyond the input's minimum or maximum is allowed: faults are what these are for.
+    """
+    if name not in inputs:
+        raise ConfigError(
+            f"{place}: there is no input '{name}'{nearest(name, inputs)}; "
+            f"{action} acts on what a unit receives"
+        )
+    unit, _, variable = name.partition(".")
+    kind = interfaces[unit].variables[variable].type
+    if value is None:
+        return
+    if not math.isfinite(value):
+        raise ConfigError(f"{place}: {action} of {name} needs a finite number, not {value}")
+    if kind == "Boolean" and (action == "bias" or value not in (0, 1)):
+        raise ConfigError(
+            f"{place}: {name} is a Boolean; it can be overridden by 0 or 1, not {action} {value}"
+        )
+    if kind != "Real" and value != int(value):
+        raise ConfigError(f"{place}: {name} is an {kind}; {action} needs a whole number, not {value}")
+
+
+def _initial(
+    interfaces: Mapping[str, UnitInterface], starts: Mapping[str, Mapping[str, Value]], network: Network
+) -> dict[int, float]:
+    """What stands in the inputs and mailboxes before anything was computed or received."""
+    values = {}
+    for name, plan in network.inputs.items():
+        unit, _, variable = name.partition(".")
+        start = starts[unit].get(variable, interfaces[unit].variables[variable].start)
+        value = network.initial.get(name, start)
+        number = float(value) if isinstance(value, int | float) else 0.0
+        values[plan.slot] = number
+        if plan.mailbox is not None:
+            values[plan.mailbox] = number
+    return values

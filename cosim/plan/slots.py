@@ -1,0 +1,134 @@
+"""Where each value of a run stands in memory."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from fnmatch import fnmatchcase
+
+from ..errors import ConfigError, nearest
+from ..interface import UnitInterface, VariableInfo
+from .unit_plan import Block
+
+_NUMERIC = ("Real", "Integer", "Enumeration", "Boolean")
+
+
+@dataclasses.dataclass
+class Layout:
+    """Slots given out so far. `valid` and `latest` map (unit, variable) to slots (see `plan`)."""
+
+    size: int = 0
+    valid: dict[tuple[str, str], int] = dataclasses.field(default_factory=dict)
+    latest: dict[tuple[str, str], int] = dataclasses.field(default_factory=dict)
+    blocks: dict[str, list[Block]] = dataclasses.field(default_factory=dict)
+
+    def take(self, count: int) -> int:
+        """The first of `count` new slots."""
+        first = self.size
+        self.size += count
+        return first
+
+    def source(self, unit: str, name: str, every: int) -> int:
+        """The slot that a receiver reads: within the same step what is latest, but a unit that steps only
+        every `every` > 1 steps has looked ahead, so what it shows is what is valid."""
+        return self.latest.get((unit, name), self.valid[unit, name]) if every == 1 else self.valid[unit, name]
+
+
+def lay_out(
+    interfaces: Mapping[str, UnitInterface], record: Iterable[str], needed: set[str], place: str
+) -> tuple[Layout, list[tuple[str, VariableInfo]]]:
+    """Give every input, and every recorded or `needed` (connected) output, its slots.
+
+    Returns the layout and the recorded variables in the units' order. Raises ConfigError when a pattern
+    of `record` fits no variable.
+    """
+    recorded = _recorded(interfaces, tuple(record), place)
+    layout = Layout()
+    variables = {unit: _slotted(unit, interface, recorded | needed) for unit, interface in interfaces.items()}
+    for unit, (inputs, outputs) in variables.items():
+        driven = {v.name for v in inputs}
+        groups = [("input", inputs, 0), *_output_groups(outputs, driven)]
+        layout.blocks[unit] = [
+            block
+            for kind, group, feedthrough in groups
+            for block in _blocks(layout, unit, kind, group, feedthrough)
+        ]
+    for unit, blocks in layout.blocks.items():  # behind all recorded slots, so that a row is one piece
+        layout.blocks[unit] = [_with_latest(layout, unit, block) for block in blocks]
+    columns = [
+        (unit, v)
+        for unit, (inputs, outputs) in variables.items()
+        for v in (*inputs, *outputs)
+        if f"{unit}.{v.name}" in recorded
+    ]
+    return layout, columns
+
+
+def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...], place: str) -> set[str]:
+    shown = {
+        f"{unit}.{v.name}": v.causality
+        for unit, interface in interfaces.items()
+        for v in interface.variables.values()
+        if v.type in _NUMERIC and v.causality in ("input", "output", "local")
+    }
+    recorded = set()
+    for pattern in patterns:
+        # a pattern means inputs and outputs; a local variable is recorded where it is named in full
+        fits = {n for n, c in shown.items() if n == pattern or (c != "local" and fnmatchcase(n, pattern))}
+        if not fits and pattern != "*":
+            why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
+            raise ConfigError(f"{place}: record: '{pattern}' {why}")
+        recorded |= fits
+    return recorded
+
+
+def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
+    """Why a variable that there is cannot be recorded ("": there is none of this name)."""
+    unit, _, variable = name.partition(".")
+    if unit not in interfaces:
+        return ""
+    found = interfaces[unit].variables.get(variable)
+    if found is None:
+        return interfaces[unit].unusable.get(variable, "")
+    if found.type not in _NUMERIC:
+        return f"is of type {found.type}, and numbers are recorded"
+    return f"is of causality {found.causality}, not input, output or local"
+
+
+def _slotted(
+    unit: str, interface: UnitInterface, wanted: set[str]
+) -> tuple[list[VariableInfo], list[VariableInfo]]:
+    numeric = [v for v in interface.variables.values() if v.type in _NUMERIC]
+    inputs = [v for v in numeric if v.causality == "input"]
+    outputs = [v for v in numeric if v.causality in ("output", "local") and f"{unit}.{v.name}" in wanted]
+    return inputs, outputs
+
+
+def _output_groups(
+    outputs: list[VariableInfo], inputs: set[str]
+) -> list[tuple[str, list[VariableInfo], int]]:
+    discrete = [v for v in outputs if v.variability != "continuous"]
+    continuous = [v for v in outputs if v.variability == "continuous"]
+    through = [v for v in continuous if v.depends and not inputs.isdisjoint(v.depends)]
+    rest = [v for v in continuous if v not in through]
+    return [("discrete", discrete, 0), ("continuous", [*through, *rest], len(through))]
+
+
+def _blocks(layout: Layout, unit: str, kind: str, group: list[VariableInfo], feedthrough: int) -> list[Block]:
+    made = []
+    for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",)):
+        members = tuple(v for v in group if v.type in types)
+        if not members:
+            continue
+        slot = layout.take(len(members))
+        layout.valid |= {(unit, v.name): slot + i for i, v in enumerate(members)}
+        made.append(Block(kind, types[0], members, slot, feedthrough=feedthrough))  # type: ignore[arg-type] # a literal
+    return made
+
+
+def _with_latest(layout: Layout, unit: str, block: Block) -> Block:
+    if block.kind != "continuous":
+        return block
+    latest = layout.take(len(block.variables))
+    layout.latest |= {(unit, v.name): latest + i for i, v in enumerate(block.variables)}
+    return dataclasses.replace(block, latest=latest)

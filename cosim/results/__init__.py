@@ -1,0 +1,1 @@
+"""What a run recorded, its metrics, and the comparison of two."""

@@ -1,0 +1,232 @@
+"""Comparing two runs: how far apart is each variable, and when.
+
+Two values are equal when
+
+    |b - a| <= tolerance + relative * (max a - min a)
+
+`tolerance` is absolute, in the variable's unit in `a`; `relative` is a share of the range that the variable
+goes through in `a`, so that it means the same for a power in W and a state of charge, and no value near
+zero is judged more strictly than its neighbors. Both are 0 unless given: equal then means equal bits but
+for the sign of zero. A NaN, on either side or on both, is a difference.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from .. import units
+from ..errors import ConfigError
+from .results import Array, Results, ResultVariable
+
+_SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    """How far a variable of `b` is from that of `a`, in `unit` (that of `a`).
+
+    `difference` is the largest, at `time` [s]; `rms` over all compared points; `range` max - min in `a`.
+    Infinite where one side is not a number; NaN where nothing could be compared, which `remark` explains.
+    """
+
+    name: str
+    unit: str
+    difference: float
+    time: float
+    rms: float
+    range: float
+    equal: bool
+    remark: str = ""
+
+    @property
+    def relative(self) -> float:
+        """The largest difference as a share of the range; infinite for one from a constant."""
+        if math.isnan(self.difference):
+            return math.inf
+        if self.difference == 0.0:
+            return 0.0
+        return self.difference / self.range if 0.0 < self.range < math.inf else math.inf
+
+
+@dataclasses.dataclass(frozen=True)
+class Comparison:
+    """The outcome: a row for each common variable, what is on one side alone, and what else to know.
+
+    `points` is the number of compared times; `same_span` says whether both runs begin and end together.
+    """
+
+    rows: tuple[Row, ...]
+    only_a: tuple[str, ...]
+    only_b: tuple[str, ...]
+    points: int
+    same_span: bool
+    tolerance: float
+    relative: float
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def equal(self) -> bool:
+        """Whether every common variable is equal at every time of both runs.
+
+        Variables on one side alone do not count: they are listed. Runs with nothing in common, or of
+        which one goes on longer, are not equal.
+        """
+        return bool(self.rows) and self.points > 0 and self.same_span and all(row.equal for row in self.rows)
+
+    def table(self, all_rows: bool = True) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """The header and the rows as text; without `all_rows`, of the variables that differ."""
+        header = ("variable", "unit", "largest difference", "at t [s]", "rms", "of the range", "")
+        return header, [_cells(row) for row in self.rows if all_rows or not row.equal]
+
+    def summary(self) -> str:
+        """The outcome in a few lines."""
+        different = [row for row in self.rows if not row.equal]
+        rule = f"tolerance {self.tolerance:g}" + (
+            f" + {100 * self.relative:g} % of the range" if self.relative else ""
+        )
+        what = f"{len(self.rows)} common variables at {self.points} times, {rule}"
+        lines = [f"equal: {what}" if self.equal else f"different: {len(different)} of {what}"]
+        for names, side in ((self.only_a, "first"), (self.only_b, "second")):
+            if names:
+                lines.append(f"only in the {side}: {', '.join(names)}")
+        return "\n".join([*lines, *self.remarks])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    share = f"{100 * row.relative:.3g} %" if math.isfinite(row.relative) else "-"
+    verdict = row.remark or ("" if row.equal else "differs")
+    numbers = (f"{row.difference:.4g}", f"{row.time:.10g}", f"{row.rms:.4g}")
+    return (row.name, row.unit, *("-" if n == "nan" else n for n in numbers), share, verdict)
+
+
+def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.0) -> Comparison:
+    """Compare two results at the times of `a` that `b` covers too.
+
+    On a grid of its own, `b` is interpolated: linearly between continuous values, the previous value for
+    what is held. Units of measure are converted. Raises ConfigError for a negative or NaN tolerance.
+    """
+    if not (tolerance >= 0.0 and relative >= 0.0):
+        raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
+    grid = _Grid.of(a, b)
+    rows = [_row(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b]
+    return Comparison(
+        rows=tuple(rows),
+        only_a=tuple(name for name in a.names if name not in b),
+        only_b=tuple(name for name in b.names if name not in a),
+        points=len(grid.time),
+        same_span=grid.same_span,
+        tolerance=tolerance,
+        relative=relative,
+        remarks=grid.remarks,
+    )
+
+
+def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
+    """Time [s] and b - a of a common variable, in its unit in `a`, at the times at which they are compared.
+
+    Raises ConfigError where the two measure different quantities.
+    """
+    grid = _Grid.of(a, b)
+    variable, other = a.variable(name), b.variable(name)
+    convert, _ = _conversion(other.unit, variable.unit)
+    values = grid.values_of(b, variable if variable.held else other)
+    return grid.time, convert.scale * values + convert.offset - a.column(name)[grid.rows]
+
+
+@dataclasses.dataclass(frozen=True)
+class _Grid:
+    """The times at which two runs are compared: rows `first` to `last` of `a`."""
+
+    time: Array
+    rows: slice
+    exact: bool
+    same_span: bool
+    remarks: tuple[str, ...]
+
+    @classmethod
+    def of(cls, a: Results, b: Results) -> _Grid:
+        ta, tb = a.time, b.time
+        if not len(ta) or not len(tb):
+            both = not len(ta) and not len(tb)
+            return cls(ta[:0], slice(0, 0), True, both, ("there is nothing to compare: a run has no points",))
+        if len(ta) == len(tb) and float(np.max(np.abs(ta - tb))) <= _SAME_TIME:
+            return cls(ta, slice(None), True, True, ())
+        begin, end = max(ta[0], tb[0]) - _SAME_TIME, min(ta[-1], tb[-1]) + _SAME_TIME
+        rows = slice(int(np.searchsorted(ta, begin)), int(np.searchsorted(ta, end, side="right")))
+        apart = abs(ta[0] - tb[0]) > _SAME_TIME or abs(ta[-1] - tb[-1]) > _SAME_TIME
+        remarks = ["the times differ: the second was interpolated (linear; held values: the previous one)"]
+        if apart:
+            spans = [f"{t[0]:g} to {t[-1]:g} s" for t in (ta, tb)]
+            remarks.append(f"the first goes from {spans[0]}, the second from {spans[1]}")
+        return cls(ta[rows], rows, False, not apart, tuple(remarks))
+
+    def values_of(self, b: Results, variable: ResultVariable) -> Array:
+        """The values of a variable of `b` at the times of the grid."""
+        values = b.column(variable.name)
+        if self.exact:
+            return values[: len(self.time)]
+        if not variable.held:
+            return np.interp(self.time, b.time, values)
+        previous = np.searchsorted(b.time, self.time + _SAME_TIME, side="right") - 1
+        return values[np.clip(previous, 0, len(values) - 1)]
+
+
+def _row(
+    a: Results, b: Results, variable: ResultVariable, grid: _Grid, tolerance: float, relative: float
+) -> Row:
+    other = b.variable(variable.name)
+    unit = variable.unit or other.unit
+    try:
+        convert, remark = _conversion(other.unit, variable.unit)
+    except ConfigError as error:
+        return _without_values(variable.name, unit, str(error))
+    x = a.column(variable.name)[grid.rows]
+    y = grid.values_of(b, variable if variable.held else other)
+    if not convert.identity:
+        y = convert.scale * y + convert.offset
+    if not len(x):
+        return _without_values(variable.name, unit, "no common time")
+    apart = _differences(x, y)
+    worst = int(np.argmax(apart))
+    largest, span = float(apart[worst]), _range(x)
+    equal = math.isfinite(largest) and largest <= tolerance + relative * span
+    rms = float(np.sqrt(np.mean(apart**2))) if math.isfinite(largest) else math.inf
+    return Row(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
+
+
+def _without_values(name: str, unit: str, remark: str) -> Row:
+    return Row(name, unit, math.nan, math.nan, math.nan, math.nan, equal=False, remark=remark)
+
+
+def _conversion(source: str, target: str) -> tuple[units.Affine, str]:
+    if source == target:
+        return units.Affine(), ""
+    if not source or not target:
+        return units.Affine(), f"[{source or target}] on one side only: compared as numbers"
+    return units.conversion(units.defined(source), units.defined(target)), ""
+
+
+def _differences(x: Array, y: Array) -> Array:
+    """|y - x|, infinite where either is NaN."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.where(x == y, 0.0, np.abs(y - x))  # equal infinities differ by nothing
+    return np.where(np.isnan(apart), np.inf, apart)
+
+
+def _range(values: Array) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.max() - finite.min()) if len(finite) else 0.0
+
+
+def worst(rows: Sequence[Row], count: int) -> list[str]:
+    """The names of the variables that differ most, by their share of the range; of all if none does.
+
+    Those that could not be compared, as a speed with a force, are left out.
+    """
+    compared = [row for row in rows if not math.isnan(row.difference)]
+    different = [row for row in compared if row.relative > 0.0] or compared
+    return [row.name for row in sorted(different, key=lambda row: -row.relative)[:count]]

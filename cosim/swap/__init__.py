@@ -1,0 +1,1 @@
+"""Another FMU in the place of a unit."""

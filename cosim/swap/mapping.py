@@ -1,0 +1,172 @@
+"""An FMU as the system sees it: other names, units of measure and signs, and what it does not have.
+
+`present` renames the variables of an interface as a unit's `map` says; connections, stimuli, figures and
+results then work with the names of the system, and convert units of measure as they always do.
+`without_absent` takes out of a system and its scenario what needs variables that a unit declares `absent`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+
+from ..errors import ConfigError, nearest
+from ..interface import UnitInterface, Value, VariableInfo
+from ..system.figure_spec import FigureSpec
+from ..system.metric_spec import MetricSpec
+from ..system.scenario import Scenario
+from ..system.system import Connection, MapEntry, System, UnitEntry
+from ..units import defined
+
+_FROM: dict[str, tuple[str, ...]] = {
+    "input": ("input",),
+    "output": ("output", "local", "parameter", "calculatedParameter", "independent"),
+    "parameter": ("parameter", "structuralParameter"),
+}
+
+
+def present(interface: UnitInterface, entry: UnitEntry, place: str) -> UnitInterface:
+    """The interface of a unit's FMU as the system sees it. With an empty map, the interface itself.
+
+    A variable that is mapped is known by the system's name alone. Raises ConfigError, which begins with
+    `place`, for names that the FMU has not, causalities that do not fit and unknown units of measure.
+    """
+    tables = entry.map.by_causality
+    if not any(tables.values()):
+        return interface
+    renamed: dict[str, VariableInfo] = {}
+    for causality, table in tables.items():
+        for name, mapped in table.items():
+            here = f"{place}.map.{causality}s.{name}"
+            if name in renamed:
+                raise ConfigError(f"{here}: '{name}' is mapped twice")
+            renamed[name] = _mapped(interface, name, mapped, causality, here)
+    taken = {v.declared_name for v in renamed.values()}
+    names = {v.declared_name: v.name for v in renamed.values()}
+    rest = {n: v for n, v in interface.variables.items() if n not in taken and n not in renamed}
+    variables = {n: _with_names(v, names) for n, v in {**renamed, **rest}.items()}
+    return dataclasses.replace(interface, variables=variables)
+
+
+def _mapped(
+    interface: UnitInterface, name: str, mapped: MapEntry, causality: str, place: str
+) -> VariableInfo:
+    if mapped.variable in interface.unusable:
+        raise ConfigError(f"{place}: {mapped.variable} {interface.unusable[mapped.variable]}")
+    variable = interface.variables.get(mapped.variable)
+    if variable is None:
+        raise ConfigError(
+            f"{place}: {interface.place} has no variable '{mapped.variable}'"
+            f"{nearest(mapped.variable, interface.variables)}"
+        )
+    if variable.causality not in _FROM[causality]:
+        allowed = " or ".join(_FROM[causality])
+        raise ConfigError(f"{place}: {mapped.variable} is of causality {variable.causality}, not {allowed}")
+    if mapped.unit is not None:
+        _check_unit(mapped.unit, interface, place)
+    if mapped.invert and variable.type not in ("Real", "Integer"):
+        raise ConfigError(f"{place}: {mapped.variable} is a {variable.type}: it has no sign to invert")
+    known = dataclasses.replace(
+        variable,
+        name=name,
+        declared=mapped.variable,
+        causality=causality,
+        unit=variable.unit if mapped.unit is None else mapped.unit,
+    )
+    return _inverted(known) if mapped.invert else known
+
+
+def _check_unit(unit: str, interface: UnitInterface, place: str) -> None:
+    try:
+        defined(unit, interface.units_of_measure)
+    except ConfigError as error:
+        raise ConfigError(f"{place}: {error}") from error
+
+
+def _inverted(v: VariableInfo) -> VariableInfo:
+    """The variable with the other sign, range and start with it."""
+    start = -v.start if isinstance(v.start, int | float) else v.start
+    low, high = (None if x is None else -x for x in (v.max, v.min))
+    return dataclasses.replace(v, start=start, min=low, max=high, inverted=not v.inverted)
+
+
+def _with_names(v: VariableInfo, names: Mapping[str, str]) -> VariableInfo:
+    """The variable with its dependencies under the names that the system uses."""
+
+    def known(depends: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        return None if depends is None else tuple(names.get(n, n) for n in depends)
+
+    return dataclasses.replace(v, depends=known(v.depends), depends_initially=known(v.depends_initially))
+
+
+def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario, tuple[str, ...]]:
+    """The system and the scenario without what needs absent variables; a sentence for each thing left out."""
+    absent = {f"{unit}.{name}" for unit, entry in system.file.units.items() for name in entry.absent}
+    if not absent:
+        return system, scenario, ()
+    left_out: list[str] = []
+    file, driven = system.file, scenario.file
+    connect = [c for c in (_connection(c, absent, left_out) for c in file.connect) if c is not None]
+    budget = file.budget
+    metrics = _metrics(file.metrics, absent, left_out)
+    if budget is not None and budget.metric not in {m.name for m in metrics}:
+        budget = None
+    changed = file.model_copy(
+        update={
+            "connect": connect,
+            "metrics": metrics,
+            "figure": _figure(file.figure, absent, left_out),
+            "budget": budget,
+        }
+    )
+    driven = driven.model_copy(
+        update={
+            "stimuli": [s for s in driven.stimuli if s.to not in absent],
+            "events": [e for e in driven.events if e.variable not in absent],
+            "parameters": _known(driven.parameters, absent, left_out),
+            "start": _known(driven.start, absent, left_out),
+            "metrics": _metrics(driven.metrics, absent, left_out),
+            "figure": _figure(driven.figure, absent, left_out),
+        }
+    )
+    told = tuple(f"left out, since it is absent: {text}" for text in dict.fromkeys(left_out))
+    return dataclasses.replace(system, file=changed), dataclasses.replace(scenario, file=driven), told
+
+
+def _connection(connection: Connection, absent: set[str], left_out: list[str]) -> Connection | None:
+    if connection.source in absent:
+        to = ", ".join(connection.to) or connection.via
+        left_out.append(f"{connection.source} -> {to}; a receiver keeps its start value")
+        return None
+    kept = [name for name in connection.to if name not in absent]
+    if kept == connection.to:
+        return connection
+    left_out.append(f"{connection.source} -> {', '.join(set(connection.to) - set(kept))}")
+    return connection.model_copy(update={"to": kept}) if kept or connection.via else None
+
+
+def _metrics(specs: Iterable[MetricSpec], absent: set[str], left_out: list[str]) -> list[MetricSpec]:
+    kept = []
+    for spec in specs:
+        if absent.intersection(spec.all_signals):
+            left_out.append(f"metric '{spec.name}'")
+        else:
+            kept.append(spec)
+    return kept
+
+
+def _figure(spec: FigureSpec | None, absent: set[str], left_out: list[str]) -> FigureSpec | None:
+    if spec is None:
+        return None
+    gone = [s.name for panel in spec.panels for s in panel.signals if s.name in absent]
+    left_out += [f"{name} in the figure" for name in gone]
+    return spec.without(absent.__contains__)
+
+
+def _known(
+    values: Mapping[str, dict[str, Value]], absent: set[str], left_out: list[str]
+) -> dict[str, dict[str, Value]]:
+    left_out += [
+        f"the value of {u}.{n}" for u, given in values.items() for n in given if f"{u}.{n}" in absent
+    ]
+    return {u: {n: x for n, x in given.items() if f"{u}.{n}" not in absent} for u, given in values.items()}

@@ -1,0 +1,112 @@
+"""What a system needs from a unit: the inputs it gives, the outputs it takes, the parameters it sets."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal
+
+from ..interface import UnitInterface, VariableInfo
+from ..system.scenario import Scenario
+from ..system.selection import figure_spec, metric_specs
+from ..system.system import Connection, System
+
+Role = Literal["input", "output", "parameter"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Requirement:
+    """A variable that the system needs: its `role` at the unit, and `why` (who gives, takes or sets it).
+
+    `variable` is what the unit that is there now declares: unit of measure, type, range, description.
+    """
+
+    name: str
+    role: Role
+    why: tuple[str, ...]
+    variable: VariableInfo
+
+
+def requirements(
+    system: System, scenario: Scenario, unit: str, present: UnitInterface
+) -> tuple[Requirement, ...]:
+    """What the system in this scenario needs from a unit whose present FMU has the interface `present`.
+
+    Inputs first, then outputs, then parameters, each in the order in which the system names them.
+    """
+    found: dict[tuple[Role, str], list[str]] = {}
+    for role, name, why in _uses(system, scenario, unit):
+        found.setdefault((role, name), []).append(why)
+    order: tuple[Role, ...] = ("input", "output", "parameter")
+    return tuple(
+        Requirement(name, role, tuple(dict.fromkeys(found[role, name])), present.variables[name])
+        for wanted in order
+        for role, name in found
+        if role == wanted and name in present.variables
+        # a figure that shows an input of the unit shows what drives it
+        if not (role == "output" and present.variables[name].causality == "input")
+    )
+
+
+def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface) -> list[str]:
+    """All that a system in this scenario needs of a unit and that `offer` does not have.
+
+    Each is a clause: the variable and who gives or takes it. Units that the scenario leaves out need nothing.
+    """
+    own, out = f"{unit}.", set(scenario.file.leave_out)
+    used: list[tuple[str, str]] = []
+    for c in system.file.connect:
+        takers = [to for to in c.to if _unit(to) not in out]
+        if _unit(c.source) not in out and (takers or c.via):
+            used += _ends(c, takers)
+    used += [(stimulus.to, f"stimulus of {scenario.name}") for stimulus in scenario.file.stimuli]
+    spec = figure_spec(system, scenario)
+    shown = [s.name for panel in spec.panels for s in panel.signals] if spec else []
+    shown += [name for metric in metric_specs(system, scenario) for name in metric.all_signals]
+    used += [(name, "figure or metrics") for name in shown]
+    found: dict[str, list[str]] = {}
+    for name, why in used:
+        if name.startswith(own) and name.removeprefix(own) not in offer.variables:
+            found.setdefault(name.removeprefix(own), []).append(why)
+    return [f"'{name}' ({'; '.join(dict.fromkeys(why))})" for name, why in found.items()]
+
+
+def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:
+    """The variables at the ends of a connection, each with what is at the other end."""
+    via = f" over {c.via}" if c.via else ""
+    taken = f"to {', '.join(takers)}{via}" if takers else f"to {c.via}"
+    return [*((to, f"from {c.source}{via}") for to in takers), (c.source, taken)]
+
+
+def _unit(variable: str) -> str:
+    return variable.partition(".")[0]
+
+
+def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role, str, str]]:
+    """(role, name, why) for each place that names a variable of the unit."""
+    own = f"{unit}."
+    for c in system.file.connect:
+        for name, why in _ends(c, c.to):
+            if name.startswith(own):
+                yield "output" if name == c.source else "input", name.removeprefix(own), why
+    for stimulus in scenario.file.stimuli:
+        if stimulus.to.startswith(own):
+            yield "input", stimulus.to.removeprefix(own), f"stimulus of {scenario.name}"
+    for name in _shown(system, scenario):
+        if name.startswith(own):
+            yield "output", name.removeprefix(own), "figure or metrics"
+    given: tuple[tuple[str, Mapping[str, object]], ...] = (
+        ("set by the system", system.file.units[unit].parameters),
+        (f"set by {scenario.name}", scenario.file.parameters.get(unit, {})),
+    )
+    for why, values in given:
+        for name, value in values.items():
+            yield "parameter", name, f"{why}: {value}"
+
+
+def _shown(system: System, scenario: Scenario) -> Iterable[str]:
+    for file in (system.file, scenario.file):
+        if file.figure is not None:
+            yield from (s.name for panel in file.figure.panels for s in panel.signals)
+        for spec in file.metrics:
+            yield from spec.all_signals

@@ -1,0 +1,1 @@
+"""What files say: systems, scenarios, stimuli, bus variations, and the specifications in them."""

@@ -1,0 +1,1 @@
+"""What does the steps: the schedule, the python engine and the compiled one."""

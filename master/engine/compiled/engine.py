@@ -1,0 +1,170 @@
+"""The compiled engine: the schedule as tables, a chunk of steps in one call of machine code."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....cosim.can.quantization import ChannelError
+from ..engine import CHUNK_SECONDS, Act, Engine
+from . import tables as L
+from .cache import compiled
+from .program import Program, address
+
+_Python = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64)
+_RELEASING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)  # gives up Python's lock while it runs
+_HOLDING = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
+
+
+class CompiledEngine(Engine):
+    """See `Engine`. What the kernel cannot do it asks Python for, which does the act of the Python engine."""
+
+    name = "compiled"
+    _program: Program | None = None
+
+    def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
+        program = self._program
+        assert program is not None  # it was made at the start
+        ops, self._places = program.chunk(self.k, count)
+        state, first = self._state, self.k
+        state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
+        state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
+        log, starts = self._log_buffer(count)
+        drives = np.ascontiguousarray(drives)
+        addresses = self._addresses
+        addresses[L.OPS], addresses[L.DRIVES] = ops.ctypes.data, drives.ctypes.data
+        addresses[L.ROWS_OF_RUN], addresses[L.LOG] = rows.ctypes.data, log.ctypes.data
+        self._raised: BaseException | None = None
+        try:
+            result = self._kernel(addresses.ctypes.data)
+        finally:  # also where Ctrl-C came within
+            self.k = first + int(state[L.STEPS_DONE])
+            self._collect(log, starts)
+        if self._raised is not None:
+            raise self._raised
+        if result != L.DONE:
+            called = int(state[L.CALLED])
+            at = self._places[int(state[L.AT])]
+            judge = program.judges[at] if called < 0 else program.call_judges[called]
+            judge(result, int(state[L.DETAIL]))
+            raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+
+    # ---- what is made once
+
+    def start(self) -> None:
+        """See `Engine`; the kernel is made here, too."""
+        super().start()
+        program = self._program = Program(self)
+        self._acts: list[Act | None] = [
+            None if action.kind in ("drive", "record") else self.act(action) for action in self.schedule
+        ]
+        self._python = _Python(self._act_for_kernel)
+        self._state = np.zeros(L.STATE_SIZE, dtype=np.int64)
+        self._numbers = np.zeros(L.NUMBERS_SIZE)
+        self._ticks = np.zeros(2, dtype=np.int64)
+        self._raws = np.zeros(max(1, len(program.signals)))
+        self._logs = np.zeros(max(1, len(program.logged)), dtype=np.int64)
+        self._times = np.zeros(len(program.ops))
+        experiment = self.plan.experiment
+        self._numbers[[L.START, L.H, L.SECONDS]] = (
+            experiment.start_time, experiment.step_size, CHUNK_SECONDS,
+        )  # fmt: skip # beside their places
+        self._state[L.PYTHON] = address(self._python)
+        self._set_clock()
+        tables: dict[int, NDArray[Any]] = {
+            L.STATE: self._state, L.NUMBERS: self._numbers, L.MEMORY: self.memory, L.ROUTES: program.routes,
+            L.EFFECTS: program.effect_table, L.CALLS: program.calls, L.ITEMS: program.items,
+            L.UNITS: program.units, L.SIGNALS: program.signal_table, L.SINKS: program.sinks,
+            L.RAWS: self._raws, L.WAITS: program.waits, L.ARRIVALS: program.arrivals,
+            L.COLUMNS: program.columns, L.LOGS: self._logs, L.TICKS: self._ticks, L.TIMES_OF_OPS: self._times,
+        }  # fmt: skip # the others are a chunk's own
+        self._addresses = np.zeros(L.TABLES, dtype=np.int64)
+        for place, array in tables.items():
+            self._addresses[place] = array.ctypes.data
+        kind = _HOLDING if program.holds_python else _RELEASING
+        function, self.notice = compiled(timed=self.profile is not None)
+        self._kernel = kind(function)
+
+    def _set_clock(self) -> None:
+        ticks = self._ticks.ctypes.data
+        if sys.platform == "win32":
+            frequency = ctypes.c_int64()
+            ctypes.windll.kernel32.QueryPerformanceFrequency(ctypes.byref(frequency))
+            function, arguments = ctypes.windll.kernel32.QueryPerformanceCounter, (ticks, 0)
+            seconds = (1.0 / frequency.value, 0.0)
+        else:
+            function, arguments = ctypes.CDLL(None).clock_gettime, (time.CLOCK_MONOTONIC, ticks)
+            seconds = (1.0, 1e-9)
+        self._clock = function  # whose address is in the table
+        self._state[L.CLOCK] = address(function)
+        self._state[[L.CLOCK_A, L.CLOCK_B]] = arguments
+        self._numbers[[L.TICK_0, L.TICK_1]] = seconds
+
+    # ---- what the kernel asks for, and what it leaves
+
+    def _act_for_kernel(self, what: int, k: int) -> int:
+        """Do action `what`, or tell the raw value of a value out of range; 1 when it raised an error."""
+        try:
+            if what >= 0:
+                act = self._acts[what]
+                assert act is not None  # the kernel drives and records by itself
+                act(k, self.time_at(k))
+            else:
+                self._raw_value(-1 - what, k)
+            return 0
+        except BaseException as error:  # no exception can pass through the kernel
+            self._raised = error
+            return 1
+
+    def _raw_value(self, row: int, k: int) -> None:
+        assert self._program is not None  # the kernel follows it
+        sender, i = self._program.signals[row]
+        try:
+            raw = sender.channel.out_of_range(i, float(self._numbers[L.VALUE]), k)
+        except ChannelError as error:
+            raise sender.failed(error) from error
+        self._numbers[L.VALUE] = raw
+
+    def _log_buffer(self, count: int) -> tuple[NDArray[np.float64], list[int]]:
+        """Room for what the messages of `count` steps are logged with, and where each message's begins."""
+        assert self._program is not None
+        starts = [0]
+        for sender in self._program.logged:
+            sent = count // sender.plan.every + 1
+            starts.append(starts[-1] + sent * (1 + len(sender.channel.routes)))
+        self._logs[: len(starts) - 1] = starts[:-1]
+        return np.empty(max(1, starts[-1])), starts
+
+    def _collect(self, log: NDArray[np.float64], starts: list[int]) -> None:
+        """Give what a chunk has left to units, channels and profile."""
+        program = self._program
+        assert program is not None
+        if self._state[L.NOTED]:
+            self._collect_noted(program)
+        if self.profile is not None:
+            parts = program.parts()
+            for place, seconds in zip(self._places, self._times.tolist(), strict=False):
+                self.profile.add(parts[place], seconds)
+            self._times[:] = 0.0
+        for i, sender in enumerate(program.logged):
+            found = log[starts[i] : self._logs[i]].reshape(-1, 1 + len(sender.channel.routes))
+            sender.channel.keep(found[:, 0].astype(np.int64), found[:, 1:])
+
+    def _collect_noted(self, program: Program) -> None:
+        """Give warnings and saturations to units and channels."""
+        self._state[L.NOTED] = 0
+        for table, instances in ((program.calls, program.called), (program.units, program.stepped)):
+            if table[:, L.WARNINGS].any():
+                for i, instance in enumerate(instances):
+                    instance.log.warnings += int(table[i, L.WARNINGS])
+                table[:, L.WARNINGS] = 0
+        signals = program.signal_table
+        for i in np.flatnonzero(signals[:, L.TIMES]).tolist():
+            sender, place = program.signals[i]
+            sender.channel.count(place, int(signals[i, L.TIMES]), int(signals[i, L.FIRST_TIME]))
+        signals[:, [L.TIMES, L.FIRST_TIME]] = 0

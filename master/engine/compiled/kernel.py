@@ -1,0 +1,416 @@
+"""The loop over the steps: one function of machine code, made by numba and kept in its cache.
+
+It follows the tables that `layout` describes. Their operations are the actions of `schedule`, in its order,
+so that what a step does is said there alone; what an operation computes is what the Python engine, the units
+and the channel compute, operation for operation, bit for bit. Where something is not as it should be, the
+kernel stops and tells where, and Python looks at it and says it.
+"""
+
+# numba compiles functions without annotations
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from . import tables as L
+from .call import (  # fmt: skip # names
+    call_2,
+    do_step,
+    do_step_3,
+    number,
+    peek,
+    poke,
+    put_number,
+    put_word,
+    transfer,
+    transfer_3,
+    word,
+)
+
+LARGEST = 1.7976931348623157e308
+WIDEST = 2.0**53  # beyond it a double does not hold every whole number
+LOOK = 32  # steps at most between two looks at the clock
+
+inlined = njit(forceinline=True, error_model="numpy")
+
+
+# ---- the units
+
+
+@inlined
+def write(at, kind, value):
+    """Put a value that fits into a buffer; returns the address behind it."""
+    if kind == L.F64:
+        poke(at, value)
+        return at + 8
+    if kind == L.F32:
+        poke(at, np.float32(value))
+        return at + 4
+    if kind == L.I8:
+        poke(at, np.int8(value))
+        return at + 1
+    if kind == L.U8:
+        poke(at, np.uint8(value))
+        return at + 1
+    if kind == L.I16:
+        poke(at, np.int16(value))
+        return at + 2
+    if kind == L.U16:
+        poke(at, np.uint16(value))
+        return at + 2
+    if kind == L.I32:
+        poke(at, np.int32(value))
+        return at + 4
+    if kind == L.U32:
+        poke(at, np.uint32(value))
+        return at + 4
+    if kind == L.I64:
+        poke(at, np.int64(value))
+        return at + 8
+    if kind == L.U64:
+        poke(at, np.uint64(value))
+        return at + 8
+    truth = np.int32(value != 0.0)
+    if kind == L.B8:
+        poke(at, np.int8(truth))
+        return at + 1
+    poke(at, truth)
+    return at + 4
+
+
+@inlined
+def read(at, kind):
+    """A value from a buffer as a double, and the address behind it."""
+    if kind == L.F64:
+        return peek(at, np.float64), at + 8
+    if kind == L.F32:
+        return np.float64(peek(at, np.float32)), at + 4
+    if kind == L.I8:
+        return np.float64(peek(at, np.int8)), at + 1
+    if kind == L.U8:
+        return np.float64(peek(at, np.uint8)), at + 1
+    if kind == L.I16:
+        return np.float64(peek(at, np.int16)), at + 2
+    if kind == L.U16:
+        return np.float64(peek(at, np.uint16)), at + 2
+    if kind == L.I32:
+        return np.float64(peek(at, np.int32)), at + 4
+    if kind == L.U32:
+        return np.float64(peek(at, np.uint32)), at + 4
+    if kind == L.I64:
+        return np.float64(peek(at, np.int64)), at + 8
+    if kind == L.U64:
+        return np.float64(peek(at, np.uint64)), at + 8
+    if kind == L.B8:
+        return np.float64(peek(at, np.int8) != 0), at + 1
+    return np.float64(peek(at, np.int32) != 0), at + 4
+
+
+@inlined
+def fill(t, m, c, kind):
+    """The buffer of call c from the memory; the place of a value that does not fit, else -1."""
+    at = word(c, L.VALUES)
+    item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
+    for j in range(word(c, L.COUNT)):
+        value = number(m, word(item, L.SLOT))
+        if kind < L.B8:
+            value = number(item, L.SIGN) * value
+            if not number(item, L.LOW) <= value <= number(item, L.HIGH):
+                return j
+        at = write(at, kind, value)
+        item += 8 * L.ITEM
+    return -1
+
+
+@inlined
+def take(t, m, c, kind):
+    """The memory from the buffer of call c; the place of a value that no double holds, else -1."""
+    at = word(c, L.VALUES)
+    item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
+    whole = np.int64(WIDEST)
+    for j in range(word(c, L.COUNT)):
+        value, behind = read(at, kind)
+        wide = kind == L.I64 or kind == L.U64
+        # 2**53 + 1 is rounded to 2**53
+        if wide and (abs(value) > WIDEST or (abs(value) == WIDEST and abs(peek(at, np.int64)) > whole)):
+            return j
+        at = behind
+        put_number(m, word(item, L.SLOT), number(item, L.SIGN) * value)
+        item += 8 * L.ITEM
+    return -1
+
+
+@inlined
+def stopped(t, row, detail, result):
+    """What the call in a row came to, with what it is told by."""
+    put_word(word(t, L.STATE), L.CALLED, row)
+    put_word(word(t, L.STATE), L.DETAIL, detail)
+    return result
+
+
+@inlined
+def warned(t, c):
+    """Count that the function in row c answered Warning."""
+    put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
+    put_word(word(t, L.STATE), L.NOTED, 1)
+
+
+@inlined
+def call(t, m, row):
+    """The C call in a row, with the values before or after it."""
+    c = word(t, L.CALLS) + 8 * L.CALL_WIDTH * row
+    kind = word(c, L.FORMAT)
+    if L.IN_PLACE < kind < L.GETS:
+        place = fill(t, m, c, kind)
+        if place >= 0:
+            return stopped(t, row, place, L.NO_FIT)
+    if word(c, L.TWICE):
+        status = transfer_3(
+            word(c, L.FUNCTION),
+            word(c, L.COMPONENT),
+            word(c, L.REFERENCES),
+            word(c, L.COUNT),
+            word(c, L.VALUES),
+        )
+    else:
+        status = transfer(
+            word(c, L.FUNCTION),
+            word(c, L.COMPONENT),
+            word(c, L.REFERENCES),
+            word(c, L.COUNT),
+            word(c, L.VALUES),
+        )
+    if status:
+        if status != 1:
+            return stopped(t, row, np.int64(status), L.BAD_STATUS)
+        warned(t, c)
+    if kind > L.GETS:
+        place = take(t, m, c, kind - L.GETS)
+        if place >= 0:
+            return stopped(t, row, place, L.NO_FIT)
+    return L.DONE
+
+
+@inlined
+def step(t, c, begin):
+    """The steps of the unit in row c within its period."""
+    size = number(c, L.STEP_SIZE)
+    answers = word(c, L.ANSWERS)
+    for j in range(word(c, L.STEPS)):
+        time = begin + j * size
+        if answers:
+            status = do_step_3(
+                word(c, L.FUNCTION), word(c, L.COMPONENT), time, size,
+                word(c, L.EVENT), word(c, L.ENDING), word(c, L.EARLY), word(c, L.REACHED),
+            )  # fmt: skip # as C has it
+        else:
+            status = do_step(word(c, L.FUNCTION), word(c, L.COMPONENT), time, size)
+        if status:
+            if status != 1:
+                put_word(word(t, L.STATE), L.DETAIL, np.int64(status))
+                return L.BAD_STATUS
+            warned(t, c)
+        if answers and (peek(word(c, L.ENDING), np.int8) != 0 or peek(word(c, L.EARLY), np.int8) != 0):
+            return L.BAD_END
+    return L.DONE
+
+
+@inlined
+def check(m, first, count):
+    """Whether so many values are finite."""
+    for j in range(first, first + count):
+        if not abs(number(m, j)) <= LARGEST:
+            return L.NOT_FINITE
+    return L.DONE
+
+
+# ---- the channel
+
+
+@inlined
+def rounded(q, mode):
+    """A raw value that is in range; that of a float signal is as it is, but for its format."""
+    if mode == L.NEAREST or mode == L.TRUNCATE:
+        # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
+        half = 0.49999999999999994 if mode == L.NEAREST else 0.0
+        return np.floor(q + half) if q >= 0.0 else 0.0 - np.floor(half - q)
+    if mode == L.HALF_EVEN:
+        # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
+        return q + 6755399441055744.0 - 6755399441055744.0
+    if mode == L.FLOAT32:
+        return np.float64(np.float32(q))
+    return q
+
+
+@inlined
+def out_of_range(t, i, s, x, k):
+    """The raw value for a value out of range, and whether there is one: Python knows of the error."""
+    if word(s, L.SATURATES) and x == x:
+        if word(s, L.TIMES) == 0:
+            put_word(s, L.FIRST_TIME, k)
+        put_word(s, L.TIMES, word(s, L.TIMES) + 1)
+        put_word(word(t, L.STATE), L.NOTED, 1)
+        return number(s, L.ABOVE) if x > number(s, L.GREATEST) else number(s, L.BELOW), True
+    asked = word(t, L.NUMBERS)
+    put_number(asked, L.VALUE, x)
+    good = call_2(word(word(t, L.STATE), L.PYTHON), -1 - i, k) == 0
+    return number(asked, L.VALUE), good
+
+
+@inlined
+def send(t, m, first, count, log, k):
+    """Sample the signals of a message, then write what is received."""
+    signals, raws = word(t, L.SIGNALS), word(t, L.RAWS)
+    s = signals + 8 * L.SIGNAL * first
+    for i in range(first, first + count):
+        x = number(s, L.IN_SCALE) * number(m, word(s, L.FROM)) + number(s, L.IN_ADD)
+        if number(s, L.LEAST) <= x <= number(s, L.GREATEST):
+            raw = rounded((x - number(s, L.OFFSET)) / number(s, L.RESOLUTION), word(s, L.MODE))
+        else:
+            raw, good = out_of_range(t, i, s, x, k)
+            if not good:
+                return L.RAISED
+        put_number(raws, i, raw)
+        s += 8 * L.SIGNAL
+    s = signals + 8 * L.SIGNAL * first
+    for i in range(first, first + count):
+        value = number(raws, i) * number(s, L.RESOLUTION) + number(s, L.OUT_ADD)
+        sink = word(t, L.SINKS) + 8 * L.ROUTE * word(s, L.TO)
+        for _ in range(word(s, L.RECEIVERS)):
+            put_number(m, word(sink, L.SINK), number(sink, L.SCALE) * value + number(sink, L.ADD))
+            sink += 8 * L.ROUTE
+        s += 8 * L.SIGNAL
+    if log >= 0:
+        logs = word(t, L.LOGS)
+        at = word(logs, log)
+        put_number(word(t, L.LOG), at, np.float64(k))
+        for i in range(count):
+            put_number(word(t, L.LOG), at + 1 + i, number(raws, first + i))
+        put_word(logs, log, at + 1 + count)
+    return L.DONE
+
+
+@inlined
+def wait(t, m, o, k):
+    """What a message has sent goes where it waits, or from there to the mailboxes."""
+    w = word(t, L.WAITS) + 8 * L.WAIT * word(o, L.A)
+    n = (k - word(o, L.FIRST)) // word(o, L.EVERY) % word(w, L.ROWS)
+    row = word(w, L.PLACE) + n * word(w, L.WIDTH)
+    arrival = word(t, L.ARRIVALS) + 16 * word(w, L.ARRIVAL)
+    for j in range(word(w, L.WIDTH)):
+        if word(o, L.KIND) == L.KEEP:
+            put_number(m, row + j, number(m, word(arrival, 0)))
+        else:
+            put_number(m, word(arrival, 1), number(m, row + j))
+        arrival += 16
+
+
+# ---- a step
+
+
+@inlined
+def operate(t, m, o, s, k, time):
+    """The operation in row o, in step k, which is step s of the chunk and starts at `time`."""
+    kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
+    if kind == L.TAKE:
+        r = word(t, L.ROUTES) + 8 * L.ROUTE * a
+        for _ in range(b):
+            put_number(
+                m, word(r, L.SINK), number(r, L.SCALE) * number(m, word(r, L.SOURCE)) + number(r, L.ADD)
+            )
+            r += 8 * L.ROUTE
+    elif kind == L.CALL:
+        result = call(t, m, a)
+        if result != L.DONE:
+            return result
+        return check(m, b, word(o, L.C))
+    elif kind == L.STEP:
+        for row in range(b, b + word(o, L.C)):
+            result = call(t, m, row)
+            if result != L.DONE:
+                return result
+        return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, time)
+    elif kind == L.CHECK:
+        return check(m, b, word(o, L.C))
+    elif kind == L.COPY:
+        for j in range(word(o, L.C)):
+            put_number(m, b + j, number(m, a + j))
+    elif kind == L.SEND:
+        return send(t, m, a, b, word(o, L.C), k)
+    elif kind == L.RECORD:
+        columns = word(t, L.COLUMNS)
+        row = word(t, L.ROWS_OF_RUN) + 8 * b * s
+        for j in range(b):
+            put_number(row, j, number(m, word(columns, j)))
+    elif kind == L.DRIVE:
+        put_number(m, a, number(word(t, L.DRIVES), b * word(word(t, L.STATE), L.ROOM) + s))
+    elif kind == L.EFFECT:
+        e = word(t, L.EFFECTS) + 8 * L.EFFECT_WIDTH * a
+        for _ in range(b):
+            slot = word(e, L.SLOT)
+            before = 0.0 if word(e, L.OVERRIDES) else number(m, slot)
+            put_number(
+                m, slot, number(e, L.VALUE_OF) if word(e, L.OVERRIDES) else before + number(e, L.VALUE_OF)
+            )
+            e += 8 * L.EFFECT_WIDTH
+    elif kind == L.KEEP or kind == L.DELIVER:
+        wait(t, m, o, k)
+    elif call_2(word(word(t, L.STATE), L.PYTHON), a, k) != 0:
+        return L.RAISED
+    return L.DONE
+
+
+@inlined
+def clock(t):
+    """Seconds from anywhere on."""
+    state, seconds = word(t, L.STATE), word(t, L.NUMBERS)
+    call_2(word(state, L.CLOCK), word(state, L.CLOCK_A), word(state, L.CLOCK_B))
+    return np.float64(word(word(t, L.TICKS), 0)) * number(seconds, L.TICK_0) + np.float64(
+        word(word(t, L.TICKS), 1)
+    ) * number(seconds, L.TICK_1)
+
+
+@inlined
+def follow(t, timed):
+    """Do the steps of a chunk, or as many as its time allows."""
+    state, numbers, m = word(t, L.STATE), word(t, L.NUMBERS), word(t, L.MEMORY)
+    begin = last = moment = clock(t)
+    look, interval = 1, 1
+    for s in range(word(state, L.WANTED)):
+        if s == look:
+            now = clock(t)
+            if now - begin > number(numbers, L.SECONDS):
+                break
+            interval = min(2 * interval, LOOK) if now - last < 0.001 else max(1, interval // 2)
+            last, look = now, s + interval
+        k = word(state, L.START_STEP) + s
+        time = number(numbers, L.START) + k * number(numbers, L.H)
+        o = word(t, L.OPS)
+        if timed:
+            moment = clock(t)
+        for i in range(word(state, L.OPERATIONS)):
+            if k == word(o, L.DUE):
+                put_word(o, L.DUE, k + word(o, L.EVERY))
+                result = operate(t, m, o, s, k, time)
+                if timed:
+                    now = clock(t)
+                    put_number(word(t, L.TIMES_OF_OPS), i, number(word(t, L.TIMES_OF_OPS), i) + now - moment)
+                    moment = now
+                if result != L.DONE:
+                    put_word(state, L.AT, i)
+                    return result
+            o += 8 * L.OPERATION
+        put_word(state, L.STEPS_DONE, s + 1)
+    return L.DONE
+
+
+def run(t):
+    """Follow the tables whose addresses stand at `t`; why it ended (`layout.DONE` and what follows it)."""
+    return follow(t, False)
+
+
+def run_timed(t):
+    """The same, adding up what each operation takes, with what the clock itself takes."""
+    return follow(t, True)

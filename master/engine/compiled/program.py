@@ -1,0 +1,383 @@
+"""From a plan, its schedule and its units to the tables that the kernel follows (see `layout`)."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....cosim.can.channel import SignalRoute
+from ....cosim.can.quantization import SignalOperation
+from ....cosim.units import Affine
+from ...fmi.fmi1 import Fmi1Unit
+from ...fmi.fmi2 import Fmi2Unit
+from ...fmi.fmi3 import Fmi3Unit
+from ...fmi.instance import Instance
+from ...fmi.transfer import Copy, Transfer, limits
+from ..engine import Engine, Sender, Turn
+from ..profile import Part, part_of
+from ..schedule import Action
+from . import tables as L
+
+Table = NDArray[np.int64]
+Row = Mapping[int, int | float]
+Judge = Callable[[int, int], None]
+"""Raises the error of an operation, given what the kernel returned and the detail."""
+
+_DIRECT = (Fmi1Unit, Fmi2Unit, Fmi3Unit)
+_FORMATS: dict[Any, int] = {
+    ctypes.c_double: L.F64, ctypes.c_float: L.F32, ctypes.c_int8: L.I8, ctypes.c_uint8: L.U8,
+    ctypes.c_int16: L.I16, ctypes.c_uint16: L.U16, ctypes.c_int32: L.I32, ctypes.c_uint32: L.U32,
+    ctypes.c_int64: L.I64, ctypes.c_uint64: L.U64,
+}  # fmt: skip # a table
+_MODES = {"nearest": L.NEAREST, "half_even": L.HALF_EVEN, "truncate": L.TRUNCATE}
+_NO_LOG = -1
+
+
+def direct(turn: Turn) -> Instance | None:
+    """The instance whose C functions the kernel calls itself; None: Python does the unit's acts.
+
+    So it is for what does more than these calls: isolated units, Model Exchange, units in Python.
+    """
+    unit: object = turn.unit
+    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT else None
+
+
+class Program:
+    """The tables of an engine whose units are initialized.
+
+    `judges` and `actions` say for each operation what its errors are and which action it is a part of,
+    `call_judges` for each row of calls what its errors are.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._rows: dict[str, list[Row]] = {
+            name: []
+            for name in ("ops", "routes", "calls", "items", "units", "signals", "sinks", "waits", "arrivals")
+        }
+        self._apart = engine.profile is not None  # a profile tells apart what is else done at a stretch
+        self.judges: list[Judge] = []
+        self.call_judges: list[Judge] = []
+        self.actions: list[int] = []
+        self.effects: list[tuple[int, int, Turn]] = []  # operation, its first row, whose effects they are
+        self.signals: list[tuple[Sender, int]] = []  # the message of each row, and the signal's place in it
+        self.logged: list[Sender] = []
+        self.called: list[Instance] = []  # the instance of each row of CALLS
+        self.stepped: list[Instance] = []  # and of UNITS
+        self._effect_rows = 0
+        self._waiting: dict[int, int] = {}
+        for at, action in enumerate(engine.schedule):
+            self._action(at, action)
+        self.ops = _table(self._rows["ops"], L.OPERATION)
+        self.routes = _table(self._rows["routes"], L.ROUTE)
+        self.effect_table = _table([{}] * self._effect_rows, L.EFFECT_WIDTH)
+        self.calls = _table(self._rows["calls"], L.CALL_WIDTH)
+        self.items = _table(self._rows["items"], L.ITEM)
+        self.units = _table(self._rows["units"], L.UNIT)
+        self.signal_table = _table(self._rows["signals"], L.SIGNAL)
+        self.sinks = _table(self._rows["sinks"], L.ROUTE)
+        self.waits = _table(self._rows["waits"], L.WAIT)
+        self.arrivals = _table(self._rows["arrivals"], 2)
+        self.columns = engine.columns.astype(np.int64)
+
+    @property
+    def holds_python(self) -> bool:
+        """Whether the kernel calls into this interpreter by itself: then it must hold Python's lock."""
+        return any(instance.fmu.holds_python for instance in self.stepped)
+
+    def chunk(self, k: int, count: int) -> tuple[Table, list[int]]:
+        """The operations that are due in steps k to k + count - 1, noting when first, and their places.
+
+        The effects of events and of the user are those of now.
+        """
+        first, every = self.ops[:, L.FIRST], self.ops[:, L.EVERY]
+        passed = np.maximum(k - first, 0)
+        due = first + -(-passed // every) * every
+        self.ops[:, L.DUE] = due
+        busy = due < k + count
+        for op, row, turn in self.effects:
+            if not turn.effects:
+                busy[op] = False
+                continue
+            self.ops[op, L.B] = len(turn.effects)
+            for i, (slot, (action, value)) in enumerate(turn.effects.items(), row):
+                _fill(
+                    self.effect_table, i,
+                    {L.SLOT: slot, L.OVERRIDES: int(action == "override"), L.VALUE_OF: float(value)},
+                )  # fmt: skip # a row
+        places = np.flatnonzero(busy)
+        return self.ops[places], places.tolist()
+
+    def parts(self) -> list[Part]:
+        """What each operation is a part of, for a profile."""
+        kinds = self.ops[:, L.KIND].tolist()
+        found = []
+        for at, kind in zip(self.actions, kinds, strict=True):
+            action = self._engine.schedule[at]
+            what = ""
+            if action.kind == "begin" and kind != L.PYTHON_ACT:
+                what = "step" if kind == L.STEP else "set"
+            found.append(part_of(action, self._engine.plan, what))
+        return found
+
+    # ---- operations
+
+    def _action(self, at: int, action: Action) -> None:
+        """The operations of an action: what the kernel can do by itself, else Python's act."""
+        plan, i = self._engine.plan, action.index
+        if action.kind == "drive":
+            self._operation(at, action, L.DRIVE, plan.drives[i].sink, i)
+        elif action.kind == "record":
+            self._operation(at, action, L.RECORD, 0, len(self._engine.columns))
+        elif action.kind == "deliver":
+            self._operation(at, action, L.DELIVER, self._wait(i))
+        elif action.kind == "send":
+            self._send(at, action)
+        elif action.kind == "take":
+            first = self._count("routes")
+            for r in plan.units[i].routes:
+                self._rows["routes"].append({L.SOURCE: r.source, L.SINK: r.sink} | _mapped(r.map))
+            self._operation(at, action, L.TAKE, first, len(plan.units[i].routes))
+        elif action.kind == "publish":
+            for block in self._engine.turns[i].continuous:
+                self._operation(at, action, L.COPY, block.latest, block.slot, len(block.variables))
+        else:
+            self._turn(at, action, self._engine.turns[i])
+
+    def _turn(self, at: int, action: Action, turn: Turn) -> None:
+        instance = direct(turn)
+        if instance is None:
+            self._operation(at, action, L.PYTHON_ACT, at)
+        elif action.kind == "begin":
+            self._begin(at, action, turn, instance)
+        else:
+            self._end(at, action, turn, instance)
+
+    def _begin(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
+        inputs = sum(len(b.variables) for b in turn.plan.blocks if b.kind == "input")
+        if inputs:
+            op = self._operation(at, action, L.EFFECT, self._effect_rows)
+            self.effects.append((op, self._effect_rows, turn))
+            self._effect_rows += inputs
+        calls = self._count("calls")
+        for transfer in (*instance.inputs, *instance.through):
+            if isinstance(transfer, Copy):
+                calls = self._calls(at, action, calls)
+                self._operation(at, action, L.COPY, transfer.source, transfer.target, transfer.count)
+            else:
+                self._call(instance, transfer)
+        if self._apart:
+            calls = self._calls(at, action, calls)
+        step = instance.step_call
+        assert step is not None  # a unit that has been initialized has one
+        row: dict[int, int | float] = {
+            L.FUNCTION: address(step.pointer), L.COMPONENT: instance.component, L.STEPS: turn.substeps,
+            L.STEP_SIZE: float(turn.step_size), L.ANSWERS: len(step.answers),
+        }  # fmt: skip # a row
+        row |= {L.EVENT + i: ctypes.addressof(answer) for i, answer in enumerate(step.answers)}
+
+        def judge(result: int, detail: int) -> None:
+            instance.judge_step(detail if result == L.BAD_STATUS else 0)
+
+        count = self._count("calls") - calls
+        self._operation(at, action, L.STEP, self._count("units"), calls, count, judge=judge)
+        self._rows["units"].append(row)
+        self.stepped.append(instance)
+
+    def _end(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
+        def judge(result: int, detail: int) -> None:
+            turn.check_finite()
+
+        first = self._count("calls")
+        for transfer in instance.outputs:
+            self._call(instance, transfer)
+        checks = [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]
+        if checks and self._count("calls") > first:  # with the last call goes the first check
+            self._calls(at, action, first, self._count("calls") - 1)
+            self._operation(at, action, L.CALL, self._count("calls") - 1, *checks.pop(0), judge=judge)
+        else:
+            self._calls(at, action, first)
+        for check in checks:
+            self._operation(at, action, L.CHECK, 0, *check, judge=judge)
+
+    def _calls(self, at: int, action: Action, first: int, end: int | None = None) -> int:
+        """An operation for each row of calls from `first` on; the number of rows."""
+        count = self._count("calls")
+        for row in range(first, count if end is None else end):
+            self._operation(at, action, L.CALL, row)
+        return count
+
+    def _call(self, instance: Instance, transfer: Transfer) -> None:
+        """Add a row of calls."""
+
+        def judge(result: int, detail: int) -> None:
+            if result == L.BAD_STATUS:
+                instance.judge_transfer(transfer, detail)
+            item = transfer.items[detail]
+            value = transfer.values[detail] if transfer.gets else item.sign * self._engine.view[item.slot]
+            instance.refuse(transfer, detail, value)
+
+        self.call_judges.append(judge)
+        self._rows["calls"].append(
+            {
+                L.FUNCTION: address(transfer.pointer),
+                L.COMPONENT: instance.component,
+                L.REFERENCES: ctypes.addressof(transfer.references),
+                L.COUNT: len(transfer.references),
+                L.VALUES: ctypes.addressof(transfer.values),
+                L.TWICE: int(instance.fmi == "fmi3"),
+                L.FORMAT: _format(transfer),
+                L.FIRST_ITEM: self._count("items"),
+            }
+        )
+        low, high = _limits(transfer.c_type)
+        self._rows["items"] += [
+            {L.SLOT: item.slot, L.SIGN: item.sign, L.LOW: low, L.HIGH: high} for item in transfer.items
+        ]
+        self.called.append(instance)
+
+    # ---- the channel
+
+    def _send(self, at: int, action: Action) -> None:
+        sender = self._engine.senders[action.index]
+        channel = sender.channel
+        if any(operation.kind == "exact" for operation in channel.operations):
+            self._operation(at, action, L.PYTHON_ACT, at)  # integers that no double holds
+            return
+        log = _NO_LOG
+        if channel.logs:
+            log = len(self.logged)
+            self.logged.append(sender)
+        self._operation(at, action, L.SEND, self._count("signals"), len(channel.routes), log)
+        for i, (route, operation) in enumerate(zip(channel.routes, channel.operations, strict=True)):
+            self._rows["signals"].append(_signal(route, operation, self._count("sinks")))
+            self._rows["sinks"] += [{L.SINK: slot} | _mapped(affine) for slot, affine in route.sinks]
+            self.signals.append((sender, i))
+        if sender.waiting is not None:
+            self._operation(at, action, L.KEEP, self._wait(action.index))
+
+    def _wait(self, message: int) -> int:
+        """The row of WAITS of a message with a delay."""
+        if message not in self._waiting:
+            self._waiting[message] = self._count("waits")
+            sender = self._engine.senders[message]
+            waiting = sender.waiting
+            assert waiting is not None  # it has a delay
+            self._rows["waits"].append(
+                {L.PLACE: waiting.slot, L.ROWS: waiting.rows, L.WIDTH: waiting.width,
+                 L.ARRIVAL: self._count("arrivals")}
+            )  # fmt: skip # a row
+            self._rows["arrivals"] += [{0: slot, 1: mailbox} for slot, mailbox in sender.plan.arrivals]
+        return self._waiting[message]
+
+    # ---- rows
+
+    def _operation(
+        self,
+        at: int,
+        action: Action,
+        kind: int,
+        a: int = 0,
+        b: int = 0,
+        c: int = 0,
+        judge: Judge | None = None,
+    ) -> int:
+        """Add an operation of action `at`; its row."""
+        row: Row = {L.KIND: kind, L.EVERY: action.every, L.FIRST: action.first, L.A: a, L.B: b, L.C: c}
+        ops = self._rows["ops"]
+        longer = _joined(ops[-1], row) if ops and not self._apart else None
+        if longer is not None:
+            ops[-1] = longer
+        else:
+            ops.append(row)
+            self.actions.append(at)
+            self.judges.append(judge or _cannot_fail)
+        return len(ops) - 1
+
+    def _count(self, name: str) -> int:
+        return len(self._rows[name])
+
+
+def _joined(before: Row, row: Row) -> Row | None:
+    """Two operations done one after the other as one; None where they cannot be."""
+    if any(before[column] != row[column] for column in (L.KIND, L.EVERY, L.FIRST)):
+        return None
+    a, b, c = (int(before[column]) for column in (L.A, L.B, L.C))
+    if row[L.KIND] == L.TAKE and row[L.A] == a + b:
+        return {**before, L.B: b + int(row[L.B])}
+    # all messages may be sampled before any is received: no output is a mailbox
+    if row[L.KIND] == L.SEND and row[L.A] == a + b and c == row[L.C] == _NO_LOG:
+        return {**before, L.B: b + int(row[L.B])}
+    if row[L.KIND] == L.COPY and row[L.A] == a + c and row[L.B] == b + c:
+        return {**before, L.C: c + int(row[L.C])}
+    return None
+
+
+def _cannot_fail(result: int, detail: int) -> None:
+    """For the operations that no value stops."""
+
+
+def _fill(table: Table, i: int, row: Row) -> None:
+    numbers = table.view(np.float64)
+    for column, value in row.items():
+        (numbers if isinstance(value, float) else table)[i, column] = value
+
+
+def _table(rows: Sequence[Row], width: int) -> Table:
+    """Rows as a table; it has a row at least, so that it has an address."""
+    made = np.zeros((max(1, len(rows)), width), dtype=np.int64)
+    for i, row in enumerate(rows):
+        _fill(made, i, row)
+    return made
+
+
+def _mapped(affine: Affine) -> dict[int, int | float]:
+    """A map's columns; what adds nothing is -0.0, since 0.0 would make 0.0 of -0.0."""
+    return {L.SCALE: float(affine.scale), L.ADD: float(affine.offset) or -0.0}
+
+
+def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> Row:
+    floats = {"float32": L.FLOAT32, "float64": L.FLOAT64}
+    row: dict[int, int | float] = {
+        L.FROM: route.source,
+        L.MODE: floats.get(operation.kind, _MODES[operation.rounding]),
+        L.SATURATES: int(operation.raw_below is not None),
+        L.TO: first_sink,
+        L.RECEIVERS: len(route.sinks),
+        L.IN_SCALE: float(route.to_bus.scale),
+        L.IN_ADD: float(route.to_bus.offset) or -0.0,
+        L.LEAST: operation.low,
+        L.GREATEST: operation.high,
+        L.RESOLUTION: operation.scale,
+        L.OFFSET: operation.offset,
+        L.OUT_ADD: operation.offset if operation.adds_offset else -0.0,
+    }
+    if operation.raw_below is not None and operation.raw_above is not None:
+        row |= {L.BELOW: float(operation.raw_below), L.ABOVE: float(operation.raw_above)}
+    return row
+
+
+def _format(transfer: Transfer) -> int:
+    if not transfer.items:
+        return L.IN_PLACE
+    if transfer.boolean:
+        kind = L.B8 if ctypes.sizeof(transfer.c_type) == 1 else L.B32
+    else:
+        kind = _FORMATS[transfer.c_type]
+    return kind + (L.GETS if transfer.gets else 0)
+
+
+def _limits(c_type: Any) -> tuple[float, float]:
+    """The least and the largest double that a type holds."""
+    low, high = limits(c_type)
+    largest = float(high)
+    return float(low), float(np.nextafter(largest, 0.0)) if largest > high else largest
+
+
+def address(function: Any) -> int:
+    """Where a C function stands."""
+    return ctypes.cast(function, ctypes.c_void_p).value or 0

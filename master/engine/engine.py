@@ -1,0 +1,280 @@
+"""What the engines share: units and messages in the schedule, chunks of steps, events, and what is recorded.
+
+`algorithm` has the engine in Python, `compiled` the one in machine code. Both follow `schedule` and give the
+same results, bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...cosim.can.channel import MessageChannel
+from ...cosim.can.quantization import ChannelError
+from ...cosim.errors import RunError
+from ...cosim.plan.plan import MessagePlan, Plan
+from ...cosim.plan.unit_plan import Route, UnitPlan
+from ...cosim.row_store import RowStore, Table
+from ..unit import Unit, floats
+from .profile import Profile
+from .schedule import Action, Waiting, schedule, waiting
+
+Act = Callable[[int, float], None]
+"""What is done in step k, which starts at t_k [s]."""
+
+CHUNK_SECONDS = 0.1
+"""A chunk of steps ends after about so long, for the look at progress and Ctrl-C that is between two."""
+_LEAST, _FIRST = 256, 16384  # steps of a chunk that room is made for; of the first one at most
+_ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
+
+
+def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
+    """A function that writes all inputs of a unit from their routes: one assignment for each."""
+    lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
+    scope: dict[str, Any] = {"memory": memory}
+    exec("def take(k, time, m=memory):\n" + "\n".join(lines), scope)
+    return cast(Act, scope["take"])
+
+
+class Turn:
+    """One unit in the schedule, with what happens round its step."""
+
+    def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], step_size: float) -> None:
+        self.unit, self.plan, self.memory = unit, plan, memory
+        self.take = compile_routes(plan.routes, memory)
+        self.step_size = step_size * plan.every / plan.substeps
+        self.substeps = plan.substeps
+        outputs = [b for b in plan.blocks if b.kind != "input"]
+        self.continuous = [b for b in outputs if b.kind == "continuous"]
+        self.published = [
+            (slice(b.slot, b.slot + len(b.variables)), memory[b.latest : b.latest + len(b.variables)])
+            for b in self.continuous
+        ]
+        self.read = [
+            (memory[f : f + len(b.variables)], b)
+            for b in outputs
+            if b.type == "Real"
+            for f in [b.latest if b.kind == "continuous" else b.slot]
+        ]
+        self.has_feedthrough = any(b.feedthrough for b in outputs)
+        self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
+
+    def begin(self, k: int, time: float) -> None:
+        """Apply what events do to the inputs, give them to the unit, and begin its step."""
+        if self.effects:
+            self.apply_effects()
+        self.unit.set_inputs()
+        if self.has_feedthrough:
+            self.unit.get_feedthrough()
+        self.unit.start_step(time, self.step_size, self.substeps)
+
+    def end(self, k: int, time: float) -> None:
+        """Wait for the step and read the outputs. Raises RunError when one is NaN or infinite."""
+        self.unit.finish_step()
+        self.unit.get_outputs()
+        self.check_finite()
+
+    def publish(self, k: int, time: float) -> None:
+        """The continuous outputs after the step become those valid at the next communication point."""
+        for valid, latest in self.published:
+            self.memory[valid] = latest
+
+    def apply_effects(self) -> None:
+        """Override and bias inputs."""
+        for slot, (action, value) in self.effects.items():
+            self.memory[slot] = value if action == "override" else self.memory[slot] + value
+
+    def check_finite(self) -> None:
+        """Raise RunError when an output that was just read is NaN or infinite."""
+        for values, block in self.read:
+            # NaN and infinity survive the sum: the fastest way to see one; so may a sum of huge values look
+            if not math.isfinite(sum(values)):
+                for v, value in zip(block.variables, values, strict=True):
+                    if not math.isfinite(value):
+                        unit = f" {v.unit}" if v.unit else ""
+                        raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
+
+
+class Sender:
+    """A message in the schedule; `waiting` is where its values wait, if its bus has a delay."""
+
+    def __init__(
+        self, plan: MessagePlan, channel: MessageChannel, memory: memoryview[float], waiting: Waiting | None
+    ) -> None:
+        self.plan, self.channel, self.memory, self.waiting = plan, channel, memory, waiting
+
+    def send(self, k: int, time: float) -> None:
+        """Sample all signals. Raises RunError naming sender and signal where one cannot be sent."""
+        try:
+            self.channel.transmit(self.memory, k)
+        except ChannelError as error:
+            raise self.failed(error) from error
+        if self.waiting is not None:
+            row = self.waiting.row((k - self.plan.first) // self.plan.every)
+            for i, (slot, _) in enumerate(self.plan.arrivals, row):
+                self.memory[i] = self.memory[slot]
+
+    def failed(self, error: ChannelError) -> RunError:
+        """The error of a run for one of the channel."""
+        name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
+        return RunError(f"{self.plan.senders.get(error.signal, '')} via {name}: {error.rule}")
+
+    def deliver(self, k: int, time: float) -> None:
+        """What was sampled `delay` steps ago reaches the mailboxes."""
+        assert self.waiting is not None  # only messages with a delay are delivered
+        row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
+        for i, (_, mailbox) in enumerate(self.plan.arrivals, row):
+            self.memory[mailbox] = self.memory[i]
+
+
+class Engine:
+    """A plan with its units, and the steps done so far; a subclass says how steps are done (`_run`).
+
+    `recorded` gives the rows up to now; those of long runs are in a temporary file (see `cosim.rows`).
+    """
+
+    name: str
+    notice = ""
+    """What is not as it should be with the engine itself, in a sentence."""
+    profile: Profile | None = None
+    """Gets what each part takes, if it is set before the start."""
+
+    def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
+        self.plan = plan
+        self.k = 0
+        self.whole = True
+        self.schedule = schedule(plan)
+        self.late, size = waiting(plan)
+        self.memory: NDArray[np.float64] = np.zeros(size)
+        self.view = floats(self.memory)
+        self.columns = np.array(plan.column_slots, dtype=np.intp)
+        self._store = RowStore(len(self.columns))
+        self._most = max(_LEAST, _ROOM // (8 * (len(self.columns) + len(plan.drives) + 1)))
+        self._chunk = min(_FIRST, self._most)
+        for unit_plan in plan.units:
+            units[unit_plan.name].bind(self.memory, unit_plan)
+        h = plan.experiment.step_size
+        self.turns = [Turn(units[p.name], p, self.view, h) for p in plan.units]
+        self.senders = [
+            Sender(m, MessageChannel(m.message, m.routes, m.settings, log_raw), self.view, self.late.get(i))
+            for i, m in enumerate(plan.messages)
+        ]
+        self._events = list(plan.events)
+        self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
+                         for b in p.blocks if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
+
+    @property
+    def time(self) -> float:
+        """The current communication point t_k [s]."""
+        return self.time_at(self.k)
+
+    def time_at(self, k: int) -> float:
+        """t_k [s]."""
+        return self.plan.experiment.start_time + k * self.plan.experiment.step_size
+
+    def start(self) -> None:
+        """Read all outputs at the start time. The units have left initialization mode."""
+        for slot, value in self.plan.initial.items():
+            self.memory[slot] = value
+        for turn in self.turns:
+            turn.unit.get_outputs()
+            turn.publish(0, self.time)
+            turn.check_finite()
+
+    # ---- stepping
+
+    def advance(self, steps: int, progress: Callable[[int], None] | None = None) -> None:
+        """Do `steps` steps. What was recorded before an error or Ctrl-C is kept.
+
+        Raises UnitError or RunError with the unit, the time and the reason.
+        """
+        end = self.k + steps
+        while self.k < end:
+            self.happen()
+            self._advance_chunk(min(self._chunk, end - self.k, self._until_event()))
+            if progress is not None:
+                progress(self.k)
+
+    def _advance_chunk(self, count: int) -> None:
+        first, begin = self.k, time.perf_counter()
+        drives = self._stimuli(count)
+        rows = np.empty((count, len(self.columns)))
+        self.whole = False
+        try:
+            self._run(count, drives, rows)
+            self.whole = True
+        except RunError as error:
+            raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
+        finally:
+            done = self.k - first
+            self._store.append(rows if done == count else rows[:done].copy())
+            for sender in self.senders:
+                sender.channel.flush()
+        self._adapt(count, done, time.perf_counter() - begin)
+
+    def _stimuli(self, count: int) -> NDArray[np.float64]:
+        """The values of the stimuli at the next `count` communication points, shape (drives, count)."""
+        if not self.plan.drives:
+            return np.empty((0, count))
+        experiment = self.plan.experiment
+        steps = np.arange(self.k, self.k + count, dtype=np.float64)
+        times = experiment.start_time + steps * experiment.step_size
+        return np.array([d.map.scale * d.signal(times) + d.map.offset for d in self.plan.drives])
+
+    def _adapt(self, count: int, done: int, seconds: float) -> None:
+        """The next chunk's steps: as many as this one's time allowed, or more where it left time."""
+        if done < count:
+            self._chunk = max(64, 2 * done)
+        elif count == self._chunk and seconds < CHUNK_SECONDS / 8:
+            self._chunk = min(8 * count, self._most)
+
+    def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
+        """Do `count` steps, or as many as CHUNK_SECONDS allow but one, each counted in `k` when it is done.
+
+        `drives` are the values of the stimuli, shape (drives, count); `rows` gets those of the recorded
+        slots, shape (count, recorded). No event happens within.
+        """
+        raise NotImplementedError
+
+    def act(self, action: Action) -> Act:
+        """What does an action of a message or a unit."""
+        if action.kind in ("send", "deliver"):
+            sender = self.senders[action.index]
+            return sender.send if action.kind == "send" else sender.deliver
+        turn = self.turns[action.index]
+        acts = {"take": turn.take, "begin": turn.begin, "end": turn.end, "publish": turn.publish}
+        return acts[action.kind]
+
+    # ---- events and results
+
+    def happen(self) -> None:
+        """The events whose time has come."""
+        while self._events and self._events[0][0] <= self.k:
+            _, event = self._events.pop(0)
+            self.effect(event.variable, event.action, event.value)
+
+    def _until_event(self) -> int:
+        """How many steps there are before the next event."""
+        return self._events[0][0] - self.k if self._events else sys.maxsize
+
+    def effect(self, name: str, action: str, value: float | None = None) -> None:
+        """Override or bias what an input receives from now on, or reset it (see `resolve.check_effect`)."""
+        slot = self.plan.inputs[name].slot
+        effects = self._by_slot[slot].effects
+        if value is None:
+            effects.pop(slot, None)
+        else:
+            effects[slot] = ("override" if action == "override" else "bias", value)
+
+    def recorded(self) -> Table:
+        """The rows so far, a column for each of the plan's; unless the last step broke off, one more for now.
+
+        In that one the inputs and the discrete outputs are those of the last step.
+        """
+        return self._store.table(self.memory[None, self.columns] if self.whole else None)

@@ -1,0 +1,119 @@
+"""Initialization: outputs reach inputs along the declared dependencies, before the first step.
+
+An input or output of a unit is a node; a direct connection leads from an output to an input, and a
+declared initial dependency from an input to an output of the same unit. Without a loop there is an order
+in which every value is final when it is passed on. A loop is an algebraic loop: it is refused by name, or
+iterated until nothing changes by more than a tolerance. What crosses a bus takes no part: before the
+first message a receiver sees its initial value.
+"""
+
+from __future__ import annotations
+
+import graphlib
+import math
+from collections.abc import Iterable, Mapping
+
+from ...cosim.errors import ConfigError
+from ...cosim.interface import UnitInterface
+from ...cosim.plan.plan import Link, Plan
+from ..unit import Unit, UnitError
+
+_ITERATIONS = 200
+_Node = tuple[str, str]
+
+
+def ordered_links(plan: Plan) -> tuple[tuple[Link, ...], bool]:
+    """The direct connections in an order in which each source is final when it is passed on, and False.
+
+    Where there is a loop: in written order, to be iterated, and True; ConfigError naming the loop if the
+    experiment refuses loops.
+    """
+    interfaces = {unit.name: unit.interface for unit in plan.units}
+    loop, order = _order(plan.links, interfaces)
+    if loop and plan.experiment.algebraic_loops == "refuse":
+        path = " -> ".join(".".join(node) for node in loop)
+        raise ConfigError(
+            f"system '{plan.system}': algebraic loop: {path}; break it with a bus or a unit without direct "
+            f'feedthrough, or set algebraic_loops = "iterate" in [experiment]'
+        )
+    rank = {node: i for i, node in enumerate(order)}
+    return tuple(sorted(plan.links, key=lambda link: rank.get(link.source, 0))), bool(loop)
+
+
+def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tuple[list[_Node], list[_Node]]:
+    """(the loop, nothing) or (nothing, the nodes in order)."""
+    links = tuple(links)
+    graph: dict[_Node, set[_Node]] = {}
+    for link in links:
+        graph.setdefault(link.sink, set()).add(link.source)
+    for unit, name in {link.source for link in links}:
+        output = interfaces[unit].variables[name]
+        inputs = {v.name for v in interfaces[unit].of_causality("input")}
+        needs = [output.depends, output.depends_initially]
+        known = inputs if None in needs else inputs.intersection(*[set().union(*(n or () for n in needs))])
+        graph.setdefault((unit, name), set()).update((unit, i) for i in known)
+    try:
+        return [], list(graphlib.TopologicalSorter(graph).static_order())
+    except graphlib.CycleError as error:
+        return list(error.args[1]), []
+
+
+def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
+    """Bring every unit from instantiated to ready for its first step.
+
+    Raises UnitError when a unit refuses, an output is NaN or infinite, or a loop does not converge.
+    """
+    links, looped = ordered_links(plan)
+    experiment = plan.experiment
+    for unit_plan in plan.units:
+        unit = units[unit_plan.name]
+        for name, value in unit_plan.parameters.items():
+            unit.set(name, value)
+        unit.enter_initialization(experiment.start_time, experiment.stop_time)
+    _set_free_inputs(units, plan)
+    if looped:
+        _iterate(units, links, experiment.loop_tolerance)
+    else:
+        for link in links:
+            _pass_on(units, link)
+    for unit in units.values():
+        unit.exit_initialization()
+
+
+def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
+    """Inputs that no output reaches directly are initialized with their start value, driven or not."""
+    linked = {".".join(link.sink) for link in plan.links}
+    for name, receiver in plan.inputs.items():
+        if name not in linked:
+            _set_number(units, name, plan.initial[receiver.slot])
+
+
+def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
+    unit, _, variable = name.partition(".")
+    kind = units[unit].interface.variables[variable].type
+    units[unit].set(variable, value if kind == "Real" else bool(value) if kind == "Boolean" else round(value))
+
+
+def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
+    unit, name = link.source
+    value = float(units[unit].get(name))
+    if not math.isfinite(value):
+        raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
+    value = link.map(value)
+    _set_number(units, ".".join(link.sink), value)
+    return value
+
+
+def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float) -> None:
+    before = [_pass_on(units, link) for link in links]
+    for _ in range(_ITERATIONS):
+        now = [_pass_on(units, link) for link in links]
+        changes = [abs(b - a) for a, b in zip(before, now, strict=True)]
+        if max(changes) <= tolerance:
+            return
+        before = now
+    worst = links[changes.index(max(changes))]
+    raise UnitError(
+        f"the algebraic loop through {'.'.join(worst.source)} -> {'.'.join(worst.sink)} does not converge: "
+        f"it still changes by {max(changes):.3g} after {_ITERATIONS} iterations (tolerance {tolerance:g})"
+    )

@@ -1,0 +1,63 @@
+"""Outputs that no vehicle can have, though their unit's status was ok all the time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...cosim.interface import VariableInfo
+from ...cosim.plan.plan import Plan
+from ...cosim.row_store import Array, Table
+
+_ROWS = 1 << 14  # at a time
+_SLACK = 1e-9  # of a limit, for what was rounded
+_LARGEST = 1e30
+"""Beyond it, in whatever unit of measure, an output without declared limits is taken to have diverged."""
+
+
+class Extremes:
+    """The smallest and the largest value of each column of a table that grows; no row is read twice."""
+
+    def __init__(self, columns: int) -> None:
+        self._rows = 0
+        self._low, self._high = np.full(columns, np.inf), np.full(columns, -np.inf)
+
+    def of(self, table: Table) -> tuple[Array, Array]:
+        """Both, shapes (columns,). The last row may not be final: it is read again with those that follow."""
+        count = table.shape[0]
+        for start in range(self._rows, count - 1, _ROWS):
+            self._low, self._high = self._with(table.rows(start, min(start + _ROWS, count - 1)))
+        self._rows = max(self._rows, count - 1)
+        return self._with(table.rows(self._rows, count))
+
+    def _with(self, rows: Array) -> tuple[Array, Array]:
+        if not len(rows):
+            return self._low, self._high
+        return np.minimum(self._low, rows.min(axis=0)), np.maximum(self._high, rows.max(axis=0))
+
+
+def implausible(extremes: tuple[Array, Array], plan: Plan) -> list[str]:
+    """Recorded outputs that left the range that they declare, or went beyond 1e30: a sentence for each.
+
+    A range that does not hold is no error: it is the author's claim, and the run went on with what the unit
+    computed.
+    """
+    interfaces = {unit.name: unit.interface for unit in plan.units}
+    found = []
+    for column, low, high in zip(plan.columns, *extremes, strict=True):
+        unit, _, variable = column.name.partition(".")
+        about = interfaces[unit].variables[variable]
+        if low <= high and about.type in ("Real", "Integer") and about.causality in ("output", "local"):
+            found += _sentences(column.name, about, float(low), float(high))
+    return found
+
+
+def _sentences(name: str, about: VariableInfo, low: float, high: float) -> list[str]:
+    unit = f" {about.unit}" if about.unit else ""
+    if about.min is not None and low < about.min - _SLACK * abs(about.min):
+        return [f"{name} reached {low:g}{unit}, below its minimum of {about.min:g}{unit}"]
+    if about.max is not None and high > about.max + _SLACK * abs(about.max):
+        return [f"{name} reached {high:g}{unit}, above its maximum of {about.max:g}{unit}"]
+    farthest = max(low, high, key=abs)
+    if abs(farthest) > _LARGEST:
+        return [f"{name} reached {farthest:g}{unit}: it diverged, or its unit of measure is not what it says"]
+    return []

@@ -1,0 +1,52 @@
+"""Where the time of a run goes: what its actions take, by unit, bus message, stimuli and recording."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from ...cosim.plan.plan import Plan
+from .schedule import Action, Kind
+
+Part = tuple[str, str]
+"""What takes time, and at what."""
+
+_WHAT: dict[Kind, str] = {
+    "drive": "drive", "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
+    "end": "get", "record": "record", "publish": "get",
+}  # fmt: skip # a table
+
+
+def part_of(action: Action, plan: Plan, what: str = "") -> Part:
+    """The part that an action belongs to; `what`, where an engine knows it more exactly."""
+    if action.kind == "drive":
+        name = "stimuli"
+    elif action.kind == "record":
+        name = "results"
+    elif action.kind in ("send", "deliver"):
+        message = plan.messages[action.index]
+        name = f"{message.bus}.{message.message.name}"
+    else:
+        name = plan.units[action.index].name
+    return name, what or _WHAT[action.kind]
+
+
+class Profile:
+    """The seconds of each part, in the order in which they were first met."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[Part, float] = {}
+        self.clock = time.perf_counter
+
+    def add(self, part: Part, seconds: float) -> None:
+        """Add to a part."""
+        self.seconds[part] = self.seconds.get(part, 0.0) + seconds
+
+    def rows(self, total: float, steps: int) -> Sequence[tuple[str, str, float, float, float]]:
+        """Name, what, seconds, microseconds a step and share of the total [s] of each part; the last rows are
+        what is between them, and the total."""
+        rest = {("master", "between"): max(0.0, total - sum(self.seconds.values())), ("total", ""): total}
+        return [
+            (name, what, seconds, 1e6 * seconds / max(1, steps), seconds / total if total else 0.0)
+            for (name, what), seconds in (self.seconds | rest).items()
+        ]

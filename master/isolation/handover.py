@@ -1,0 +1,102 @@
+"""Handing a turn over between two processes: both look at a number in the shared memory, then sleep.
+
+A request has a number, and so has the answer to it. Who waits looks at the other's number for a short time
+and gives its core away between two looks, so that more processes than cores do not stop each other. Then it
+says that it sleeps and reads from the socket, and who writes a number rings the bell of one that sleeps.
+
+Memory order: x86 makes the stores of one core visible in their order and does loads in theirs, so that
+whoever sees a number sees what was written before it. A store may pass a later load, though: each side,
+between writing (its number, or that it sleeps) and looking at what the other one wrote, takes a lock of
+Python's, whose atomic exchange nothing passes on x86. Other machines promise less: there both sides only
+sleep, and each number is followed by a bell, which the system hands over in order.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable
+
+from . import framing
+
+_ORDERED = os.name == "posix" and os.uname().machine in ("x86_64", "amd64", "AMD64", "i386", "i686")
+_LOOKS = 20  # between two readings of the clock
+_give_way: Callable[[], None] = getattr(os, "sched_yield", lambda: time.sleep(0.0))  # macOS has none
+
+SPIN = 300e-6
+"""How long a side looks before it sleeps [s]: a few times what sleeping and waking costs."""
+
+
+def spin_time() -> float:
+    """How long a side looks on this machine [s]; 0: it sleeps at once, and a bell follows each number."""
+    return SPIN if _ORDERED else 0.0
+
+
+class Line:
+    """One side. `mine` is the slot of the number that it writes, `theirs` of that which it waits for;
+    `i_sleep` and `they_sleep` say who sleeps. `spin` [s] is the same on both sides."""
+
+    def __init__(
+        self,
+        connection: socket.socket,
+        slots: memoryview[float],
+        mine: tuple[int, int],
+        theirs: tuple[int, int],
+        spin: float,
+    ) -> None:
+        self._connection, self._slots, self._spin = connection, slots, spin
+        self._mine, self._i_sleep = mine
+        self._theirs, self._they_sleep = theirs
+        self._lock = threading.Lock()
+
+    def post(self, number: float) -> None:
+        """Write a number; all that belongs to it stands in the memory. Raises OSError."""
+        slots = self._slots
+        slots[self._mine] = number
+        self._exchange()
+        if not self._spin or slots[self._they_sleep]:
+            self._connection.sendall(framing.BELL)
+
+    def _exchange(self) -> None:
+        self._lock.acquire()
+        self._lock.release()
+
+    def comes(self, number: float) -> bool:
+        """Look for a number; whether it came in the time."""
+        slots, place, give_way = self._slots, self._theirs, _give_way
+        if not self._spin:
+            return False
+        if slots[place] == number:
+            return True
+        end = time.perf_counter() + self._spin
+        while time.perf_counter() < end:
+            for _ in range(_LOOKS):
+                give_way()
+                if slots[place] == number:
+                    return True
+        return False
+
+    def sleep_until(
+        self, number: float, most: int, impatience: framing.Impatience = framing.nothing
+    ) -> bytes:
+        """Sleep until a number is there, or return a frame that comes first. Raises as `framing.receive`."""
+        slots, place = self._slots, self._theirs
+        slots[self._i_sleep] = 1.0
+        self._exchange()
+        try:
+            while not (self._spin and slots[place] == number):
+                frame = framing.receive(self._connection, most, impatience)
+                if frame or slots[place] == number:
+                    return frame
+                impatience()
+            return b""
+        finally:
+            slots[self._i_sleep] = 0.0
+
+    def frame(self, most: int, impatience: framing.Impatience = framing.nothing) -> bytes:
+        """The next frame; bells that were rung for nothing are passed over."""
+        while not (frame := framing.receive(self._connection, most, impatience)):
+            impatience()
+        return frame

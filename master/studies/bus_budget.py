@@ -1,0 +1,94 @@
+"""Running a bus budget: every point of every series, independent of each other, on all cores."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+from ...cosim.analysis.bus_budget import Budget, Point, series
+from ...cosim.errors import ConfigError, nearest
+from ...cosim.interface import Value
+from ...cosim.plan.resolve import Options
+from ...cosim.results.metrics import Metric, evaluate
+from ...cosim.system.metric_spec import MetricSpec
+from ...cosim.system.selection import metric_specs
+from ...cosim.system.system import Algorithm, BudgetEntry
+from ...cosim.system.variation import BusVariation
+from ..simulation import Prepared, prepare, simulate
+from .parallel import Outcome, Progress, Task, run_all
+
+
+def budget(
+    system: str | Path,
+    scenario: str | Path | None = None,
+    *,
+    parameters: Mapping[str, Value] | None = None,
+    fmus: Mapping[str, str | Path] | None = None,
+    algorithm: Algorithm | None = None,
+    stop_time: float | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Budget:
+    """Vary the buses of a system and judge it by the metric of its [budget] table.
+
+    The first arguments are those of `simulate`, the last ones those of `parallel.run_all` (a script needs
+    `if __name__ == "__main__":`). Raises ConfigError before any run; a run that fails is a broken point.
+    """
+    prepared = prepare(system, scenario, Options(parameters or {}, algorithm, stop_time), fmus)
+    entry, spec = _asked(prepared)
+    planned = series(prepared.plan.experiment.step_size)
+    options = {"parameters": parameters, "fmus": fmus, "algorithm": algorithm, "stop_time": stop_time}
+    names: dict[BusVariation, str] = {}
+    for each in planned:
+        for point in each.points:
+            names.setdefault(point.bus, f"{each.name} {point.label}")  # the nominal point is run once
+    tasks = [
+        Task(name, measure, (system, scenario, spec), options | {"bus": bus}) for bus, name in names.items()
+    ]
+    found = dict(zip(names, run_all(tasks, workers, progress), strict=True))
+    return Budget(
+        system=prepared.plan.system,
+        scenario=prepared.plan.scenario,
+        metric=spec.name,
+        unit=spec.unit,
+        limit=entry.limit,
+        kind=entry.kind,
+        series=tuple(
+            dataclasses.replace(each, points=tuple(_judged(p, found[p.bus]) for p in each.points))
+            for each in planned
+        ),
+    )
+
+
+def measure(system: str | Path, scenario: str | Path | None, spec: MetricSpec, **options: object) -> Metric:
+    """Run a system and give one metric; `options` are those of `simulate`."""
+    results = simulate(system, scenario, **options)  # type: ignore[arg-type] # budget gives them by name
+    return evaluate(results, [spec])[0]
+
+
+def _judged(point: Point, outcome: Outcome[Metric]) -> Point:
+    if outcome.failure is not None:
+        return dataclasses.replace(point, value=math.nan, reason=outcome.failure.reason)
+    metric = outcome.result()
+    return dataclasses.replace(point, value=metric.value, reason=metric.reason)
+
+
+def _asked(prepared: Prepared) -> tuple[BudgetEntry, MetricSpec]:
+    """The metric that the system names. Raises ConfigError where there is none, or no bus to vary."""
+    path, entry = prepared.system.path, prepared.system.file.budget
+    if entry is None:
+        raise ConfigError(
+            f"{path}: the system does not say what it is judged by; give it a table [budget] with 'metric', "
+            "the name of one of its metrics, and 'limit'"
+        )
+    specs = {spec.name: spec for spec in metric_specs(prepared.system, prepared.scenario)}
+    if entry.metric not in specs:
+        raise ConfigError(
+            f"{path}: budget.metric: scenario '{prepared.scenario.name}' has no metric '{entry.metric}'"
+            f"{nearest(entry.metric, specs)}; there are: {', '.join(specs) or 'none'}"
+        )
+    if not any(route.sinks for message in prepared.plan.messages for route in message.routes):
+        raise ConfigError(f"{path}: no unit receives anything over a bus, so that there is nothing to vary")
+    return entry, specs[entry.metric]

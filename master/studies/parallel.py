@@ -1,0 +1,249 @@
+"""Independent tasks on all cores, in processes of their own: FMUs cannot be shared, and one may crash.
+
+outcomes = run_all([Task("mass 180", simulate, ("scooter",), {"parameters": {"vehicle.mass": 180.0}})])
+
+Worker processes are started afresh (`spawn`), so that a task sees no state of the caller. They take the tasks
+in order, one at a time; the outcomes stand in the order of the tasks, whichever ended first. A task that
+raises, or whose process dies, is an outcome with a failure and stops no other one. Ctrl-C ends all workers at
+once: they ignore the signal themselves, and the caller kills them. What a worker prints goes to stderr.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import itertools
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any, Generic, TypeVar
+
+from ...cosim.errors import RunError
+
+T = TypeVar("T")
+
+_ENDING = 5.0  # s that a process which has closed its pipe may take to end
+
+Progress = Callable[[int, int, str], None]
+"""Called with the number of tasks done, the number of all tasks, and the name of the one that just ended."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Task(Generic[T]):
+    """A call of a module's function with picklable arguments; `name` is what errors call it."""
+
+    name: str
+    function: Callable[..., T]
+    arguments: tuple[Any, ...] = ()
+    keywords: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+
+    def __call__(self) -> T:
+        return self.function(*self.arguments, **self.keywords)
+
+
+@dataclasses.dataclass(frozen=True)
+class Failure:
+    """Why a task gave no result: the class of the exception (`ProcessDied`: none was raised) and what it
+    said. `trace` is the traceback in the worker."""
+
+    kind: str
+    reason: str
+    trace: str = ""
+
+
+class TaskError(RunError):
+    """A task failed. The message names the task and the reason; `failure` has the traceback in the worker."""
+
+    def __init__(self, name: str, failure: Failure) -> None:
+        super().__init__(f"{name}: {failure.reason}")
+        self.failure = failure
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome(Generic[T]):
+    """What came of a task: its result, or else a failure; `seconds` it took."""
+
+    name: str
+    value: T | None
+    failure: Failure | None
+    seconds: float
+
+    def result(self) -> T:
+        """What the task returned. Raises TaskError with the task's name if it failed."""
+        if self.failure is not None:
+            raise TaskError(self.name, self.failure)
+        return self.value  # type: ignore[return-value] # T may be None itself; without a failure it is a T
+
+
+def cores() -> int:
+    """The number of processors that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # Windows and macOS have none
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def run_all(
+    tasks: Sequence[Task[T]], workers: int | None = None, progress: Progress | None = None
+) -> list[Outcome[T]]:
+    """Run all tasks in `workers` processes (default: as many as there are cores) and wait for them.
+
+    A script that calls this needs `if __name__ == "__main__":` round its own calls, since every worker
+    imports it. Raises TypeError, before any task is started, for one that cannot be sent to a process.
+    """
+    if workers is not None and workers < 1:
+        raise ValueError(f"workers = {workers}: at least one is needed")
+    queue = [_packed(task) for task in tasks]
+    outcomes: dict[int, Outcome[T]] = {}
+    if not tasks:
+        return []
+    with _Crew(min(workers or cores(), len(tasks))) as crew:
+        for i, outcome in crew.work(tasks, queue):
+            outcomes[i] = outcome
+            if progress is not None:
+                progress(len(outcomes), len(tasks), outcome.name)
+    return [outcomes[i] for i in range(len(tasks))]
+
+
+def _packed(task: Task[Any]) -> bytes:
+    try:
+        return pickle.dumps(task)
+    except Exception as error:  # pickle raises what the objects' own methods raise
+        raise TypeError(f"task '{task.name}' cannot be sent to a process: {error}") from error
+
+
+@dataclasses.dataclass
+class _Worker:
+    """A process, our end of its pipe, and the task that it does."""
+
+    process: BaseProcess
+    pipe: Connection
+    task: int = -1
+    begin: float = 0.0
+
+
+class _Crew:
+    """The workers; leaving the `with` block ends them all, whatever they do."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.workers: list[_Worker] = []
+        self.context = multiprocessing.get_context("spawn")
+
+    def __enter__(self) -> _Crew:
+        # FMUs are extracted below this folder: a worker that is killed cannot remove them, so we do
+        self.folder = tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        for worker in self.workers:
+            worker.process.kill()
+        for worker in self.workers:
+            worker.process.join()
+            worker.pipe.close()
+        self.folder.cleanup()
+
+    def work(self, tasks: Sequence[Task[T]], queue: Sequence[bytes]) -> Iterator[tuple[int, Outcome[T]]]:
+        """Yield each task's place and outcome as it ends."""
+        waiting = iter(range(len(queue)))
+        for i in itertools.islice(waiting, self.size):
+            self._give(self._hire(), i, queue)
+        while busy := {w.pipe: w for w in self.workers if w.task >= 0}:
+            for pipe in wait(list(busy)):
+                worker = busy[pipe]  # type: ignore[index] # we gave pipes alone
+                i, answer = worker.task, _answer(worker)
+                yield i, Outcome(tasks[i].name, *answer, seconds=time.perf_counter() - worker.begin)
+                worker.task = -1
+                if not worker.process.is_alive():
+                    self.workers.remove(worker)
+                    worker.pipe.close()
+                if (following := next(waiting, None)) is not None:
+                    self._give(worker if worker in self.workers else self._hire(), following, queue)
+
+    def _hire(self) -> _Worker:
+        ours, theirs = self.context.Pipe()
+        process = self.context.Process(target=_serve, args=(theirs, self.folder.name), daemon=True)
+        with _without_ctrl_c():
+            process.start()
+        theirs.close()  # so that the end of the process is the end of the pipe
+        self.workers.append(_Worker(process, ours))
+        return self.workers[-1]
+
+    @staticmethod
+    def _give(worker: _Worker, i: int, queue: Sequence[bytes]) -> None:
+        worker.task, worker.begin = i, time.perf_counter()
+        with contextlib.suppress(
+            OSError
+        ):  # it died while it had nothing to do: waiting for its answer says so
+            worker.pipe.send_bytes(queue[i])
+
+
+def _answer(worker: _Worker) -> tuple[Any, Failure | None]:
+    """The result and the failure that a worker sends, or that it has died."""
+    try:
+        answer: tuple[Any, Failure | None] = pickle.loads(worker.pipe.recv_bytes())
+        return answer
+    except (EOFError, OSError):
+        worker.process.join(_ENDING)
+        worker.process.kill()  # one that closed its pipe and goes on is of no use
+        worker.process.join()
+        return None, Failure("ProcessDied", f"its process died: {_ending(worker.process.exitcode)}")
+
+
+def _ending(code: int | None) -> str:
+    if code is not None and code < 0:
+        with contextlib.suppress(ValueError):  # a signal that Python has no name for
+            return signal.Signals(-code).name
+    return f"exit code {code}"
+
+
+@contextlib.contextmanager
+def _without_ctrl_c() -> Iterator[None]:
+    """What starts in here never sees Ctrl-C, not even while it imports; for us it waits to the end of it."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows: a worker ignores it from `_serve` on
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+# ---- in the worker
+
+
+def _serve(pipe: Connection, folder: str) -> None:
+    """Do what comes through the pipe until it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stdout = sys.stderr
+    os.dup2(2, 1)  # what native code prints, too: the caller's stdout may be read by a machine
+    tempfile.tempdir = folder
+    threading.Thread(target=_end_with_caller, daemon=True).start()
+    with contextlib.suppress(EOFError, OSError):  # the caller has gone
+        while True:
+            pipe.send_bytes(_done(pipe.recv_bytes()))
+
+
+def _end_with_caller() -> None:
+    """A caller that was killed could not end us; a task may go on for minutes."""
+    caller = multiprocessing.parent_process()
+    if caller is not None:
+        wait([caller.sentinel])
+        os._exit(1)
+
+
+def _done(packed: bytes) -> bytes:
+    try:
+        task: Task[Any] = pickle.loads(packed)
+        return pickle.dumps((task(), None))
+    except BaseException as error:  # SystemExit too: only the caller ends a worker
+        reason = str(error) or type(error).__name__
+        return pickle.dumps((None, Failure(type(error).__name__, reason, traceback.format_exc())))

@@ -1,0 +1,158 @@
+"""One unit alone, driven over some seconds."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import time
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from ....cosim.errors import RunError
+from ....cosim.interface import UnitInterface, Value
+from ....cosim.results.results import Array
+from ....cosim.swap.mapping import present
+from ....cosim.system.scenario import Scenario, ScenarioFile, StimulusEntry
+from ....cosim.system.system import Isolation, System, SystemFile, UnitEntry
+from ....cosim.units import Affine, conversion, defined
+from ...builtin import fmu_file
+from ...fmi.fmu import read_fmu
+from ...simulation import Simulation
+
+Drive = Mapping[str, Sequence[tuple[float, float]]]
+"""The points (time [s] from the start, value) of each input, in the units of measure of the system."""
+
+
+class OutOfTime(RunError):
+    """The time limit of a trial has passed."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Deadline:
+    """The end of a trial; `answer` [s] is what an answer of a unit's process may take."""
+
+    end: float
+    answer: float
+
+    def check(self) -> None:
+        """Raise OutOfTime after the end."""
+        if time.monotonic() > self.end:
+            raise OutOfTime("the time limit of the trial has passed")
+
+
+class Bench:
+    """A unit's entry of a system, to be run alone. `outputs` are recorded, in the units of measure of `ours`,
+    the interface of the unit that is in the system now; `ours` None: it is that unit itself."""
+
+    def __init__(
+        self,
+        system: System,
+        scenario: Scenario,
+        unit: str,
+        entry: UnitEntry,
+        ours: UnitInterface | None,
+        outputs: Sequence[str],
+        duration: float,
+    ) -> None:
+        self.system, self.unit, self.entry = system, unit, entry
+        self.fmu = read_fmu(fmu_file(entry.fmu, system.path), entry.strict)
+        self.interface = present(self.fmu.interface, entry, f"{system.path}: units.{unit}")
+        self.ours = ours or self.interface
+        self.isolation: Isolation | None = None if ours is None else "process"
+        self.outputs = [name for name in outputs if name in self.interface.variables]
+        self.inputs = [v.name for v in self.interface.of_causality("input")]
+        changes = scenario.file.experiment
+        self.step_size = changes.step_size or system.file.experiment.step_size
+        self.start = system.file.experiment.start_time
+        self.duration = max(1, round(duration / self.period)) * self.period
+        self.warnings = 0
+        self._scenario = scenario
+
+    @property
+    def period(self) -> float:
+        """How often the unit steps [s]."""
+        return self.entry.period or self.step_size
+
+    @contextlib.contextmanager
+    def loaded(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> Iterator[Simulation]:
+        """The unit ready to step. Raises ConfigError, RunError."""
+        deadline.check()
+        timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
+        update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout}
+        entry = self.entry.model_copy(update=update)
+        with Simulation(self._alone(entry), self._driven(drive), isolation=self.isolation) as simulation:
+            try:
+                yield simulation
+            finally:
+                self.warnings += sum(unit.warnings for unit in simulation.units.values())
+
+    def run(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
+        """The outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
+        with self.loaded(drive, deadline, substeps) as simulation:
+            deadline.check()
+            simulation.run(lambda *_: deadline.check())
+            results = simulation.results
+        columns = {}
+        for name in self.outputs:
+            map_ = self.to_ours(name)
+            columns[name] = map_.scale * results[f"{self.unit}.{name}"] + map_.offset
+        return columns
+
+    def to_ours(self, name: str) -> Affine:
+        """From the values of a variable to the unit of measure of the unit that is there now."""
+        return _between(self.interface, self.ours, name)
+
+    def from_ours(self, name: str) -> Affine:
+        """The other way."""
+        return _between(self.ours, self.interface, name)
+
+    def _alone(self, entry: UnitEntry) -> System:
+        experiment = self.system.file.experiment.model_copy(
+            update={"stop_time": self.start + self.duration, "step_size": self.step_size}
+        )
+        file = SystemFile(
+            name=self.system.file.name,
+            experiment=experiment,
+            units={self.unit: entry},
+            record=[f"{self.unit}.{name}" for name in self.outputs],
+        )
+        return System(self.system.path, file)
+
+    def _driven(self, drive: Drive) -> Scenario:
+        stimuli = [
+            StimulusEntry(
+                to=f"{self.unit}.{name}",
+                unit=self.ours.variables[name].unit or None,
+                table=[(self.start + t, value) for t, value in points],
+            )
+            for name, points in drive.items()
+            if name in self.inputs
+        ]
+        given, known = self._scenario.file, self.interface.variables
+        return Scenario(
+            "trial",
+            None,
+            ScenarioFile(
+                stimulus=stimuli,
+                parameters={self.unit: _of(given.parameters.get(self.unit, {}), known)},
+                start={self.unit: _of(given.start.get(self.unit, {}), known)},
+            ),
+        )
+
+
+def _between(source: UnitInterface, target: UnitInterface, name: str) -> Affine:
+    """Between the units of measure of a variable; as it is where one of the two has none."""
+    before, after = source.variables[name].unit, target.variables[name].unit
+    if not before or not after:
+        return Affine()
+    return conversion(defined(before, source.units_of_measure), defined(after, target.units_of_measure))
+
+
+def _of(values: Mapping[str, Value], known: Mapping[str, object]) -> dict[str, Value]:
+    return {name: value for name, value in values.items() if name in known}
+
+
+def largest(values: Array) -> float:
+    """The largest magnitude."""
+    return float(np.max(np.abs(values))) if len(values) else 0.0

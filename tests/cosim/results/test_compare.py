@@ -1,0 +1,152 @@
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.compare import compare, difference, worst
+from evcosim.cosim.results.results import Results, ResultVariable
+
+SPEED = ResultVariable("vehicle.speed", "m/s")
+STATE = ResultVariable("ecu.state", type="Enumeration", variability="discrete")
+
+
+def one(values, variable: ResultVariable = SPEED, step: float = 1.0, start: float = 0.0) -> Results:
+    values = np.asarray(values, dtype=float)
+    return Results(start + step * np.arange(len(values)), values[:, None], [variable])
+
+
+numbers = arrays.arrays(np.float64, 8, elements=st.floats(-1e6, 1e6))
+
+
+@given(numbers)
+def test_results_equal_themselves_without_tolerance(values: np.ndarray) -> None:
+    assert compare(one(values), one(values)).equal
+
+
+@given(numbers, numbers, st.floats(0, 1e6))
+def test_the_tolerance_is_where_equal_begins(x: np.ndarray, y: np.ndarray, tolerance: float) -> None:
+    row = compare(one(x), one(y)).rows[0]
+    assert row.difference == np.max(np.abs(x - y))
+    assert row.difference == compare(one(y), one(x)).rows[0].difference
+    assert row.rms <= row.difference * (1 + 1e-12)
+    assert abs(x - y)[int(row.time)] == row.difference
+    assert compare(one(x), one(y), tolerance).equal == (row.difference <= tolerance)
+    assert compare(one(x), one(y), row.difference).equal
+
+
+def test_the_relative_tolerance_is_a_share_of_the_range_of_the_first() -> None:
+    a, b = one([0.0, 100.0]), one([1.0, 100.0])
+    assert compare(a, b, relative=0.01).equal
+    assert not compare(a, b, relative=0.0099).equal
+    assert compare(a, b, tolerance=0.5, relative=0.005).equal
+    assert compare(a, b).rows[0].relative == 0.01
+
+
+@pytest.mark.parametrize("pair", [(math.nan, 1.0), (1.0, math.nan), (math.nan, math.nan), (math.inf, 1.0)])
+def test_what_is_no_number_is_a_difference_at_its_time(pair: tuple[float, float]) -> None:
+    found = compare(one([1.0, pair[0]]), one([1.0, pair[1]]), tolerance=math.inf, relative=1.0)
+    assert not found.equal
+    assert found.rows[0].difference == math.inf
+    assert found.rows[0].time == 1.0
+
+
+def test_units_of_measure_are_converted() -> None:
+    other = ResultVariable("vehicle.speed", "km/h")
+    assert compare(one([1.0, 5.0]), one([3.6, 18.0], other), tolerance=1e-12).equal
+    unknown = compare(one([1.0]), one([1.0], ResultVariable("vehicle.speed")))
+    assert unknown.equal and unknown.rows[0].remark == "[m/s] on one side only: compared as numbers"
+    force = compare(one([1.0]), one([1.0], ResultVariable("vehicle.speed", "N")), tolerance=9.0)
+    assert not force.equal
+    assert force.rows[0].remark == "[N] and [m/s] measure different quantities"
+    assert worst(force.rows, 6) == []
+
+
+@given(st.floats(-10, 10), st.floats(-10, 10))
+def test_a_line_on_another_grid_is_the_same_line(slope: float, start: float) -> None:
+    def line(step: float, n: int) -> Results:
+        return one(start + slope * step * np.arange(n), step=step)
+
+    found = compare(line(1.0, 5), line(0.25, 17), tolerance=1e-12)
+    assert found.equal and found.points == 5
+    assert "interpolated" in found.remarks[0]
+    assert compare(line(0.25, 17), line(1.0, 5), tolerance=1e-12).equal
+
+
+def test_a_held_value_on_another_grid_is_the_previous_one() -> None:
+    fine = one([0, 0, 1, 1, 2], STATE, step=0.5)
+    coarse = one([0, 1, 2], STATE)
+    assert compare(fine, coarse).equal
+    assert compare(coarse, fine).equal
+
+
+def test_times_that_another_tool_accumulated_are_the_same_times() -> None:
+    time = np.cumsum(np.full(100, 0.01))
+    values = np.random.default_rng(1).normal(size=(100, 1))
+    accumulated = Results(time + 1e-10, values, [SPEED])
+    found = compare(Results(np.arange(1, 101) * 0.01, values, [SPEED]), accumulated)
+    assert found.equal and not found.remarks
+
+
+def test_a_run_that_ends_early_is_not_equal() -> None:
+    found = compare(one([1.0, 2.0, 3.0]), one([1.0, 2.0]))
+    assert all(row.equal for row in found.rows)
+    assert not found.same_span and not found.equal
+    assert "the first goes from 0 to 2 s, the second from 0 to 1 s" in found.summary()
+
+
+def test_nothing_in_common_is_not_equal() -> None:
+    apart = compare(one([1.0]), one([1.0], start=5.0))
+    assert not apart.equal and apart.points == 0
+    assert apart.rows[0].remark == "no common time"
+    empty = compare(one([]), one([]))
+    assert not empty.equal
+    other = compare(one([1.0]), one([1.0], STATE))
+    assert not other.equal
+    assert (other.only_a, other.only_b) == (("vehicle.speed",), ("ecu.state",))
+    assert "only in the second: ecu.state" in other.summary()
+
+
+def test_missing_variables_are_listed_and_do_not_count() -> None:
+    both = Results([0.0], [[1.0, 2.0]], [SPEED, STATE])
+    found = compare(both, one([1.0]))
+    assert found.equal and found.only_a == ("ecu.state",) and found.only_b == ()
+
+
+def test_the_table_tells_what_differs() -> None:
+    a = Results([0.0, 0.5], [[0.0, 1.0], [10.0, 2.0]], [SPEED, STATE])
+    b = Results([0.0, 0.5], [[0.0, 1.0], [10.5, 2.0]], [SPEED, STATE])
+    header, rows = compare(a, b).table()
+    assert all(len(row) == len(header) for row in rows)
+    assert rows[0] == ("vehicle.speed", "m/s", "0.5", "0.5", "0.3536", "5 %", "differs")
+    assert rows[1][-1] == ""
+    assert compare(a, b).table(all_rows=False)[1] == rows[:1]
+    assert compare(a, b).summary() == "different: 1 of 2 common variables at 2 times, tolerance 0"
+    assert (
+        compare(a, b, 1.0, 0.01)
+        .summary()
+        .startswith("equal: 2 common variables at 2 times, tolerance 1 + 1 %")
+    )
+    assert worst(compare(a, b).rows, 6) == ["vehicle.speed"]
+    assert worst(compare(a, a).rows, 6) == ["vehicle.speed", "ecu.state"]
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, math.nan])
+def test_a_tolerance_is_a_number_from_0(tolerance: float) -> None:
+    with pytest.raises(ConfigError, match="must not be negative"):
+        compare(one([1.0]), one([1.0]), tolerance)
+
+
+def test_a_difference_is_signed_and_in_the_unit_of_the_first() -> None:
+    a, b = one([1.0, 2.0, 4.0]), one([3.6, 10.8, 14.4], dataclasses.replace(SPEED, unit="km/h"))
+    assert a.variables[0].unit == "m/s"
+    times, values = difference(a, b, SPEED.name)
+    assert list(times) == list(a.time)
+    assert values == pytest.approx([0.0, 1.0, 0.0])
+    assert difference(a, a, SPEED.name)[1] == pytest.approx(np.zeros(3), abs=0.0)
+    largest = compare(a, b).rows[0].difference
+    assert largest == pytest.approx(np.max(np.abs(values)))

@@ -1,0 +1,94 @@
+"""Stimuli: values at given times, and what is said of a broken table or file."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.system.scenario import StimulusEntry
+from evcosim.cosim.system.stimuli import stimulus
+from evcosim.cosim.system.toml import validate
+
+
+def values(times, **entry):
+    described = StimulusEntry.model_validate({"to": "u.x"} | entry)
+    return stimulus(described, "here", None)(np.array(times, dtype=float))
+
+
+def test_table_is_linear_between_its_points_and_constant_outside():
+    table = [[1.0, 10.0], [2.0, 20.0], [2.0, 0.0], [4.0, 8.0]]
+    assert values([0, 1, 1.5, 2, 3, 4, 9], table=table) == pytest.approx([10, 10, 15, 0, 4, 8, 8])
+
+
+def test_table_that_holds():
+    table = [[1.0, 10.0], [2.0, 20.0]]
+    assert list(values([0, 1, 1.99, 2, 5], table=table, interpolation="hold")) == [10, 10, 10, 20, 20]
+
+
+def test_ramp_stops_at_its_end():
+    assert values(
+        [0, 1, 2, 9], ramp={"slope": -2.0, "start": 1.0, "end": -3.0, "delay": 1.0}
+    ) == pytest.approx([1, 1, -1, -3])
+    with pytest.raises(ConfigError, match="never reaches"):
+        values([0], ramp={"slope": 1.0, "end": -1.0})
+
+
+def test_constant_and_sine():
+    assert list(values([0, 5], constant=3.0)) == [3.0, 3.0]
+    assert values([0, 1, 2], sine={"amplitude": 2.0, "period": 4.0, "mean": 1.0}) == pytest.approx([1, 3, 1])
+
+
+@given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=20), st.floats(-10, 30))
+def test_a_table_stays_within_its_values(points, t):
+    (value,) = values([t], table=[[float(i), p] for i, p in enumerate(points)])
+    assert min(points) - 1e-9 <= value <= max(points) + 1e-9
+
+
+@given(st.lists(st.tuples(st.floats(0, 100), st.floats(-1e3, 1e3)), min_size=1, max_size=20))
+def test_linear_is_numpys_where_times_differ(points):
+    points = sorted(dict(points).items())
+    times, ys = np.array(points).T
+    at = np.linspace(-1, 101, 57)
+    assert values(at, table=points) == pytest.approx(np.interp(at, times, ys), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,v\n0,1\n1,\n", r"line 3, column 'v': the value is missing"),
+        ("t,v\n0,1\n1,fast\n", r"line 3, column 'v': 'fast' is not a number"),
+        ("t,v\n0,1\n1,nan\n", r"line 3, column 'v': 'nan' is not a finite number"),
+        ("t,v\n0,1\n1\n", r"line 3 has 1 values, the header has 2"),
+        ("t,v\n1,1\n0,2\n", r"time goes back from 1.0 s to 0.0 s in row 2"),
+        ("t,v\n", r"no row below the header"),
+        ("t;v\n0;1\n", r"line 1: columns are separated by .,., not by .;.: .t;v."),
+        ("t,v\n0,1_0\n", r"line 2, column .v.: .1_0. is not a finite number"),
+        ("", r"a header of two or more"),
+    ],
+)
+def test_a_broken_csv_names_file_line_column_and_value(tmp_path, text, said):
+    path = tmp_path / "cycle.csv"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=said) as caught:
+        values([0], csv=str(path))
+    assert "cycle.csv" in str(caught.value)
+
+
+def test_a_csv_column_by_name(tmp_path):
+    path = tmp_path / "cycle.csv"
+    path.write_text("time,a,b\n0,1,5\n2,3,9\n")
+    assert values([1], csv=str(path), column="b") == pytest.approx([7])
+    assert values([1], csv=str(path)) == pytest.approx([2])
+    with pytest.raises(ConfigError, match=r"no column 'bb' \(did you mean 'b'\?\); columns: a, b"):
+        values([1], csv=str(path), column="bb")
+
+
+@pytest.mark.parametrize(
+    "entry", [{}, {"constant": 1.0, "table": [[0, 1]]}, {"constant": 1.0, "column": "a"}]
+)
+def test_exactly_one_kind(entry):
+    with pytest.raises(ConfigError):
+        validate({"to": "u.x"} | entry, StimulusEntry, "s.toml")

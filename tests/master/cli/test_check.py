@@ -1,0 +1,281 @@
+"""`evcosim check` and `--swap`: from a stranger's FMU to a run in the place of our vehicle."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.swap.matching import Row, fit, fits
+from evcosim.cosim.swap.requirements import requirements
+from evcosim.cosim.swap.swap_file import SwapFile
+from evcosim.cosim.system.scenario import load_scenario, scenario_names
+from evcosim.cosim.system.system import load_system, system_names
+from evcosim.cosim.system.toml import read_toml
+from evcosim.master.builtin import fmu_file
+from evcosim.master.fmi.fmu import read_fmu
+from evcosim.master.simulation import simulate
+from support.c_fmu import mixed_fmu, vehicle_fmu
+
+PLACES = [(s, unit) for s in system_names() for unit in load_system(s).file.units]
+
+
+def rows_of(system: str, unit: str, scenario: str | None = None) -> list[Row]:
+    """The rows for a unit's own FMU in its own place."""
+    described = load_system(system)
+    interface = read_fmu(fmu_file(described.file.units[unit].fmu)).interface
+    return fit(requirements(described, load_scenario(described, scenario), unit, interface), interface)
+
+
+@pytest.mark.parametrize(("system", "unit"), PLACES)
+def test_every_unit_fits_in_its_own_place(system: str, unit: str) -> None:
+    for scenario in scenario_names(load_system(system)):
+        rows = rows_of(system, unit, scenario)
+        assert fits(rows), rows
+        assert all(row.variable == row.need and row.verdict == "fits" for row in rows if row.need)
+
+
+def test_what_a_system_needs_is_named_with_its_other_end() -> None:
+    system = load_system("scooter")
+    interface = read_fmu(fmu_file("Scooter")).interface
+    needs = {n.name: n for n in requirements(system, load_scenario(system, "udds"), "vehicle", interface)}
+    assert needs["throttle"].role == "input"
+    assert needs["throttle"].why == ("from ecu.throttle over can0.VCU_Request.VCU_ThrottleRequest",)
+    assert needs["power"].why == ("to battery.power", "figure or metrics")
+    assert "figure or metrics" in needs["speed"].why
+
+
+def check(evcosim, *arguments: object):
+    return evcosim("check", *arguments)
+
+
+def test_from_a_stranger_to_a_run(evcosim, tmp_path: Path) -> None:
+    fmu, swap = vehicle_fmu(tmp_path / "Vehicle.fmu", 2), tmp_path / "swap.toml"
+    found = check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
+    assert found.code == 1
+    assert "declares no unit of measure" in " ".join(found.out.split())
+    assert f"evcosim run scooter --swap vehicle={swap}" in found.out
+    again = check(evcosim, swap, "--as", "scooter.vehicle")
+    assert (again.code, "it fits: evcosim run scooter" in again.out) == (0, True), again
+    options = ("--stop-time", "3", "-o", tmp_path / "out", "--no-plot")
+    ran = evcosim("run", "scooter", "--swap", f"vehicle={swap}", *options)
+    assert ran.code == 0, ran
+    manifest = json.loads((tmp_path / "out" / "run.json").read_text())
+    assert manifest["units"]["vehicle"]["map"]["outputs"]["speed"] == {"variable": "v", "unit": "m/s"}
+
+
+def test_a_trial_proposes_what_makes_the_next_one_pass(evcosim, tmp_path: Path) -> None:
+    """The brake of this vehicle is a negative force: the trial sees it and proposes the sign."""
+    fmu, swap = vehicle_fmu(tmp_path / "Vehicle.fmu", 2), tmp_path / "swap.toml"
+    first = check(evcosim, fmu, "--as", "scooter.vehicle", "--try", "1s", "--write", swap)
+    assert first.code == 1
+    assert "reacts to the other sign only" in " ".join(first.out.split())
+    assert "1 row to decide and 4 problems" in first.out
+    written = swap.read_text()
+    assert 'brake_force = { variable = "F_brake", invert = true }  # [N]; proposed:' in written
+    assert "# problem: brake_force -> speed: reacts to the other sign only" in written
+    again = check(evcosim, swap, "--as", "scooter.vehicle", "--try", "1s", "--json")
+    assert again.code == 0, again
+    assert again.json["trial"]["passed"] is True
+    assert again.json["trial"]["proposed"] == {"substeps": 1, "invert": []}
+    assert {f["verdict"] for f in again.json["trial"]["findings"]} == {"good", "note"}
+
+
+def test_what_stands_in_a_swap_file_stays_when_it_is_written_again(evcosim, tmp_path: Path) -> None:
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    swap = tmp_path / "swap.toml"
+    swap.write_text(
+        """
+fmu = "Vehicle.fmu"
+substeps = 4
+isolation = "process"
+absent = ["power"]
+[map.inputs]
+throttle = "pedal"
+brake_force = { variable = "F_brake", invert = true }
+road_grade = "slope"
+[map.outputs]
+speed = { variable = "v", unit = "m/s" }
+distance = "s"
+[map.parameters]
+mass = "m_total"
+[parameters]
+mass = 150.0
+[start]
+road_grade = 0.01
+"""
+    )
+    again = tmp_path / "again.toml"
+    assert check(evcosim, swap, "--as", "scooter.vehicle", "--write", again).code == 0
+    old, new = (read_toml(path, SwapFile) for path in (swap, again))
+    assert new.model_copy(update={"replaces": None}) == old
+
+
+def test_names_that_would_end_a_line_of_a_swap_file(evcosim, tmp_path: Path) -> None:
+    """What an FMU calls its variables stays a text."""
+    name = "v&quot;&#10;substeps = 7&#10;# &#127; \\ é"
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **{'name="v"': f'name="{name}"'})
+    swap = tmp_path / "swap.toml"
+    check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
+    entry = read_toml(swap, SwapFile)
+    assert entry.substeps == 1
+    assert entry.map.outputs["speed"].variable == 'v"\nsubsteps = 7\n# \x7f \\ é'
+
+
+def test_the_report_says_who_needs_what(evcosim, tmp_path: Path) -> None:
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    out = " ".join(check(evcosim, fmu, "--as", "scooter.vehicle").out.split())
+    assert "(from ecu.throttle over can0.VCU_Request.VCU_ThrottleRequest)" in out
+    assert "(to battery.power)" in out
+
+
+def test_a_place_whose_own_fmu_cannot_be_read(evcosim, tmp_path: Path) -> None:
+    text = load_system("scooter").path.read_text().replace('fmu = "Scooter"', 'fmu = "gone.fmu"')
+    (tmp_path / "mine.toml").write_text(text)
+    found = check(evcosim, vehicle_fmu(tmp_path / "Vehicle.fmu", 2), "--as", "mine.toml.vehicle")
+    assert found.code == 2
+    assert "mine.toml: units.vehicle.fmu = 'gone.fmu' cannot be read, so that nobody knows" in found.err
+    assert "gone.fmu: there is no such FMU file" in found.err
+
+
+def test_a_place_that_has_a_mapping_already(evcosim, tmp_path: Path) -> None:
+    """A system of the user's own, whose vehicle is a mapped FMU: another one is compared with that."""
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    mapped = """fmu = "Vehicle.fmu"
+absent = ["power", "distance"]
+[units.vehicle.map.inputs]
+throttle = "pedal"
+brake_force = "F_brake"
+[units.vehicle.map.outputs]
+speed = { variable = "v", unit = "m/s" }"""
+    text = load_system("scooter").path.read_text().replace('fmu = "Scooter"', mapped)
+    (tmp_path / "mine.toml").write_text(text)
+    found = check(evcosim, "Scooter", "--as", "mine.toml.vehicle", "--json")
+    rows = {row["need"]: row for row in found.json["rows"]}
+    assert (rows["speed"]["variable"], rows["throttle"]["variable"]) == ("speed", "throttle")
+
+
+def test_all_that_a_swap_lacks_is_told_at_once(evcosim, tmp_path: Path) -> None:
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    (tmp_path / "swap.toml").write_text('fmu = "Vehicle.fmu"\n[map.inputs]\nthrottle = "pedal"\n')
+    found = evcosim("run", "scooter", "--swap", "vehicle=swap.toml")
+    assert found.code == 2
+    for name in ("speed", "power", "distance"):
+        assert f"unit 'vehicle' has no variable '{name}' (" in found.err
+    assert "brake_force" not in found.err  # fig8 leaves the rider out
+    assert "'evcosim check swap.toml --as scooter.vehicle' shows" in found.err
+
+
+DEFECT = {'unit="kg" start="200"': 'unit="kg" start="heavy"'}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("info", "Vehicle.fmu"),
+        ("check", "Vehicle.fmu", "--as", "scooter.vehicle"),
+        ("run", "scooter", "--fmu", "vehicle=Vehicle.fmu"),
+    ],
+)
+def test_strict_refuses_an_fmu_with_defects(evcosim, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **DEFECT)
+    found = evcosim(*arguments, "--strict")
+    assert found.code == 2
+    assert "strict: 1 defect: m_total: start = 'heavy' is no Real; it is ignored" in found.err
+    assert "strict" not in evcosim(*arguments).err
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    assert "strict" not in evcosim(*arguments, "--strict").err
+
+
+def test_strict_runs_refuse_it_from_python_too(tmp_path: Path) -> None:
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **DEFECT)
+    with pytest.raises(ConfigError, match="strict: 1 defect"):
+        simulate("scooter", fmus={"vehicle": fmu}, strict=True)
+
+
+def test_info_tells_what_was_mended_and_what_the_validator_says(evcosim, tmp_path: Path) -> None:
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **DEFECT)
+    shown = " ".join(evcosim("info", "Vehicle.fmu").out.split())
+    assert "mended m_total: start = 'heavy' is no Real; it is ignored" in shown
+    assert "validator line " in shown
+    about = evcosim("info", "Vehicle.fmu", "--json").json
+    assert about["defects"] == ["m_total: start = 'heavy' is no Real; it is ignored"]
+    assert any("heavy" in message for message in about["validator"])
+    assert about["unpacked_size"] > 1000
+    assert (about["sources"], about["binary_for_this_machine"]) == ([], True)
+
+
+def test_info_bounds_what_it_prints_of_many_defects(evcosim, tmp_path: Path) -> None:
+    start = "no number" + 99 * " of them"
+    declared = "".join(
+        f'<ScalarVariable name="x{i}" valueReference="{40 + i}"><Real start="{start}"/></ScalarVariable>'
+        for i in range(30)
+    )
+    vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **{"</ModelVariables>": f"{declared}</ModelVariables>"})
+    shown = evcosim("info", "Vehicle.fmu", "--search", "pedal").out
+    assert "and 25 more (--json shows all)" in shown
+    assert len(shown.splitlines()) < 60
+    assert len(evcosim("info", "Vehicle.fmu", "--json").json["defects"]) == 30
+
+
+def test_info_of_sources_without_a_binary(evcosim, tmp_path: Path) -> None:
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    with zipfile.ZipFile(fmu) as full, zipfile.ZipFile(tmp_path / "Sources.fmu", "w") as bare:
+        bare.writestr("modelDescription.xml", full.read("modelDescription.xml"))
+        bare.writestr("sources/vehicle.c", "int x;")
+    shown = " ".join(evcosim("info", "Sources.fmu").out.split())
+    assert "sources vehicle.c; there is no binary for this machine" in shown
+    assert "'evcosim compile Sources.fmu' makes one" in shown
+
+
+def test_info_says_what_a_capability_means_here(evcosim) -> None:
+    about = evcosim("info", "Battery", "--json").json
+    (can,) = about["capabilities"].values()
+    saves = next(c for c in can if c["what"] == "saves and restores its state")
+    assert saves["here"] == "not used in a run; 'evcosim check --try' tests it"
+    assert all(c["what"] and c["here"] for c in (*can, *about["limits"]))
+
+
+def test_the_report_as_data(evcosim, tmp_path: Path) -> None:
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 3)
+    found = json.loads(check(evcosim, fmu, "--as", "scooter.vehicle", "--json").out)
+    assert found["fits"] is False
+    rows = {row["need"]: row for row in found["rows"]}
+    assert rows["throttle"]["variable"] == "pedal"
+    assert rows["throttle"]["reason"] == "1 [1] is 100 [%]"
+    assert rows["distance"]["reason"].endswith("a local variable, read as an output")
+    assert rows[""]["variable"] == "slope"
+
+
+def test_an_fmu_that_has_nothing_of_it(evcosim, tmp_path: Path) -> None:
+    found = check(evcosim, mixed_fmu(tmp_path / "mixed.fmu", 2), "--as", "scooter.vehicle")
+    assert found.code == 1
+    assert "missing" in found.out or "your choice" in found.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("Scooter", "--as", "vehicle"), "--as vehicle: it is written SYSTEM.UNIT, as in scooter.vehicle"),
+        (("Scooter", "--as", "scooter.vehicel"), "there is no unit 'vehicel' (did you mean 'vehicle'?)"),
+        (("Scooter", "--as", "scoter.vehicle"), "did you mean 'scooter'"),
+        (
+            ("Scooter", "--as", "scooter.vehicle", "--try", "soon"),
+            "--try soon: it is a time of up to an hour",
+        ),
+        (("none.fmu", "--as", "scooter.vehicle"), "none.fmu: there is no such FMU file"),
+    ],
+)
+def test_wrong_use(evcosim, arguments: tuple[str, ...], message: str) -> None:
+    found = check(evcosim, *arguments)
+    assert found.code == 2
+    assert message in found.err
+
+
+def test_a_swap_of_no_unit(evcosim, tmp_path: Path) -> None:
+    found = evcosim("run", "scooter", "--swap", f"vehicel={tmp_path}/swap.toml")
+    assert found.code == 2
+    assert "there is no unit 'vehicel' in system 'scooter' (did you mean 'vehicle'?)" in found.err

@@ -1,0 +1,299 @@
+"""The compiled engine gives what the python engine gives, bit for bit, with the same errors and counts."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import numpy as np
+import pytest
+
+from benchmarks.case import Case
+from benchmarks.runners.evcosim import write_system
+from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.system.scenario import scenario_names
+from evcosim.cosim.system.system import load_system, system_names
+from evcosim.master.engine.compiled.engine import CompiledEngine
+from evcosim.master.engine.initialization import initialize
+from evcosim.master.engine.selection import engine_class
+from evcosim.master.simulation import Simulation
+from support.c_fmu import mixed_fmu
+from support.mocks import MockUnit, plan_of, real, started
+from support.needs import need_c_compiler
+
+BUILT_IN = [(s, c) for s in system_names() for c in (None, *scenario_names(load_system(s)))]
+EVENTS = """
+[[event]]
+time = 0.5
+action = "override"
+variable = "n0.u0"
+value = 2.5
+[[event]]
+time = 0.9
+action = "bias"
+variable = "n1.u0"
+value = -0.125
+[[event]]
+time = 1.3
+action = "reset"
+variable = "n0.u0"
+"""
+
+
+def run(engine, system, scenario=None, steps=None, **options):
+    """Recorded bits, saturations, warnings and the error's text ("": none)."""
+    options = {"isolation": "none"} | options
+    with Simulation(system, scenario, engine=engine, **options) as simulation:
+        assert simulation.manifest()["experiment"]["engine"] == engine
+        error = ""
+        try:
+            simulation.step(min(simulation.plan.steps, steps or simulation.plan.steps))
+        except RunError as failure:
+            error = str(failure)
+        results = simulation.results
+        bits = np.stack([results[v.name] for v in results.variables]).view(np.int64)
+        return bits, simulation.manifest()["saturations"], simulation.warnings, error
+
+
+def same(system, scenario=None, steps=None, **options):
+    """Both engines agree; what they gave."""
+    python = run("python", system, scenario, steps, **options)
+    compiled = run("compiled", system, scenario, steps, **options)
+    assert python[1:] == compiled[1:]
+    assert np.array_equal(python[0], compiled[0])
+    return python
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+@pytest.mark.parametrize(("system", "scenario"), BUILT_IN, ids=lambda value: value or "default")
+def test_built_in_systems(system, scenario, algorithm):
+    bits, *_, error = same(system, scenario, 300, algorithm=algorithm)
+    assert not error
+    assert len({row.tobytes() for row in bits}) > 5  # there is something to compare
+
+
+@pytest.fixture(scope="module")
+def ring(tmp_path_factory):
+    """Writes the system of three C units round a bus, with further keys of the bus and of a unit."""
+    need_c_compiler()
+    folder = tmp_path_factory.mktemp("ring")
+
+    def write(bus="", unit="", bias=None):
+        path = write_system(Case("c", 3, 300, signals=2, channel=True), folder, "gauss_seidel")
+        text = path.read_text().replace("[buses.can0]", f"[buses.can0]\n{bus}")
+        text = text.replace("[units.n1]\n", f"[units.n1]\n{unit}\n")
+        if bias is not None:
+            text = text.replace("bias0 = 1.0\n", f"bias0 = {bias}\n")
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+@pytest.mark.parametrize("overflow", ["saturate", "wrap"])
+@pytest.mark.parametrize("rounding", ["nearest", "half_even", "truncate"])
+def test_every_rounding_and_overflow_of_the_bus(ring, tmp_path, rounding, overflow, algorithm):
+    (tmp_path / "events.toml").write_text(EVENTS)
+    system = ring(f'rounding = "{rounding}"\noverflow = "{overflow}"\nresolution = 1.3', bias=100.0)
+    _, saturations, _, error = same(system, tmp_path / "events.toml", algorithm=algorithm)
+    assert saturations
+    assert not error
+
+
+def test_a_value_that_no_signal_holds_is_the_same_error(ring):
+    *_, error = same(ring('overflow = "error"', bias=100.0))
+    assert error.startswith("at t = ")
+    assert "via can0.M" in error
+
+
+def test_delays_cycles_periods_and_substeps(ring, tmp_path):
+    (tmp_path / "events.toml").write_text(EVENTS)
+    system = ring("delay = 0.05\ncycle = 2", "period = 0.03\nsubsteps = 2")
+    assert not same(system, tmp_path / "events.toml")[-1]
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_every_type_of_a_variable(tmp_path, fmi):
+    need_c_compiler()
+    fmu = mixed_fmu(tmp_path / "mixed.fmu", fmi)
+    (tmp_path / "s.toml").write_text(
+        f'name = "mixed"\n[experiment]\nstop_time = 1.0\n[units.a]\nfmu = "{fmu}"\n'
+    )
+    assert not same(tmp_path / "s.toml")[-1]
+
+
+ONE = 'name = "one"\n[experiment]\nstop_time = 1.0\n[units.a]\nfmu = "{fmu}"\n'
+RISING = '[[stimulus]]\nto = "a.{to}"\ntable = [[0.0, 0.0], [1.0, {end}]]\n'
+
+
+def one(folder, fmi, behavior=0, to="u", end=1.0):
+    """The system of sources/mixed.c alone, which does wrong in some way, and a scenario that drives it."""
+    need_c_compiler()
+    (folder / "s.toml").write_text(ONE.format(fmu=mixed_fmu(folder / "mixed.fmu", fmi, behavior)))
+    (folder / "rising.toml").write_text(RISING.format(to=to, end=end))
+    return folder / "s.toml", folder / "rising.toml"
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("behavior", "step", "reason"),
+    [
+        (12, 50, "DoStep returned Discard (2)"),
+        (17, 50, "DoStep returned no FMI status (7)"),
+        (73, 50, "returned Error (3)"),
+        (83, 49, "returned Error (3)"),
+        (2, 50, "a.y = nan: an output must be finite"),
+    ],
+)
+def test_what_a_unit_does_wrong(tmp_path, fmi, behavior, step, reason):
+    bits, *_, error = same(*one(tmp_path, fmi, behavior))
+    assert error.startswith(f"at t = {step / 100:g} s (step {step}): ")
+    assert reason in error
+    assert bits.shape[1] == step
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+@pytest.mark.parametrize("behavior", [11, 71, 81])
+def test_warnings_of_a_unit_are_counted(tmp_path, fmi, behavior):
+    *_, warnings, error = same(*one(tmp_path, fmi, behavior))
+    assert any(text.startswith("unit 'a' gave ") for text in warnings)
+    assert not error
+
+
+@pytest.mark.parametrize("behavior", [3, 4])
+def test_a_step_of_fmi_3_that_ends_otherwise(tmp_path, behavior):
+    assert same(*one(tmp_path, 3, behavior))[-1].startswith("at t = 0.5 s (step 50): unit 'a': fmi3DoStep ")
+
+
+def test_a_value_that_its_type_does_not_hold(tmp_path):
+    """200 t in an Int8: 128 comes first at t = 0.64 s."""
+    *_, error = same(*one(tmp_path, 3, to="int8_in", end=200.0))
+    assert error.startswith("at t = 0.64 s (step 64): unit 'a': int8_in cannot be set to 128: ")
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+def test_units_in_processes_of_their_own(ring, tmp_path, algorithm):
+    """All four pairs of an engine and where the units are."""
+    (tmp_path / "events.toml").write_text(EVENTS)
+    runs = [
+        same(ring(), tmp_path / "events.toml", algorithm=algorithm, isolation=isolation)
+        for isolation in ("none", "process")
+    ]
+    assert np.array_equal(runs[0][0], runs[1][0])
+    assert runs[0][1:] == runs[1][1:]
+
+
+@pytest.mark.parametrize("overflow", ["saturate", "wrap"])
+@pytest.mark.parametrize("rounding", ["nearest", "half_even", "truncate"])
+def test_signals_whose_raw_values_no_double_holds(ring, rounding, overflow):
+    """56 bits of 2^-50: the channel computes in integers."""
+    system = ring(f'rounding = "{rounding}"\noverflow = "{overflow}"', bias=100.0)
+    dbc = system.with_name("ring.dbc")
+    narrow = "16|16@1- (0.0009765625,0) [-30|30]"
+    assert dbc.read_text().count(narrow) == 3
+    dbc.write_text(
+        dbc.read_text()
+        .replace(narrow, "8|56@1- (8.881784197001252e-16,0) [-30|30]")
+        .replace("0|16@1- (0.0009765625,0)", "0|8@1- (0.25,0)")
+    )
+    with Simulation(system) as simulation:
+        kinds = {o.kind for sender in simulation._engine.senders for o in sender.channel.operations}
+    assert kinds == {"integer", "exact"}
+    assert not same(system)[-1]
+
+
+def mock(broken_at):
+    def step(values, time, step_size):
+        values["x"] += step_size * values["u"] if time < broken_at else float("nan")
+
+    return MockUnit("m", [real("u", "input"), real("x", "output", unit="m")], step, x=1.0)
+
+
+def test_units_written_in_python_and_their_errors():
+    connect = {"connect": [{"from": "m.x", "to": ["m.u"]}]}
+    found = []
+    for compiled in (False, True):
+        units = [mock(0.5)]
+        plan = plan_of(units, connect)
+        if compiled:
+            engine = CompiledEngine(plan, {"m": units[0]})
+            initialize({"m": units[0]}, plan)
+            engine.start()
+        else:
+            engine = started(units, plan)
+        with pytest.raises(
+            RunError, match=r"^at t = 0\.5 s .*m\.x = nan m: an output must be finite"
+        ) as raised:
+            engine.advance(100)
+        found.append((str(raised.value), engine.recorded().whole().tobytes()))
+    assert found[0] == found[1]
+
+
+def test_what_is_no_engine_is_refused():
+    with pytest.raises(ConfigError, match=r"there is no engine 'compild' .did you mean 'compiled'"):
+        engine_class("compild")
+
+
+def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch):
+    for name in [n for n in sys.modules if n.startswith("evcosim.master.engine.compiled.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delattr(importlib.import_module("evcosim.master.engine.compiled"), "engine", raising=False)
+    monkeypatch.setitem(sys.modules, "numba", None)
+    with Simulation("scooter", stop_time=1.0) as simulation:
+        simulation.run()
+        assert simulation.manifest()["experiment"]["engine"] == "python"
+        assert any("the compiled engine needs numba" in warning for warning in simulation.warnings)
+
+
+def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
+    from evcosim.master.engine.compiled import cache
+
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / "file" / "below")
+    monkeypatch.setattr(cache, "_made", {})
+    with Simulation("scooter", stop_time=1.0, engine="compiled") as simulation:
+        simulation.run()
+        assert any("the engine is compiled anew" in warning for warning in simulation.warnings)
+
+
+def test_the_key_of_a_system_names_the_engine(ring):
+    path = ring()
+    path.write_text(path.read_text().replace("[experiment]", '[experiment]\nengine = "python"'))
+    with Simulation(path) as simulation:
+        assert simulation.manifest()["experiment"]["engine"] == "python"
+
+
+def test_the_option_names_the_engine(evcosim):
+    answer = evcosim("run", "scooter", "--stop-time", "1", "--engine", "python", "--no-plot", "--json")
+    assert answer.code == 0
+
+
+@pytest.mark.parametrize("engine", ["compiled", "python"])
+def test_a_profile_adds_up_to_the_time_of_the_steps_and_changes_no_result(ring, engine):
+    system = ring()
+    with Simulation(system, engine=engine, profile=True) as simulation:
+        simulation.run()
+        rows = simulation.profile
+        data = np.asarray(simulation.results.data)
+    with Simulation(system, engine=engine) as simulation:
+        simulation.run()
+        assert np.array_equal(np.asarray(simulation.results.data), data)
+        assert simulation.profile == []
+    named = {(row["name"], row["what"]) for row in rows}
+    step = "step" if engine == "compiled" else "set and step"
+    assert {
+        ("n0", "set"),
+        ("n2", step),
+        ("n1", "get"),
+        ("can0.M0_0", "channel"),
+        ("results", "record"),
+    } <= named
+    assert all(row["seconds"] >= 0.0 for row in rows)
+    assert sum(row["seconds"] for row in rows[:-1]) == pytest.approx(rows[-1]["seconds"], rel=1e-9)
+
+
+def test_the_option_shows_the_profile(evcosim):
+    answer = evcosim("run", "scooter", "--stop-time", "1", "--profile", "--no-plot")
+    assert answer.code == 0
+    assert "us a step" in answer.out

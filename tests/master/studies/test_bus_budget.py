@@ -1,0 +1,333 @@
+"""The bus budget: verdicts on their own, then systems that hold, break, fail and die."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+from evcosim.cosim.analysis.bus_budget import Budget, Series, as_data, as_markdown, series
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.figures.bus_budget import draw_budget
+from evcosim.cosim.figures.draw import save
+from evcosim.cosim.system.scenario import load_scenario
+from evcosim.cosim.system.selection import metric_specs
+from evcosim.cosim.system.system import load_system, system_names
+from evcosim.cosim.system.variation import BusVariation
+from evcosim.fmus.build import build_model
+from evcosim.master import simulate
+from evcosim.master.studies.bus_budget import budget
+from support import bus_models
+
+SYSTEM = """name = "line"
+[experiment]
+stop_time = 1.0
+[units.clock]
+fmu = "Clock.fmu"
+[units.picky]
+isolation = "none" # so that its end is that of the process that measures
+fmu = "Picky.fmu"
+[buses.can0]
+dbc = "line.dbc"
+[[connect]]
+from = "clock.way"
+to = ["picky.way"]
+via = "can0.Way.Meters"
+[[metrics]]
+name = "arrived"
+signal = "picky.seen"
+unit = "m"
+[[metrics]]
+name = "settled"
+signal = "picky.seen"
+reduce = "settling"
+threshold = 1.0
+unit = "s"
+[budget]
+metric = "arrived"
+kind = "min"
+limit = 97.5
+"""
+DBC = """VERSION ""
+NS_ :
+BS_:
+BU_: A B
+BO_ 16 Way: 2 A
+ SG_ Meters : 0|16@1+ (0.5,0) [0|1000] "m" B
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+BA_ "GenMsgCycleTime" BO_ 16 10;
+"""
+
+
+@pytest.fixture(scope="module")
+def line(tmp_path_factory):
+    """A folder with a system that loses a meter with each step of delay and minds jumps."""
+    folder = tmp_path_factory.mktemp("line")
+    for model in (bus_models.Clock, bus_models.Picky):
+        build_model(model, folder)
+    (folder / "line.dbc").write_text(DBC)
+    (folder / "line.toml").write_text(SYSTEM)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def measured(line):
+    """Its budget, and what was told of the progress."""
+    told = []
+    found = budget(line / "line.toml", progress=lambda *args: told.append(args))
+    return found, told
+
+
+# ---- what is run
+
+
+def test_each_variation_by_itself_from_the_nominal_point():
+    delay, resolution, cycle = series(0.01)
+    assert [p.bus.delay_steps for p in delay.points] == [0, 1, 2, 3]
+    assert [p.label for p in delay.points[1:]] == ["+1 step (10 ms)", "+2 steps (20 ms)", "+3 steps (30 ms)"]
+    assert [p.bus.resolution for p in resolution.points] == ["ideal", 1.0, 2.0, 4.0, 8.0]
+    assert [p.bus.cycle for p in cycle.points] == [1, 2, 4, 8]
+    for each in (delay, resolution, cycle):
+        assert each.points[each.nominal].bus == BusVariation()
+        for point in each.points:
+            changed = [f.name for f in dataclasses.fields(point.bus)
+                       if getattr(point.bus, f.name) != getattr(BusVariation(), f.name)]  # fmt: skip
+            assert len(changed) == (point.bus != BusVariation())
+
+
+# ---- verdicts
+
+
+def judged(values, kind="max", limit=1.5):
+    """A budget with these values over the resolution, from ideal on."""
+    points = tuple(
+        dataclasses.replace(p, value=v, reason="it fell\nover" if math.isnan(v) else "")
+        for p, v in zip(series(0.01)[1].points, values, strict=True)
+    )
+    return Budget("s", "t", "error", "m", limit, kind, (Series("signal resolution", points),))
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "broken", "summary"),
+    [
+        ([1.0, 1.1, 1.2, 1.3, 1.5], "max", "", "holds up to DBC x 8"),
+        ([1.0, 1.1, 1.2, 1.6, 1.4], "max", "3", "breaks at DBC x 4"),
+        ([1.0, 1.1, math.nan, 1.6, 1.4], "max", "23", "breaks at DBC x 2"),
+        ([1.0, 1.6, 1.2, 1.6, 1.4], "max", "13", "broken as it is"),
+        ([1.6, 1.6, 1.2, 1.6, 1.4], "max", "013", "broken as it is"),
+        ([math.nan, 1.1, 1.2, 1.3, 1.4], "max", "0", "holds up to DBC x 8; broken at ideal too"),
+        ([1.6, 1.1, 1.2, 1.3, 2.0], "max", "04", "breaks at DBC x 8; broken at ideal too"),
+        ([2.0, 1.9, 1.5, 1.4, math.nan], "min", "34", "breaks at DBC x 4"),
+    ],
+)
+def test_where_it_breaks(values, kind, broken, summary):
+    found = judged(values, kind)
+    (only,) = found.series
+    assert "".join(str(i) for i, p in enumerate(only.points) if found.broken(p)) == broken
+    assert found.summary(only) == summary
+
+
+def test_texts():
+    found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
+    assert found.rule == "error: at most 1.5 m"
+    assert found.rows()[1] == ("", "DBC *", "1.1 m", "holds")
+    assert found.rows()[3] == ("", "DBC x 4", "-", "broken: it fell")
+    page = as_markdown(found, "figure.png")
+    assert r"|  | DBC \* | 1.1 m | holds |" in page
+    assert "- signal resolution: breaks at DBC x 4" in page
+    data = json.loads(json.dumps(as_data(found), allow_nan=False))
+    points = data["series"][0]["points"]
+    assert [p["value"] for p in points] == [1.0, 1.1, 1.2, None, 1e9]
+    assert [p["nominal"] for p in points] == [False, True, False, False, False]
+    assert data["series"][0]["first_broken"] == "DBC x 4"
+    assert points[3]["reason"] == "it fell\nover"
+
+
+@pytest.mark.parametrize("kind", ["max", "min"])
+@pytest.mark.parametrize(
+    "values",
+    [[1.0, 1.1, 1.2, math.nan, 1e9], [math.nan] * 5, [1.5] * 5, [-1e12, 0.0, 1.4, 1.6, 3.0]],
+    ids=["failed and far", "nothing", "flat", "both sides"],
+)
+def test_figure(values, kind):
+    figure = draw_budget(judged(values, kind))
+    figure.draw_without_rendering()
+    low, high = figure.axes[0].get_ylim()
+    assert low < 1.5 < high
+    assert high - low < 20.0  # what diverged does not squeeze the rest
+
+
+def test_same_figure_same_bytes(tmp_path):
+    found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
+    first, again = ([p.read_bytes() for p in save(draw_budget(found), tmp_path, "budget")] for _ in range(2))
+    assert first == again
+
+
+# ---- runs
+
+
+def value(found, label):
+    """The point of a label."""
+    return next(p for each in found.series for p in each.points if p.label == label)
+
+
+def test_points_are_what_simulate_gives(line, measured):
+    found, _ = measured
+    for label in ("+0 steps", "+2 steps (20 ms)", "ideal", "DBC x 4", "x 2"):
+        point = value(found, label)
+        arrived = simulate(line / "line.toml", bus=point.bus).metrics()[0]
+        assert point.value == arrived.value
+    nominal = value(found, "+0 steps").value
+    delays = [p.value for p in found.series[0].points]
+    assert delays == [nominal - d for d in range(4)]  # a meter for each step
+    assert [found.summary(each) for each in found.series] == [
+        "breaks at +2 steps (20 ms)",
+        "breaks at DBC x 8",
+        "breaks at x 4",
+    ]
+
+
+def test_a_failed_run_and_a_dead_process_are_broken_points(measured):
+    found, told = measured
+    failed, dead = value(found, "x 4"), value(found, "x 8")
+    assert "a jump of 4 m" in failed.reason
+    assert "t = 0.04 s" in failed.reason
+    assert dead.reason == "its process died: exit code 7"
+    assert math.isnan(failed.value) and math.isnan(dead.value)
+    assert "a jump of 4 m" in value(found, "DBC x 8").reason
+    assert [(done, total) for done, total, _ in told] == [
+        (i, 11) for i in range(1, 12)
+    ]  # the nominal one once
+
+
+def test_same_outcome_however_many_workers(line, measured):
+    assert budget(line / "line.toml", workers=3) == measured[0]
+
+
+def test_a_metric_without_a_value_is_broken(line):
+    path = line / "settled.toml"
+    path.write_text(SYSTEM.replace('metric = "arrived"', 'metric = "settled"'))
+    found = budget(path, stop_time=0.1)
+    assert found.summary(found.series[0]) == "broken as it is"
+    assert found.rows()[0][2:] == ("-", "broken: it is beyond the threshold at the end")
+
+
+# ---- errors before any run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("[budget]", "[other]", "other: unknown key"),
+        ('metric = "arrived"', 'metric = "arived"', r"'arived' \(did you mean 'arrived'\?\); there are"),
+        ("limit = 97.5", "limit = inf", "budget.limit: .* finite"),
+        ("limit = 97.5", "", "budget.limit: this key is needed"),
+        ('kind = "min"', 'kind = "least"', "budget.kind: .*'max' or 'min'"),
+        ('via = "can0.Way.Meters"', "", "no unit receives anything over a bus"),
+        ('to = ["picky.way"]', "", "no unit receives anything over a bus"),
+    ],
+)
+def test_wrong_budget_tables(line, old, new, text):
+    assert old in SYSTEM
+    path = line / "wrong.toml"
+    path.write_text(SYSTEM.replace(old, new))
+    with pytest.raises(ConfigError, match=text):
+        budget(path)
+
+
+def test_no_budget_table(evcosim, line):
+    path = line / "none.toml"
+    path.write_text(SYSTEM.split("[budget]")[0])
+    answer = evcosim("budget", path)
+    assert (answer.code, answer.out) == (2, "")
+    assert "none.toml: the system does not say what it is judged by; give it a table [budget]" in answer.err
+
+
+# ---- the command
+
+
+def test_command(evcosim, line, measured, tmp_path):
+    answer = evcosim("budget", line / "line.toml", "-o", "out")
+    assert (answer.code, answer.err) == (0, "")
+    for text in (
+        "line, arrived: at least 97.5 m (* as it is)",
+        "bus delay          +0 steps *",
+        "broken: its process died: exit code 7",
+        "message cycle      breaks at x 4",
+        "in out: budget.md, budget.json, budget.png, budget.svg",
+    ):
+        assert text in answer.out, answer.out
+    assert json.loads((tmp_path / "out" / "budget.json").read_text()) == as_data(measured[0])
+    assert "![arrived over each variation](budget.png)" in (tmp_path / "out" / "budget.md").read_text()
+
+
+def test_command_as_json_and_where_it_writes(evcosim, line, measured, tmp_path):
+    data = evcosim("budget", line / "line.toml", "--json", "--workers", "2").json
+    assert data["series"] == as_data(measured[0])["series"]
+    assert data["folder"] == "results/line-budget"
+    assert {p.name for p in (tmp_path / data["folder"]).iterdir()} == set(data["files"])
+
+
+def test_settings_count(evcosim, line):
+    data = evcosim("budget", line / "line.toml", "--json", "--set", "picky.fails=5", "-o", "out").json
+    assert [each["first_broken"] for each in data["series"]] == ["+2 steps (20 ms)", None, "x 4"]
+
+
+def test_the_scooter_names_its_metric(evcosim):
+    data = evcosim("budget", "scooter", "--stop-time", "1", "--json", "-o", "out").json
+    assert (data["metric"], data["limit"], data["unit"]) == ("highest speed over the bound", 1.5, "km/h")
+    assert not any(point["broken"] for each in data["series"] for point in each["points"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["scoter"], "unknown system 'scoter' (did you mean 'scooter'?)"),
+        (["scooter", "-s", "fig88"], "'fig88' (did you mean 'fig8'?)"),
+        (["scooter", "--set", "ecu.gian=1"], "--set ecu.gian=1:"),
+        (["scooter", "--set", "vehicle.mass"], "--set vehicle.mass:"),
+        (["scooter", "--stop-time", "-1"], "stop_time -1.0 s is not after start_time"),
+        (["scooter", "--workers", "0"], "--workers"),
+        (["scooter", "-o", "file/out"], "output folder file/out: cannot be written"),
+        ([], "SYSTEM"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_wrong_arguments(evcosim, tmp_path, arguments, text):
+    (tmp_path / "file").write_text("")
+    answer = evcosim("budget", *arguments)
+    assert (answer.code, answer.out) == (2, "")
+    assert text in answer.err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to a group of processes")
+def test_ctrl_c_ends_all_processes(process, tmp_path):
+    run = process("budget", "scooter", "--scenario", "udds", "-o", "out", start_new_session=True)
+    while not (tmp_path / "out").is_dir():
+        assert run.poll() is None
+        time.sleep(0.02)
+    time.sleep(1.5)  # into the first runs
+    os.killpg(run.pid, signal.SIGINT)
+    out, err = run.communicate(timeout=10)
+    assert (run.returncode, out, err) == (130, "", "evcosim: interrupted\n")
+    assert list((tmp_path / "out").iterdir()) == []
+    end = time.monotonic() + 5.0  # multiprocessing's own helper ends once the pipe to it is closed
+    with pytest.raises(ProcessLookupError):
+        while time.monotonic() < end:
+            os.killpg(run.pid, 0)
+            time.sleep(0.05)
+    assert [path for path in tmp_path.glob("evcosim-*") if path.is_dir()] == []
+
+
+@pytest.mark.parametrize("name", system_names())
+def test_every_system_names_a_metric_of_its_default_scenario(name):
+    system = load_system(name)
+    assert system.file.budget is not None
+    assert system.file.budget.metric in {m.name for m in metric_specs(system, load_scenario(system))}
