@@ -62,7 +62,7 @@ def imported(command: str) -> set[str]:
 
 def _called(command: str, *options: str) -> str:
     """What a command tells on its standard error."""
-    program = ["-m", "evcosim.master.cli", *command.split()] if command else ["-c", "pass"]
+    program = ["-m", "evcosim", *command.split()] if command else ["-c", "pass"]
     with tempfile.TemporaryDirectory() as folder:
         output = ["--output", folder] if command.startswith("run") else []
         call = [sys.executable, *options, *program, *output]

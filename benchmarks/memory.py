@@ -63,7 +63,7 @@ def main() -> None:
 def peak(length: float, more: Sequence[str] = ()) -> Peak:
     """Run the scooter for `length` [s], with `more` options of `evcosim run`."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "evcosim.master.cli", "run", "scooter", "--quiet"]
+        command = [sys.executable, "-m", "evcosim", "run", "scooter", "--quiet"]
         command += ["--stop-time", f"{length}", "--output", folder, *more]
         begin = time.perf_counter()
         _, status, usage = os.wait4(os.posix_spawn(sys.executable, command, os.environ), 0)

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from .results.results import Results
+
+class Recorded(Protocol):
+    """The recorded rows and variables that a failed run keeps: `evcosim.Results`, which stands above this."""
+
+    def __len__(self) -> int: ...
+
+    def __iter__(self) -> Iterator[str]: ...
+
+    def __getitem__(self, name: str) -> Any: ...
+
+    def to_csv(self, path: str) -> Any:
+        """Write the rows to a CSV file."""
 
 
 class ConfigError(ValueError):
@@ -20,15 +30,15 @@ class RunError(RuntimeError):
     `results` is what was recorded up to then, where the run got as far as recording.
     """
 
-    results: Results | None = None
+    results: Recorded | None = None
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
+    """Return ` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
     close = difflib.get_close_matches(word, list(words), n=1, cutoff=0.6)
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 def counted(count: int, thing: str) -> str:
-    """`1 value`, `2 values`."""
+    """Return `1 value`, `2 values`."""
     return f"{count} {thing}" + ("" if count == 1 else "s")

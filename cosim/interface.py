@@ -11,14 +11,14 @@ from .units import UnitOfMeasure
 
 Value = bool | int | float | str
 InterfaceType = Literal["co_simulation", "model_exchange"]
-TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
 
 
 @dataclasses.dataclass(frozen=True)
 class VariableInfo:
     """One variable of a unit.
 
-    `type` is one of TYPES; `start`, `min`, `max` are in `unit` (a name; "" where none is declared).
+    `type` is Real, Integer, Boolean, Enumeration or String; `start`, `min`, `max` are in `unit` (a name; ""
+    where none is declared).
     `depends` are the names of the inputs (for `depends_initially` also parameters) that reach an output
     at the same instant; None: not declared, so every input may.
     `items` are the (value, name) pairs of an enumeration.

@@ -12,7 +12,6 @@ with Simulation("scooter") as sim:
 
 from __future__ import annotations
 
-import dataclasses
 import importlib.metadata
 import platform
 import sys
@@ -20,105 +19,44 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, Unpack
 
 from ..cosim.can.frames import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, counted, nearest
-from ..cosim.figures.check import check_specs
-from ..cosim.interface import UnitInterface, Value
+from ..cosim.interface import Value
 from ..cosim.plan.plan import Plan
-from ..cosim.plan.resolve import Options, check_effect, checked, participating, resolve
+from ..cosim.plan.resolve import check_effect, checked
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
-from ..cosim.swap.mapping import present, without_absent
-from ..cosim.swap.requirements import lacking
-from ..cosim.swap.swap_file import swapped
-from ..cosim.system.scenario import Scenario, load_scenario
+from ..cosim.system.run_options import RunOptions
+from ..cosim.system.scenario import Scenario
 from ..cosim.system.selection import figure_spec, metric_specs
-from ..cosim.system.system import Algorithm, EngineName, Isolation, System, load_system
+from ..cosim.system.system import Isolation, System
 from ..cosim.system.toml import DATA
-from ..cosim.system.variation import BusVariation, varied
-from .builtin import fmu_file
-from .engine.initialization import initialize, ordered_links
+from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
 from .engine.selection import engine_class
-from .fmi.fmu import Fmu, check_runnable, read_fmu
+from .fmi.fmu import Fmu
 from .fmi.loading import load_unit
-from .isolation.decision import chosen, limits
+from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
+from .prepare import prepare
 from .unit import Unit
 
 _SHOWN_DEFECTS = 5  # of an FMU's description, as warnings
 
-Progress = Callable[[float, float], None]
+RunProgress = Callable[[float, float], None]
 """Called with the simulated time reached and the stop time, both in s."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Prepared:
-    """What is known of a run before any FMU is instantiated; whatever can be wrong so far was found."""
-
-    system: System
-    scenario: Scenario
-    fmus: dict[str, Fmu]
-    plan: Plan
-
-
-def prepare(
-    system: str | Path | System,
-    scenario: str | Path | Scenario | None = None,
-    options: Options | None = None,
-    fmus: Mapping[str, str | Path] | None = None,
-    bus: BusVariation | None = None,
-    swaps: Mapping[str, str | Path] | None = None,
-    strict: bool = False,
-) -> Prepared:
-    """Read and check all that a run needs; the arguments are those of `Simulation`.
-
-    Raises ConfigError naming place, rule and values.
-    """
-    options = options or Options()
-    read = system if isinstance(system, System) else load_system(str(system))
-    if isinstance(scenario, Scenario):
-        driven = scenario
-    else:
-        driven = load_scenario(read, None if scenario is None else str(scenario))
-    if bus is not None:
-        if options.ideal:
-            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
-        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
-    read = swapped(read, swaps or {})
-    read, driven, left_out = without_absent(read, driven)
-    loaded = _read_fmus(read, driven, fmus or {}, strict)
-    interfaces = {
-        unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
-        for unit, fmu in loaded.items()
-    }
-    for unit, interface in interfaces.items():
-        _check_absent(read, unit, interface)
-    for unit, path in (swaps or {}).items():
-        if unit in interfaces:
-            _check_complete(read, driven, unit, interfaces[unit], path)
-    plan = _advised(read, lambda: resolve(read, driven, interfaces, options), swaps)
-    plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
-    check_specs(read, driven, plan.columns)
-    ordered_links(plan)  # refuses an algebraic loop
-    return Prepared(read, driven, loaded, plan)
 
 
 class Simulation:
     """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
 
-    `system` and `scenario` are built-in names or paths of TOML files, or made in memory;
-    `parameters` ("unit.parameter" to value) override those of the files; `fmus` (unit to path) put other
-    FMUs in the place of the named ones, `swaps` (unit to swap file) FMUs with other names; `ideal` leaves the
-    buses out (unit conversion only); `bus` varies all of them (BusVariation); `log_frames` keeps the frames
-    for `write_can_log`; `isolation` puts all units into processes of their own ("process") or none ("none"),
-    whatever the system says; `engine` is "compiled" (needs numba) or "python", which give the same results;
-    `strict` refuses every FMU whose description has defects; `profile` measures what
-    takes time in the steps.
+    `system` and `scenario` are built-in names, paths of TOML files, or made in memory; `log_frames` keeps the
+    frames for `write_can_log`; `profile` measures what takes time in the steps. The other keyword arguments
+    are those of RunOptions.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -127,22 +65,12 @@ class Simulation:
         system: str | Path | System,
         scenario: str | Path | Scenario | None = None,
         *,
-        parameters: Mapping[str, Value] | None = None,
-        fmus: Mapping[str, str | Path] | None = None,
-        ideal: bool = False,
-        algorithm: Algorithm | None = None,
-        stop_time: float | None = None,
-        bus: BusVariation | None = None,
         log_frames: bool = False,
-        isolation: Isolation | None = None,
-        swaps: Mapping[str, str | Path] | None = None,
-        engine: EngineName | None = None,
-        strict: bool = False,
         profile: bool = False,
+        **options: Unpack[RunOptions],
     ) -> None:
-        options = Options(parameters or {}, algorithm, stop_time, ideal)
-        prepared = prepare(system, scenario, options, fmus, bus, swaps, strict)
-        made, self._notice = engine_class(engine or prepared.plan.experiment.engine)
+        prepared = prepare(system, scenario, **options)
+        made, self._notice = engine_class(options.get("engine") or prepared.plan.experiment.engine)
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
         self.plan: Plan = prepared.plan
@@ -157,7 +85,7 @@ class Simulation:
         self.isolation: dict[str, Isolation] = {}
         try:
             for unit in self.plan.units:
-                self._units[unit.name] = self._load(unit, isolation)
+                self._units[unit.name] = self._load(unit, options.get("isolation"))
             self._engine = made(self.plan, self._units, log_raw=log_frames)
             self._engine.profile = Profile() if profile else None
             self._extremes = Extremes(len(self.plan.columns))
@@ -172,7 +100,7 @@ class Simulation:
         self.isolation[plan.name] = chosen(plan.name, fmu, entry, wanted)
         if self.isolation[plan.name] == "none":
             return load_unit(fmu, plan.name, plan.interface, entry.tolerance)
-        return IsolatedUnit(fmu, plan.name, plan.interface, limits(entry), entry.tolerance)
+        return IsolatedUnit(fmu, plan.name, plan.interface, process_limits(entry), entry.tolerance)
 
     # ---- a loop of one's own
 
@@ -203,7 +131,7 @@ class Simulation:
         """
         self._advance(steps, None)
 
-    def run(self, progress: Progress | None = None) -> None:
+    def run(self, progress: RunProgress | None = None) -> None:
         """Step to the stop time. Raises as `step` does."""
         stop = self.plan.experiment.stop_time
         tell = None if progress is None else lambda k: progress(self._engine.time_at(k), stop)
@@ -414,40 +342,18 @@ class Simulation:
 
 
 def simulate(
-    system: str | Path,
-    scenario: str | Path | None = None,
+    system: str | Path | System,
+    scenario: str | Path | Scenario | None = None,
     *,
-    parameters: Mapping[str, Value] | None = None,
-    fmus: Mapping[str, str | Path] | None = None,
-    ideal: bool = False,
-    algorithm: Algorithm | None = None,
-    stop_time: float | None = None,
-    bus: BusVariation | None = None,
-    isolation: Isolation | None = None,
-    swaps: Mapping[str, str | Path] | None = None,
-    engine: EngineName | None = None,
-    strict: bool = False,
-    progress: Progress | None = None,
+    progress: RunProgress | None = None,
+    **options: Unpack[RunOptions],
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
 
     Raises ConfigError before any step, RunError when a step fails; what a failed run has recorded is in
     the error's `results` (None where it failed before the first step).
     """
-    simulation = Simulation(
-        system,
-        scenario,
-        parameters=parameters,
-        fmus=fmus,
-        ideal=ideal,
-        algorithm=algorithm,
-        stop_time=stop_time,
-        bus=bus,
-        isolation=isolation,
-        swaps=swaps,
-        engine=engine,
-        strict=strict,
-    )
+    simulation = Simulation(system, scenario, **options)
     try:
         with simulation:
             simulation.run(progress)
@@ -476,56 +382,8 @@ def _check_frames(system: System) -> None:
             )
 
 
-def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
-    for name in system.file.units[unit].absent:
-        if name in interface.variables:
-            raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
-
-
-def _check_complete(
-    system: System, scenario: Scenario, unit: str, interface: UnitInterface, path: str | Path
-) -> None:
-    """Raise ConfigError that tells all that a swapped unit lacks."""
-    if missing := lacking(system, scenario, unit, interface):
-        lines = "\n".join(f"unit '{unit}' has no variable {name}" for name in missing)
-        raise ConfigError(f"{path}: {lines}\nmap them, or declare them absent; {_advice(system, unit, path)}")
-
-
-def _advice(system: System, unit: str, path: str | Path) -> str:
-    name = system.path if DATA.resolve() not in system.path.resolve().parents else system.file.name
-    return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
-
-
-def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
-    """The plan; an error of a run with swapped units says what shows all that is missing."""
-    try:
-        return resolved()
-    except ConfigError as error:
-        if not swaps:
-            raise
-        unit, path = next(iter(swaps.items()))
-        raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
-
-
 def _defects(unit: str, fmu: Fmu) -> list[str]:
     """What was tolerated in an FMU's description: the first defects, and how many more there are."""
     shown = [f"unit '{unit}': {fmu.path.name}: {defect}" for defect in fmu.defects[:_SHOWN_DEFECTS]]
     more = len(fmu.defects) - len(shown)
     return [*shown, *([f"unit '{unit}': {fmu.path.name}: {more} more defects"] if more else [])]
-
-
-def _read_fmus(
-    system: System, scenario: Scenario, fmus: Mapping[str, str | Path], strict: bool
-) -> dict[str, Fmu]:
-    entries = participating(system, scenario)
-    for unit in fmus:
-        if unit not in entries:
-            raise ConfigError(
-                f"--fmu {unit}: there is no unit '{unit}'{nearest(unit, entries)}: {', '.join(entries)}"
-            )
-    read = {}
-    for unit, entry in entries.items():
-        path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
-        read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)
-        check_runnable(read[unit])
-    return read

@@ -40,7 +40,7 @@ class Unit(Protocol):
         """How often a call ended with a warning or a message of status Warning came."""
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        """Keep the run's memory, shape (size,), and the slots of this unit's blocks in it."""
+        """Keep the run's memory, shape (size,), and the slots of this unit's slot groups in it."""
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """Set the experiment up (times in s) and enter initialization mode."""
@@ -55,7 +55,7 @@ class Unit(Protocol):
         """Set any variable that may be set now."""
 
     def set_inputs(self) -> None:
-        """Give the unit its inputs from the slots of its input blocks."""
+        """Give the unit its inputs from the slots of its input slot groups."""
 
     def get_feedthrough(self) -> None:
         """Read the outputs that depend on inputs at the same instant into their slots, valid and latest.

@@ -38,7 +38,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
-from ..results.results import Array
+from ..row_store import Array
 from .frequency_response import FrequencyResponse
 
 POOR_COHERENCE = 0.9

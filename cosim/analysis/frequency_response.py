@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
-from ..results.results import Array
+from ..row_store import Array
 
 RATE = 8.0
 """Blocks in a period of the sweep's highest frequency."""

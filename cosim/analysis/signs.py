@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..results.results import Array
+from ..row_store import Array
 
 Pair = tuple[str, str]
 """The names of an input and an output."""

@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from ..errors import ConfigError
-from ..results.results import Array
+from ..row_store import Array
 from ..system.identification_spec import IdentificationSpec
 
 STEPS_PER_PERIOD = 8

@@ -23,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
-from ..results.results import PIECE, Array, Results
+from ..results.results import PIECE, Results
+from ..row_store import Array
 from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ..writing import replacing
 from .check import check, panel_conversion

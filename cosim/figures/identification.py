@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..analysis.first_order import Estimate, FirstOrder, Fit, Prediction
 from ..analysis.frequency_response import FrequencyResponse
-from ..results.results import Array
+from ..row_store import Array
 from .draw import COLORS, canvas, pretty
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from ..system.toml import data_file
 from ..system.variation import with_resolution
 from ..units import Affine, UnitOfMeasure, conversion, defined
 from .plan import InputPlan, Link, MessagePlan
-from .slots import Layout
+from .slots import Slots
 from .steps import steps_in
 from .unit_plan import Route
 
@@ -36,9 +36,9 @@ class Network:
             raise ConfigError(f"{place}: {name} is driven already, by {self.inputs[name].driver}")
         self.inputs[name] = plan
 
-    def add_mailbox(self, unit: str, name: str, layout: Layout, driver: str) -> int:
+    def add_mailbox(self, unit: str, name: str, slots: Slots, driver: str) -> int:
         """Give an input a mailbox and the route from it."""
-        mailbox, slot = layout.take(1), layout.valid[unit, name]
+        mailbox, slot = slots.take(1), slots.valid[unit, name]
         self.routes[unit].append(Route(mailbox, slot))
         self.inputs[f"{unit}.{name}"] = InputPlan(slot, mailbox, driver)
         return mailbox
@@ -64,7 +64,7 @@ class _Connector:
 
     system: System
     interfaces: Mapping[str, UnitInterface]
-    layout: Layout
+    slots: Slots
     network: Network
     every: Mapping[str, int]
     ideal: bool
@@ -76,7 +76,7 @@ class _Connector:
 def connect(
     system: System,
     interfaces: Mapping[str, UnitInterface],
-    layout: Layout,
+    slots: Slots,
     every: Mapping[str, int],
     experiment: Experiment,
     algorithm: Algorithm,
@@ -87,7 +87,7 @@ def connect(
     A connection of a unit that was left out is dropped; with `ideal` a bus signal becomes a direct
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
     """
-    work = _Connector(system, interfaces, layout, Network({unit: [] for unit in interfaces}), every, ideal)
+    work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), every, ideal)
     for name, entry in system.file.buses.items():
         work.databases[name] = load_dbc(data_file(entry.dbc, system.path))
     for connection in system.file.connect:
@@ -140,9 +140,9 @@ def _direct(work: _Connector, source: tuple[str, str], sink: tuple[str, str], pl
         work, (".".join(source), sender.unit, _defined_by(work, source)),
         (".".join(sink), receiver.unit, _defined_by(work, sink)), place,
     )  # fmt: skip # two triples side by side
-    slot = work.layout.valid[sink]
+    slot = work.slots.valid[sink]
     work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
-    work.network.routes[sink[0]].append(Route(work.layout.source(*source, work.every[source[0]]), slot, map_))
+    work.network.routes[sink[0]].append(Route(work.slots.source(*source, work.every[source[0]]), slot, map_))
     work.network.links.append(Link(source, sink, map_))
 
 
@@ -177,12 +177,12 @@ def _over_bus(
                 f"and offset {signal.offset}"
             )
         name = ".".join(sink)
-        work.network.drive(name, InputPlan(work.layout.valid[sink], None, ""), place)
-        mailbox = work.network.add_mailbox(*sink, work.layout, f"{connection.source} via {connection.via}")
+        work.network.drive(name, InputPlan(work.slots.valid[sink], None, ""), place)
+        mailbox = work.network.add_mailbox(*sink, work.slots, f"{connection.source} via {connection.via}")
         if connection.initial is not None:
             work.network.initial[name] = connection.initial
         ends.append((mailbox, to_receiver))
-    route = SignalRoute(signal=signal, source=work.layout.valid[source], to_bus=to_bus, sinks=tuple(ends))
+    route = SignalRoute(signal=signal, source=work.slots.valid[source], to_bus=to_bus, sinks=tuple(ends))
     work.signal_routes.setdefault(key, []).append(route)
 
 
@@ -227,7 +227,7 @@ def _message(
     delay = steps_in(entry.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
     arrivals: list[tuple[int, int]] = []
     if delay:
-        routes = [_staged(work.layout, route, arrivals) for route in routes]
+        routes = [_staged(work.slots, route, arrivals) for route in routes]
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -253,9 +253,9 @@ def _message(
     )
 
 
-def _staged(layout: Layout, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
+def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
     """The route into slots of its own instead of mailboxes; `arrivals` gets the pairs (slot, mailbox)."""
-    sinks = [(layout.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
+    sinks = [(slots.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
     arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
     return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))
 

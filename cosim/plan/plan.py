@@ -18,12 +18,12 @@ from ..can.dbc import Message
 from ..can.quantization import BusSettings
 from ..results.results import ResultVariable
 from ..system.scenario import EventEntry
-from ..system.stimuli import Signal
+from ..system.stimuli import TimeFunction
 from ..system.system import Algorithm, Experiment
 from ..units import Affine
-from .unit_plan import Block, BlockKind, Route, UnitPlan
+from .unit_plan import UnitPlan
 
-__all__ = ["Block", "BlockKind", "Drive", "InputPlan", "Link", "MessagePlan", "Plan", "Route", "UnitPlan"]
+__all__ = ["Drive", "InputPlan", "Link", "MessagePlan", "Plan"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Drive:
 
     variable: str
     sink: int
-    signal: Signal
+    signal: TimeFunction
     map: Affine
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -10,28 +9,19 @@ from typing import Any
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
+from ..system.run_options import RunOptions
 from ..system.scenario import EventEntry, Scenario
 from ..system.stimuli import stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..units import Affine, conversion, defined
 from .connections import Network, connect
 from .plan import Drive, InputPlan, Plan
-from .slots import Layout, lay_out
+from .slots import Slots, allot
 from .steps import steps_in
 from .unit_plan import UnitPlan
 
 _MOST_VALUES = 2**31
 """What a run records stays in memory: 16 GiB."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Options:
-    """What the user asks for beside the files: overrides of parameters ("unit.parameter"), and how to run."""
-
-    parameters: Mapping[str, Value] = dataclasses.field(default_factory=dict)
-    algorithm: Algorithm | None = None
-    stop_time: float | None = None
-    ideal: bool = False
 
 
 def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
@@ -49,7 +39,7 @@ def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
 
 
 def resolve(
-    system: System, scenario: Scenario, interfaces: Mapping[str, UnitInterface], options: Options
+    system: System, scenario: Scenario, interfaces: Mapping[str, UnitInterface], options: RunOptions
 ) -> Plan:
     """The plan of a run. `interfaces` are those of the participating units, in their order.
 
@@ -60,14 +50,14 @@ def resolve(
     place = str(system.path)
     record = scenario.file.record if scenario.file.record is not None else system.file.record
     connected = {c.source for c in system.file.connect}
-    layout, columns = lay_out(interfaces, record, connected, place)
+    slots, columns = allot(interfaces, record, connected, place)
     every = {
         name: _every(entry.period, experiment.step_size, f"{place}: units.{name}.period")
         for name, entry in entries.items()
     }
-    network = connect(system, interfaces, layout, every, experiment, algorithm, options.ideal)
-    drives = _drives(scenario, interfaces, network, layout)
-    _mailboxes_of_the_rest(interfaces, network, layout)
+    network = connect(system, interfaces, slots, every, experiment, algorithm, options.get("ideal", False))
+    drives = _drives(scenario, interfaces, network, slots)
+    _mailboxes_of_the_rest(interfaces, network, slots)
     parameters = _parameters(system, scenario, entries, interfaces, options)
     starts = {u: _starts(system, scenario, u, entries[u], interfaces[u]) for u in entries}
     return Plan(
@@ -76,7 +66,7 @@ def resolve(
         experiment=experiment,
         algorithm=algorithm,
         steps=_steps(experiment, len(columns), place),
-        ideal=options.ideal,
+        ideal=options.get("ideal", False),
         units=tuple(
             UnitPlan(
                 name=name,
@@ -86,7 +76,7 @@ def resolve(
                 start=starts[name],
                 every=every[name],
                 substeps=entry.substeps,
-                blocks=tuple(layout.blocks[name]),
+                groups=tuple(slots.groups[name]),
                 routes=tuple(network.routes[name]),
             )
             for name, entry in entries.items()
@@ -97,9 +87,9 @@ def resolve(
         events=_events(scenario, interfaces, network.inputs, experiment),
         inputs=network.inputs,
         columns=tuple(result_variable(unit, v) for unit, v in columns),
-        column_slots=tuple(layout.valid[unit, v.name] for unit, v in columns),
+        column_slots=tuple(slots.valid[unit, v.name] for unit, v in columns),
         initial=_initial(interfaces, starts, network),
-        memory_size=layout.size,
+        memory_size=slots.size,
         warnings=tuple(network.warnings),
     )
 
@@ -117,12 +107,12 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
     )
 
 
-def _experiment(system: System, scenario: Scenario, options: Options) -> tuple[Experiment, Algorithm]:
+def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tuple[Experiment, Algorithm]:
     changes = scenario.file.experiment.model_dump(exclude_none=True)
-    if options.stop_time is not None:
-        changes["stop_time"] = options.stop_time
+    if options.get("stop_time") is not None:
+        changes["stop_time"] = options.get("stop_time")
     experiment = system.file.experiment.model_copy(update=changes)
-    algorithm = options.algorithm or experiment.algorithm
+    algorithm = options.get("algorithm") or experiment.algorithm
     if algorithm not in ("gauss_seidel", "jacobi"):
         raise ConfigError(f"algorithm is gauss_seidel or jacobi, not {algorithm!r}")
     return experiment, algorithm
@@ -161,7 +151,7 @@ def _parameters(
     scenario: Scenario,
     entries: Mapping[str, UnitEntry],
     interfaces: Mapping[str, UnitInterface],
-    options: Options,
+    options: RunOptions,
 ) -> dict[str, dict[str, Value]]:
     """Every unit's parameters: the system's, then the scenario's, then the user's."""
     given: list[tuple[str, str, str, Value]] = []
@@ -171,7 +161,7 @@ def _parameters(
         ]
     for unit, values in scenario.file.parameters.items():
         given += [(unit, k, f"{scenario.path}: parameters.{unit}.{k}", x) for k, x in values.items()]
-    for name, value in options.parameters.items():
+    for name, value in (options.get("parameters") or {}).items():
         unit, _, parameter = name.partition(".")
         given.append((unit, parameter, f"parameter {name}", value))
     result: dict[str, dict[str, Value]] = {unit: {} for unit in entries}
@@ -236,7 +226,7 @@ def _item(name: str, variable: VariableInfo, place: str) -> int:
 
 
 def _drives(
-    scenario: Scenario, interfaces: Mapping[str, UnitInterface], network: Network, layout: Layout
+    scenario: Scenario, interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots
 ) -> tuple[Drive, ...]:
     drives = []
     for number, entry in enumerate(scenario.file.stimuli):
@@ -250,17 +240,17 @@ def _drives(
                 map_ = conversion(defined(entry.unit, known), defined(variable.unit, known))
             except ConfigError as error:
                 raise ConfigError(f"{place}: {error}") from error
-        slot = layout.valid[unit, name]
+        slot = slots.valid[unit, name]
         network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), place)
         drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path), map_))
     return tuple(drives)
 
 
-def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, layout: Layout) -> None:
+def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots) -> None:
     for unit, interface in interfaces.items():
         for v in interface.of_causality("input"):
             if v.type != "String" and f"{unit}.{v.name}" not in network.inputs:
-                network.add_mailbox(unit, v.name, layout, "")
+                network.add_mailbox(unit, v.name, slots, "")
 
 
 def _events(

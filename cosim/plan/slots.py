@@ -8,19 +8,19 @@ from fnmatch import fnmatchcase
 
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
-from .unit_plan import Block
+from .unit_plan import SlotGroup
 
 _NUMERIC = ("Real", "Integer", "Enumeration", "Boolean")
 
 
 @dataclasses.dataclass
-class Layout:
+class Slots:
     """Slots given out so far. `valid` and `latest` map (unit, variable) to slots (see `plan`)."""
 
     size: int = 0
     valid: dict[tuple[str, str], int] = dataclasses.field(default_factory=dict)
     latest: dict[tuple[str, str], int] = dataclasses.field(default_factory=dict)
-    blocks: dict[str, list[Block]] = dataclasses.field(default_factory=dict)
+    groups: dict[str, list[SlotGroup]] = dataclasses.field(default_factory=dict)
 
     def take(self, count: int) -> int:
         """The first of `count` new slots."""
@@ -34,34 +34,34 @@ class Layout:
         return self.latest.get((unit, name), self.valid[unit, name]) if every == 1 else self.valid[unit, name]
 
 
-def lay_out(
+def allot(
     interfaces: Mapping[str, UnitInterface], record: Iterable[str], needed: set[str], place: str
-) -> tuple[Layout, list[tuple[str, VariableInfo]]]:
+) -> tuple[Slots, list[tuple[str, VariableInfo]]]:
     """Give every input, and every recorded or `needed` (connected) output, its slots.
 
-    Returns the layout and the recorded variables in the units' order. Raises ConfigError when a pattern
+    Returns the slots and the recorded variables in the units' order. Raises ConfigError when a pattern
     of `record` fits no variable.
     """
     recorded = _recorded(interfaces, tuple(record), place)
-    layout = Layout()
+    slots = Slots()
     variables = {unit: _slotted(unit, interface, recorded | needed) for unit, interface in interfaces.items()}
     for unit, (inputs, outputs) in variables.items():
         driven = {v.name for v in inputs}
-        groups = [("input", inputs, 0), *_output_groups(outputs, driven)]
-        layout.blocks[unit] = [
-            block
-            for kind, group, feedthrough in groups
-            for block in _blocks(layout, unit, kind, group, feedthrough)
+        kinds = [("input", inputs, 0), *_outputs_by_kind(outputs, driven)]
+        slots.groups[unit] = [
+            group
+            for kind, members, feedthrough in kinds
+            for group in _slot_groups(slots, unit, kind, members, feedthrough)
         ]
-    for unit, blocks in layout.blocks.items():  # behind all recorded slots, so that a row is one piece
-        layout.blocks[unit] = [_with_latest(layout, unit, block) for block in blocks]
+    for unit, groups in slots.groups.items():  # behind all recorded slots, so that a row is one piece
+        slots.groups[unit] = [_with_latest(slots, unit, group) for group in groups]
     columns = [
         (unit, v)
         for unit, (inputs, outputs) in variables.items()
         for v in (*inputs, *outputs)
         if f"{unit}.{v.name}" in recorded
     ]
-    return layout, columns
+    return slots, columns
 
 
 def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...], place: str) -> set[str]:
@@ -104,7 +104,7 @@ def _slotted(
     return inputs, outputs
 
 
-def _output_groups(
+def _outputs_by_kind(
     outputs: list[VariableInfo], inputs: set[str]
 ) -> list[tuple[str, list[VariableInfo], int]]:
     discrete = [v for v in outputs if v.variability != "continuous"]
@@ -114,21 +114,23 @@ def _output_groups(
     return [("discrete", discrete, 0), ("continuous", [*through, *rest], len(through))]
 
 
-def _blocks(layout: Layout, unit: str, kind: str, group: list[VariableInfo], feedthrough: int) -> list[Block]:
+def _slot_groups(
+    slots: Slots, unit: str, kind: str, variables: list[VariableInfo], feedthrough: int
+) -> list[SlotGroup]:
     made = []
     for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",)):
-        members = tuple(v for v in group if v.type in types)
+        members = tuple(v for v in variables if v.type in types)
         if not members:
             continue
-        slot = layout.take(len(members))
-        layout.valid |= {(unit, v.name): slot + i for i, v in enumerate(members)}
-        made.append(Block(kind, types[0], members, slot, feedthrough=feedthrough))  # type: ignore[arg-type] # a literal
+        first = slots.take(len(members))
+        slots.valid |= {(unit, v.name): first + i for i, v in enumerate(members)}
+        made.append(SlotGroup(kind, types[0], members, first, feedthrough=feedthrough))  # type: ignore[arg-type] # a literal
     return made
 
 
-def _with_latest(layout: Layout, unit: str, block: Block) -> Block:
-    if block.kind != "continuous":
-        return block
-    latest = layout.take(len(block.variables))
-    layout.latest |= {(unit, v.name): latest + i for i, v in enumerate(block.variables)}
-    return dataclasses.replace(block, latest=latest)
+def _with_latest(slots: Slots, unit: str, group: SlotGroup) -> SlotGroup:
+    if group.kind != "continuous":
+        return group
+    latest = slots.take(len(group.variables))
+    slots.latest |= {(unit, v.name): latest + i for i, v in enumerate(group.variables)}
+    return dataclasses.replace(group, latest=latest)

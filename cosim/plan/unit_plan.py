@@ -14,18 +14,18 @@ from ..units import Affine
 if TYPE_CHECKING:
     from ..interface import Value
 
-BlockKind = Literal["input", "discrete", "continuous"]
+SlotGroupKind = Literal["input", "discrete", "continuous"]
 
 
 @dataclasses.dataclass(frozen=True)
-class Block:
+class SlotGroup:
     """Variables of one unit, FMI type and kind, in consecutive slots from `slot` on.
 
-    `latest`: the first slot of a continuous block's values after the step. Of a continuous block the
+    `latest`: the first slot of a continuous group's values after the step. Of a continuous group the
     first `feedthrough` variables depend on an input at the same instant.
     """
 
-    kind: BlockKind
+    kind: SlotGroupKind
     type: str
     variables: tuple[VariableInfo, ...]
     slot: int
@@ -49,7 +49,7 @@ class Route:
 
 @dataclasses.dataclass(frozen=True)
 class UnitPlan:
-    """One unit: what it is given before the start, its blocks, and its routes.
+    """One unit: what it is given before the start, its slot groups, and its routes.
 
     It steps at every communication step k with k % every == 0, `substeps` FMU steps each time.
     """
@@ -61,5 +61,5 @@ class UnitPlan:
     start: dict[str, Value]
     every: int
     substeps: int
-    blocks: tuple[Block, ...]
+    groups: tuple[SlotGroup, ...]
     routes: tuple[Route, ...]

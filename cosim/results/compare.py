@@ -20,7 +20,8 @@ import numpy as np
 
 from .. import units
 from ..errors import ConfigError
-from .results import Array, Results, ResultVariable
+from ..row_store import Array
+from .results import Results, ResultVariable
 
 _SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
 

@@ -32,9 +32,10 @@ import numpy as np
 
 from .. import units
 from ..errors import ConfigError, nearest
+from ..row_store import Array
 from ..system.metric_spec import MetricSpec, Reduction
 from ..units import BASE_UNITS, UnitOfMeasure
-from .results import Array, Results, ResultVariable
+from .results import Results, ResultVariable
 
 _SHARES = ("share_above", "share_equal")
 _TIMES = ("time_above", "time_equal", "settling")

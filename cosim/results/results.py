@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ConfigError, nearest
-from ..row_store import Grid, MemoryTable, Table
+from ..row_store import Array, Grid, MemoryTable, Table
 from ..writing import replacing
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ..system.figure_spec import FigureSpec
     from ..system.metric_spec import MetricSpec
     from .metrics import Metric
-
-Array = NDArray[np.float64]
 
 CSV_NAME = "results.csv"
 MANIFEST_NAME = "run.json"

@@ -14,11 +14,11 @@ from ..errors import ConfigError, nearest
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
 from .toml import data_file
 
-Signal = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+TimeFunction = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values, shape (n,), of a stimulus at the times [s], shape (n,)."""
 
 
-def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> Signal:
+def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> TimeFunction:
     """The signal that an entry describes, in the entry's own unit.
 
     `beside` is the scenario file, from which a csv path is looked up.
@@ -39,7 +39,7 @@ def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> Signal:
     return _table(times, values, entry.interpolation, f"{place}: {path}")
 
 
-def _sine(sine: Sine) -> Signal:
+def _sine(sine: Sine) -> TimeFunction:
     def values(t: NDArray[np.float64]) -> NDArray[np.float64]:
         swing = sine.amplitude * np.sin(2.0 * math.pi * (t - sine.delay) / sine.period + sine.phase)
         return sine.mean + np.where(t >= sine.delay, swing, 0.0)
@@ -47,7 +47,7 @@ def _sine(sine: Sine) -> Signal:
     return values
 
 
-def _ramp(ramp: Ramp, place: str) -> Signal:
+def _ramp(ramp: Ramp, place: str) -> TimeFunction:
     low, high = -math.inf, math.inf
     if ramp.end is not None:
         if ramp.end != ramp.start and not (ramp.end - ramp.start) * ramp.slope > 0.0:
@@ -64,7 +64,7 @@ def _ramp(ramp: Ramp, place: str) -> Signal:
 
 def _table(
     times: NDArray[np.float64], values: NDArray[np.float64], interpolation: Interpolation, place: str
-) -> Signal:
+) -> TimeFunction:
     if len(times) == 0:
         raise ConfigError(f"{place}: the table is empty")
     finite = np.isfinite(times) & np.isfinite(values)

@@ -6,8 +6,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 
 from ...cosim.errors import ConfigError
-
-Value = bool | int | float | str
+from ...cosim.interface import Value
 
 
 def parse_settings(options: Sequence[str]) -> dict[str, Value]:

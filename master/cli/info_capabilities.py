@@ -50,7 +50,7 @@ def capabilities(kind: Any) -> list[dict[str, str]]:
     return found
 
 
-def limits(kind: Any, holds_python: bool) -> list[dict[str, str]]:
+def limitations(kind: Any, holds_python: bool) -> list[dict[str, str]]:
     """What an interface asks for or cannot do, in the same form."""
     found = _true(kind, _LIMITS)
     for limit in found if holds_python else ():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
 from .console import number, print_fields, print_table
-from .info_capabilities import capabilities, limits
+from .info_capabilities import capabilities, limitations
 
 if TYPE_CHECKING:
     from ..fmi.fmu import Fmu
@@ -55,7 +55,7 @@ def described(
         "unpacked_size": fmu.unpacked,
         "python": fmu.holds_python,
         "capabilities": {word: capabilities(kind) for word, kind in kinds.items()},
-        "limits": _limits(kinds.values(), fmu.holds_python),
+        "limits": _limitations(kinds.values(), fmu.holds_python),
         "defects": list(fmu.defects),
         "validator": _validated(path),
         "default_experiment": _experiment(md.defaultExperiment),
@@ -74,8 +74,8 @@ def _has_binary(fmu: Fmu) -> bool:
         return False
 
 
-def _limits(kinds: Iterable[Any], holds_python: bool) -> list[dict[str, str]]:
-    found = [limit for kind in kinds for limit in limits(kind, holds_python)]
+def _limitations(kinds: Iterable[Any], holds_python: bool) -> list[dict[str, str]]:
+    found = [limit for kind in kinds for limit in limitations(kind, holds_python)]
     return [limit for i, limit in enumerate(found) if limit not in found[:i]]
 
 

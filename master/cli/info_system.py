@@ -10,15 +10,15 @@ if TYPE_CHECKING:
     from ...cosim.plan.plan import MessagePlan, Plan
     from ...cosim.system.system import System
     from ...cosim.units import Affine
+    from ..prepare import Prepared
 
 
 def described(name: str) -> dict[str, Any]:
     """All that is shown of a system. Raises ConfigError for everything that is wrong in it."""
     from ...cosim.system.scenario import load_scenario, scenario_names
-    from ...cosim.system.system import load_system
 
-    system = load_system(name)
-    plan = _whole_plan(system)
+    prepared = _whole(name)
+    system, plan = prepared.system, prepared.plan
     scenarios = {s: load_scenario(system, s).file.title for s in scenario_names(system)}
     return {
         "file": str(system.path),
@@ -41,18 +41,12 @@ def described(name: str) -> dict[str, Any]:
     }  # fmt: skip # one line for each key
 
 
-def _whole_plan(system: System) -> Plan:
-    """The plan with all units, none left out by a scenario."""
-    from ...cosim.plan.resolve import Options, resolve
+def _whole(name: str) -> Prepared:
+    """Return the system with its plan, no unit left out by a scenario; as `run` prepares it."""
     from ...cosim.system.scenario import Scenario, ScenarioFile
-    from ..builtin import fmu_file
-    from ..fmi.fmu import read_fmu
+    from ..prepare import prepare
 
-    entries = system.file.units
-    interfaces = {
-        unit: read_fmu(fmu_file(entry.fmu, system.path)).interface for unit, entry in entries.items()
-    }
-    return resolve(system, Scenario("", None, ScenarioFile()), interfaces, Options())
+    return prepare(name, Scenario("", None, ScenarioFile()), runnable=False)
 
 
 def _connections(system: System, plan: Plan) -> list[dict[str, str]]:

@@ -50,7 +50,7 @@ class Turn:
         self.take = compile_routes(plan.routes, memory)
         self.step_size = step_size * plan.every / plan.substeps
         self.substeps = plan.substeps
-        outputs = [b for b in plan.blocks if b.kind != "input"]
+        outputs = [b for b in plan.groups if b.kind != "input"]
         self.continuous = [b for b in outputs if b.kind == "continuous"]
         self.published = [
             (slice(b.slot, b.slot + len(b.variables)), memory[b.latest : b.latest + len(b.variables)])
@@ -92,10 +92,10 @@ class Turn:
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
-        for values, block in self.read:
+        for values, group in self.read:
             # NaN and infinity survive the sum: the fastest way to see one; so may a sum of huge values look
             if not math.isfinite(sum(values)):
-                for v, value in zip(block.variables, values, strict=True):
+                for v, value in zip(group.variables, values, strict=True):
                     if not math.isfinite(value):
                         unit = f" {v.unit}" if v.unit else ""
                         raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
@@ -167,7 +167,7 @@ class Engine:
         ]
         self._events = list(plan.events)
         self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
-                         for b in p.blocks if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
+                         for b in p.groups if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
 
     @property
     def time(self) -> float:

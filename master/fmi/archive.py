@@ -39,7 +39,7 @@ class FmuError(ConfigError):
 
 
 @dataclasses.dataclass(frozen=True)
-class Limits:
+class ArchiveLimits:
     """What an archive may hold: `size` bytes in all, `ratio` of unpacked to packed bytes, `entries`."""
 
     size: float = 4e9
@@ -47,7 +47,7 @@ class Limits:
     entries: float = 20_000
 
 
-def limits() -> Limits:
+def archive_limits() -> ArchiveLimits:
     """The limits, with those that the environment sets. Raises ConfigError for what is no limit."""
     given = {}
     for part in os.environ.get(_VARIABLE, "").split():
@@ -61,7 +61,7 @@ def limits() -> Limits:
                 f"{_VARIABLE}: '{part}' is not size=N, ratio=N or entries=N with a number above 0"
             )
         given[name] = number
-    return Limits(**given)
+    return ArchiveLimits(**given)
 
 
 def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
@@ -79,7 +79,7 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
         raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
     for entry in found:  # some tools for Windows separate folders as no archive should
         entry.filename = entry.filename.replace("\\", "/")
-    _check(path, found, limits())
+    _check(path, found, archive_limits())
     return found
 
 
@@ -89,7 +89,7 @@ def _reason(path: Path, error: Exception) -> str:
     return "it is no zip archive, or a truncated one" if isinstance(error, zipfile.BadZipFile) else str(error)
 
 
-def _check(path: Path, entries: tuple[zipfile.ZipInfo, ...], allowed: Limits) -> None:
+def _check(path: Path, entries: tuple[zipfile.ZipInfo, ...], allowed: ArchiveLimits) -> None:
     if len(entries) > allowed.entries:
         raise FmuError(
             f"{path}: the archive has {len(entries)} entries, more than {allowed.entries:g} ({_VARIABLE})"
@@ -126,7 +126,7 @@ def _shown(name: str) -> str:
     return repr(name if len(name) <= _LONGEST_SHOWN else name[:_LONGEST_SHOWN] + "...")
 
 
-def _problem(entry: zipfile.ZipInfo, allowed: Limits) -> str:
+def _problem(entry: zipfile.ZipInfo, allowed: ArchiveLimits) -> str:
     """What is wrong with an entry; "" when nothing is."""
     name = entry.orig_filename  # zipfile cuts `filename` at a NUL and turns separators
     parts = re.split(r"[/\\]", name)
@@ -168,7 +168,7 @@ def extract(path: Path) -> Path:
     """
     entries = entries_of(path)
     folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
-    left, place = limits().size, ""
+    left, place = archive_limits().size, ""
     try:
         with zipfile.ZipFile(path) as archive:
             for entry in entries:

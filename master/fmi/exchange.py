@@ -84,8 +84,8 @@ class ModelExchange(Instance):
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """See `unit.Unit`. Discrete inputs may be set in an event alone, so they are told apart."""
         super().bind(memory, plan)
-        for block in plan.blocks:
-            for slot, variable in enumerate(block.variables, block.slot) if block.kind == "input" else ():
+        for group in plan.groups:
+            for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
                 self._inputs[_is_continuous(variable)].append((slot, variable))
         self._view = floats(memory)
         self._set_continuous, self._set_discrete = (

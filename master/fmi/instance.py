@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
-from ...cosim.plan.unit_plan import Block, UnitPlan
+from ...cosim.plan.unit_plan import SlotGroup, UnitPlan
 from ..unit import UnitError, floats
 from . import binary, folders
 from .fmu import Fmu, FmuError, check_runnable, is_true
@@ -46,8 +46,8 @@ from .transfer import (
     copying,
     getting,
     getting_booleans,
-    limits,
     one_after_the_other,
+    range_of,
     setting,
     setting_booleans,
 )
@@ -193,25 +193,25 @@ class Instance:
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """See `unit.Unit`. Makes the calls of a turn, with all their arguments."""
         self.inputs, self.through, self.outputs = [], [], []
-        for block in plan.blocks:
-            if block.kind == "input":
-                self.inputs += self._transfers("Set", memory, enumerate(block.variables, block.slot))
-            elif block.kind == "discrete":
-                self.outputs += self._transfers("Get", memory, enumerate(block.variables, block.slot))
+        for group in plan.groups:
+            if group.kind == "input":
+                self.inputs += self._transfers("Set", memory, enumerate(group.variables, group.slot))
+            elif group.kind == "discrete":
+                self.outputs += self._transfers("Get", memory, enumerate(group.variables, group.slot))
             else:
-                self.outputs += self._transfers("Get", memory, enumerate(block.variables, block.latest))
-                self.through += self._feedthrough(memory, block)
+                self.outputs += self._transfers("Get", memory, enumerate(group.variables, group.latest))
+                self.through += self._feedthrough(memory, group)
         view = floats(memory)
         self.set_inputs = one_after_the_other(*(self._acting(t, view) for t in self.inputs))
         self.get_feedthrough = one_after_the_other(*(self._acting(t, view) for t in self.through))
         self.get_outputs = one_after_the_other(*(self._acting(t, view) for t in self.outputs))
 
-    def _feedthrough(self, memory: NDArray[np.float64], block: Block) -> list[Transfer | Copy]:
-        if not block.feedthrough:
+    def _feedthrough(self, memory: NDArray[np.float64], group: SlotGroup) -> list[Transfer | Copy]:
+        if not group.feedthrough:
             return []
-        through = enumerate(block.variables[: block.feedthrough], block.latest)
+        through = enumerate(group.variables[: group.feedthrough], group.latest)
         transfers = self._transfers("Get", memory, through)
-        return [*transfers, Copy(block.latest, block.slot, block.feedthrough)]
+        return [*transfers, Copy(group.latest, group.slot, group.feedthrough)]
 
     def _transfers(
         self, direction: str, memory: NDArray[np.float64], places: Iterable[tuple[int, VariableInfo]]
@@ -302,7 +302,7 @@ class Instance:
         if "Get" in function:
             raise UnitError(f"unit '{self.name}': {name} = {value} is more than a double holds (2^53)")
         kind = str(self._declared[variable.declared_name].type)
-        low, high = limits(self._access("Set", variable)[1])
+        low, high = range_of(self._access("Set", variable)[1])
         raise UnitError(
             f"unit '{self.name}': {name} cannot be set to {value:.17g}: it is of type {kind}, "
             f"from {low:.17g} to {high:.17g}"
@@ -338,7 +338,7 @@ class Instance:
             buffer = (c_type * 1)(bool(value))
         else:
             number = -value if variable.inverted else value
-            low, high = limits(c_type)
+            low, high = range_of(c_type)
             if not low <= number <= high:
                 self._refuse(variable, number, function)
             buffer = (c_type * 1)(number)

@@ -67,7 +67,7 @@ class Copy:
     count: int
 
 
-def limits(c_type: Any) -> tuple[float, float]:
+def range_of(c_type: Any) -> tuple[float, float]:
     """The least and the largest number of a ctypes type."""
     if c_type is ctypes.c_double:
         return -math.inf, math.inf
@@ -88,7 +88,7 @@ def setting(
     refuse: Refusal,
 ) -> Call:
     """Fill the buffer `values` from the memory, then call. A fraction is cut off from what shall be whole."""
-    low, high = limits(c_type)
+    low, high = range_of(c_type)
     kind = float if c_type in (ctypes.c_double, ctypes.c_float) else int
 
     def set_values() -> None:

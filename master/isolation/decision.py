@@ -8,7 +8,7 @@ from ...cosim.errors import ConfigError
 from ...cosim.system.system import Isolation, UnitEntry
 from ..builtin import is_builtin
 from ..fmi.fmu import Fmu
-from .process import Limits
+from .process import ProcessLimits
 
 
 def chosen(name: str, fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> Isolation:
@@ -33,6 +33,6 @@ def available() -> bool:
     return os.name == "posix"
 
 
-def limits(entry: UnitEntry) -> Limits:
+def process_limits(entry: UnitEntry) -> ProcessLimits:
     """The limits of a unit's process."""
-    return Limits(entry.memory_limit, entry.file_limit, entry.load_timeout, entry.step_timeout)
+    return ProcessLimits(entry.memory_limit, entry.file_limit, entry.load_timeout, entry.step_timeout)

@@ -23,7 +23,7 @@ _LOOK = 0.25  # s between two looks at a process that does not answer
 
 
 @dataclasses.dataclass(frozen=True)
-class Limits:
+class ProcessLimits:
     """What a process may take.
 
     `memory` [bytes] of address space and `file` [bytes] of each file that it writes, both may be infinite;
@@ -42,7 +42,7 @@ class Process:
     `connection` is its socket; a call of it raises TimeoutError when a quarter of a second has passed.
     """
 
-    def __init__(self, loading: tuple[Any, ...], memory: int, limits: Limits) -> None:
+    def __init__(self, loading: tuple[Any, ...], memory: int, limits: ProcessLimits) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
         self._output = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `close`
@@ -58,7 +58,7 @@ class Process:
             self.close()
             raise
 
-    def _start(self, descriptors: tuple[int, ...], limits: Limits) -> None:
+    def _start(self, descriptors: tuple[int, ...], limits: ProcessLimits) -> None:
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "evcosim.master.isolation.child"]
             + [str(each) for each in (*descriptors, limits.memory, limits.file)],

@@ -17,7 +17,7 @@ import tempfile
 
 import numpy as np
 
-from ...cosim.plan.unit_plan import Block, UnitPlan
+from ...cosim.plan.unit_plan import SlotGroup, UnitPlan
 from ..unit import floats
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
@@ -49,7 +49,7 @@ def create(count: int) -> int:
 
 
 class Shared:
-    """The memory behind a descriptor: `slots` are the first ones, `values` those of the unit's blocks."""
+    """The memory behind a descriptor: `slots` are the first, `values` those of the unit's slot groups."""
 
     def __init__(self, descriptor: int) -> None:
         self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
@@ -89,16 +89,16 @@ def _count(number: float) -> int:
 
 
 def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
-    """The plan of a unit with its blocks at the start of a memory of their own, and their size."""
-    blocks, place = [], 0
-    for block in plan.blocks:
-        n = len(block.variables)
-        latest = place + n if block.kind == "continuous" else -1
-        blocks.append(dataclasses.replace(block, slot=place, latest=latest))
-        place += 2 * n if block.kind == "continuous" else n
-    return dataclasses.replace(plan, blocks=tuple(blocks), routes=()), place
+    """The plan of a unit with its groups at the start of a memory of their own, and their size."""
+    groups, place = [], 0
+    for group in plan.groups:
+        n = len(group.variables)
+        latest = place + n if group.kind == "continuous" else -1
+        groups.append(dataclasses.replace(group, slot=place, latest=latest))
+        place += 2 * n if group.kind == "continuous" else n
+    return dataclasses.replace(plan, groups=tuple(groups), routes=()), place
 
 
-def shown(block: Block) -> int:
-    """The first slot into which a unit writes the outputs of a block after its step."""
-    return block.latest if block.kind == "continuous" else block.slot
+def shown(group: SlotGroup) -> int:
+    """The first slot into which a unit writes the outputs of a group after its step."""
+    return group.latest if group.kind == "continuous" else group.slot

@@ -20,7 +20,7 @@ from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
 from ..unit import UnitError, floats
 from . import framing, handover, shared
-from .process import Limits, Process
+from .process import Process, ProcessLimits
 from .waiting import WAITING
 
 _FREEING = 2.0  # s
@@ -38,7 +38,7 @@ class IsolatedUnit:
         fmu: Fmu,
         name: str,
         interface: UnitInterface,
-        limits: Limits,
+        limits: ProcessLimits,
         tolerance: float | None = None,
     ) -> None:
         check_runnable(fmu)
@@ -165,7 +165,7 @@ class IsolatedUnit:
         """See `unit.Unit`. What an input or output passes through is a slice of one memory, at once."""
         theirs, _ = shared.private(plan)
         ours, view = floats(self._shared.values), floats(memory)
-        pairs = list(zip(plan.blocks, theirs.blocks, strict=True))
+        pairs = list(zip(plan.groups, theirs.groups, strict=True))
         self._inputs = [
             (ours, slice(t.slot, t.slot + len(b.variables)), view[b.slot : b.slot + len(b.variables)])
             for b, t in pairs

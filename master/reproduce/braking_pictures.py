@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...cosim.figures import draw as figures
-from ...cosim.results.results import Array, Results
+from ...cosim.results.results import Results
+from ...cosim.row_store import Array
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road, friction_coefficient
 from .braking_runs import CONTROLLED, NOMINAL, critical, locking, stop_of

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...cosim.interface import Value
-from ...cosim.results.results import Array, Results
+from ...cosim.results.results import Results
+from ...cosim.row_store import Array
 from ...models import multi_drive_analysis as analysis
 from ...models.electronic_differential import ElectronicDifferential
 from ...models.two_motor_vehicle import TwoMotorVehicle

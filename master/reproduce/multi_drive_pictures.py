@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...cosim.figures import draw as figures
-from ...cosim.results.results import Array, Results, ResultVariable
+from ...cosim.results.results import Results, ResultVariable
+from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models.induction_motor_drive import InductionMotorDrive
 from .page import Picture

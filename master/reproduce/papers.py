@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.errors import ConfigError, nearest
-from ..studies.parallel import Progress, run_all
+from ..studies.parallel import TaskProgress, run_all
 from .page import Page, Paper
 from .render import write_index, write_page
 
@@ -25,7 +25,7 @@ def load(name: str) -> Paper:
 
 
 def reproduce(
-    names: Sequence[str], folder: Path, workers: int | None = None, progress: Progress | None = None
+    names: Sequence[str], folder: Path, workers: int | None = None, progress: TaskProgress | None = None
 ) -> list[Page]:
     """Reproduce papers and write their pages and an index into `folder`; return the pages.
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.system.identification_spec import IdentificationSpec
-from ..studies.identification import Identification, Progress, identify
+from ..studies.identification import Identification, PhaseProgress, identify
 from .scooter_numbers import steady_throttle
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 PUBLISHED_GAIN = 0.46  # km/h per %
 PUBLISHED_POLE = 0.03  # Hz
 PUBLISHED_ESR = 3.18  # %
-PUBLISHED_BAND = (0.05, 0.3)  # Hz
 WORKING_POINT = 30.0  # km/h
 SPEEDS = (25.0, 30.0, 35.0, 40.0, 45.0, 49.0)  # km/h
 
@@ -88,18 +87,18 @@ class ScooterIdentification:
 
 
 def scooter_identification(
-    speeds: Sequence[float] = SPEEDS, progress: Progress | None = None
+    speeds: Sequence[float] = SPEEDS, progress: PhaseProgress | None = None
 ) -> ScooterIdentification:
     """Figs. 2 to 4: about 15 s. `speeds` [km/h] are those of Fig. 3. Raises as `identify` does."""
     return ScooterIdentification(at_working_point(progress), tuple(at_speed(v, progress) for v in speeds))
 
 
-def at_working_point(progress: Progress | None = None, **options: Any) -> Identification:
+def at_working_point(progress: PhaseProgress | None = None, **options: Any) -> Identification:
     """Figs. 2 and 4: from the rider's throttle to the measured speed, over the bus (whole km/h)."""
     return identify("scooter", progress=progress, **options)
 
 
-def at_speed(speed: float, progress: Progress | None = None) -> Identification:
+def at_speed(speed: float, progress: PhaseProgress | None = None) -> Identification:
     """One point of Fig. 3: the vehicle alone, swept by 1 % of throttle round a steady `speed` [km/h]."""
     spec = IdentificationSpec(
         input="throttle",

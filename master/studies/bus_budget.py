@@ -4,48 +4,49 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
 from pathlib import Path
+from typing import Unpack
 
 from ...cosim.analysis.bus_budget import Budget, Point, series
 from ...cosim.errors import ConfigError, nearest
-from ...cosim.interface import Value
-from ...cosim.plan.resolve import Options
 from ...cosim.results.metrics import Metric, evaluate
 from ...cosim.system.metric_spec import MetricSpec
+from ...cosim.system.run_options import RunOptions
+from ...cosim.system.scenario import Scenario
 from ...cosim.system.selection import metric_specs
-from ...cosim.system.system import Algorithm, BudgetEntry
+from ...cosim.system.system import BudgetEntry, System
 from ...cosim.system.variation import BusVariation
-from ..simulation import Prepared, prepare, simulate
-from .parallel import Outcome, Progress, Task, run_all
+from ..prepare import Prepared, prepare
+from ..simulation import simulate
+from .parallel import Outcome, Task, TaskProgress, run_all
 
 
 def budget(
-    system: str | Path,
-    scenario: str | Path | None = None,
+    system: str | Path | System,
+    scenario: str | Path | Scenario | None = None,
     *,
-    parameters: Mapping[str, Value] | None = None,
-    fmus: Mapping[str, str | Path] | None = None,
-    algorithm: Algorithm | None = None,
-    stop_time: float | None = None,
     workers: int | None = None,
-    progress: Progress | None = None,
+    progress: TaskProgress | None = None,
+    **options: Unpack[RunOptions],
 ) -> Budget:
     """Vary the buses of a system and judge it by the metric of its [budget] table.
 
-    The first arguments are those of `simulate`, the last ones those of `parallel.run_all` (a script needs
-    `if __name__ == "__main__":`). Raises ConfigError before any run; a run that fails is a broken point.
+    The arguments are those of `simulate`, but for `bus` and `ideal`, which a budget sets itself; `workers`
+    and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
+    Raises ConfigError before any run; a run that fails is a broken point.
     """
-    prepared = prepare(system, scenario, Options(parameters or {}, algorithm, stop_time), fmus)
+    for name in ("bus", "ideal"):
+        if options.get(name):
+            raise ConfigError(f"a bus budget varies the buses itself, so that '{name}' cannot be given")
+    prepared = prepare(system, scenario, **options)
     entry, spec = _asked(prepared)
     planned = series(prepared.plan.experiment.step_size)
-    options = {"parameters": parameters, "fmus": fmus, "algorithm": algorithm, "stop_time": stop_time}
     names: dict[BusVariation, str] = {}
     for each in planned:
         for point in each.points:
             names.setdefault(point.bus, f"{each.name} {point.label}")  # the nominal point is run once
     tasks = [
-        Task(name, measure, (system, scenario, spec), options | {"bus": bus}) for bus, name in names.items()
+        Task(name, measure, (system, scenario, spec), {**options, "bus": bus}) for bus, name in names.items()
     ]
     found = dict(zip(names, run_all(tasks, workers, progress), strict=True))
     return Budget(
@@ -62,9 +63,14 @@ def budget(
     )
 
 
-def measure(system: str | Path, scenario: str | Path | None, spec: MetricSpec, **options: object) -> Metric:
-    """Run a system and give one metric; `options` are those of `simulate`."""
-    results = simulate(system, scenario, **options)  # type: ignore[arg-type] # budget gives them by name
+def measure(
+    system: str | Path | System,
+    scenario: str | Path | Scenario | None,
+    spec: MetricSpec,
+    **options: Unpack[RunOptions],
+) -> Metric:
+    """Run a system with the options of `simulate` and return one metric. Raises as `simulate` does."""
+    results = simulate(system, scenario, **options)
     return evaluate(results, [spec])[0]
 
 

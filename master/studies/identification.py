@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -30,12 +30,12 @@ from ...cosim.analysis.frequency_response import (
 )
 from ...cosim.analysis.sweep import Sweep, sweep_of
 from ...cosim.errors import ConfigError, RunError, nearest
-from ...cosim.interface import Value, VariableInfo
-from ...cosim.results.results import Array
+from ...cosim.interface import VariableInfo
+from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...cosim.system.run_options import RunOptions
 from ...cosim.system.scenario import load_scenario, scenario_names
 from ...cosim.system.system import (
-    Algorithm,
     Experiment,
     System,
     SystemFile,
@@ -54,7 +54,7 @@ SCENARIO = "identification"
 UNIT = "fmu"
 """The name of the unit that an FMU alone is."""
 
-Progress = Callable[[str, float], None]
+PhaseProgress = Callable[[str, float], None]
 """Called with what is going on and how much of it is done, 0 to 1."""
 
 _SETTLED = 1e-3  # change of the mean from one window to the next, as a share of the largest output seen
@@ -182,23 +182,22 @@ def identify(
     spec: IdentificationSpec | None = None,
     scenario: str | Path | None = None,
     *,
-    parameters: Mapping[str, Value] | None = None,
-    fmus: Mapping[str, str | Path] | None = None,
-    ideal: bool = False,
-    algorithm: Algorithm | None = None,
     step_size: float | None = None,
-    progress: Progress | None = None,
+    progress: PhaseProgress | None = None,
+    **options: Unpack[RunOptions],
 ) -> Identification:
     """Identify `target` (a system, or an FMU alone) at the first working point of `spec`.
 
     Without a spec the scenario's is taken. Parameters of an FMU alone are named without a unit, and
-    `step_size` [s] is for it alone; the other arguments are those of `Simulation`.
+    `step_size` [s] is for it alone; the other arguments are those of `Simulation`, but for `stop_time`.
     Raises ConfigError for input that does not fit, before the sweep; RunError for a run that fails, an
     output that does not come to rest or does not answer.
     """
     spec = spec or spec_of(target, scenario)
     if spec is None:
         raise ConfigError(f"{target}: which input and output? There is no [identification] in its scenario")
+    if options.get("stop_time") is not None:
+        raise ConfigError("an identification ends when it is done, so that 'stop_time' cannot be given")
     sweep = sweep_of(spec)
     alone = is_fmu(target)
     prefix = f"{UNIT}." if alone else ""
@@ -208,24 +207,11 @@ def identify(
         raise ConfigError(f"{target} is an FMU: it has no scenario '{scenario}'")
     if step_size is not None and not alone:
         raise ConfigError(f"{target} is a system: its step size stands in its file")
-    with Simulation(
-        system,
-        scenario,
-        parameters={prefix + name: value for name, value in (parameters or {}).items()},
-        fmus=fmus,
-        ideal=ideal,
-        algorithm=algorithm,
-        stop_time=_longest(sweep, system.file.experiment.step_size),
-    ) as simulation:
+    options["parameters"] = {prefix + n: value for n, value in (options.get("parameters") or {}).items()}
+    options["stop_time"] = _longest(sweep, system.file.experiment.step_size)
+    with Simulation(system, scenario, **options) as simulation:
         bench = _Bench(simulation, spec, sweep, prefix, progress or (lambda what, share: None))
         return bench.identified(target)
-
-
-def identify_each(
-    target: str, spec: IdentificationSpec, scenario: str | Path | None = None, **options: Any
-) -> list[Identification]:
-    """`identify` at each working point of `spec`, one new simulation for each."""
-    return [identify(target, single, scenario, **options) for single in each_working_point(spec)]
 
 
 def each_working_point(spec: IdentificationSpec) -> list[IdentificationSpec]:
@@ -256,7 +242,12 @@ class _Bench:
     """A simulation with one input in our hands. Outputs are in the unit asked for."""
 
     def __init__(
-        self, simulation: Simulation, spec: IdentificationSpec, sweep: Sweep, prefix: str, progress: Progress
+        self,
+        simulation: Simulation,
+        spec: IdentificationSpec,
+        sweep: Sweep,
+        prefix: str,
+        progress: PhaseProgress,
     ) -> None:
         self.simulation, self.spec, self.sweep, self.progress = simulation, spec, sweep, progress
         self.input, self.output = prefix + spec.input, prefix + spec.output

@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 _ENDING = 5.0  # s that a process which has closed its pipe may take to end
 
-Progress = Callable[[int, int, str], None]
+TaskProgress = Callable[[int, int, str], None]
 """Called with the number of tasks done, the number of all tasks, and the name of the one that just ended."""
 
 
@@ -91,7 +91,7 @@ def cores() -> int:
 
 
 def run_all(
-    tasks: Sequence[Task[T]], workers: int | None = None, progress: Progress | None = None
+    tasks: Sequence[Task[T]], workers: int | None = None, progress: TaskProgress | None = None
 ) -> list[Outcome[T]]:
     """Run all tasks in `workers` processes (default: as many as there are cores) and wait for them.
 
@@ -104,8 +104,8 @@ def run_all(
     outcomes: dict[int, Outcome[T]] = {}
     if not tasks:
         return []
-    with _Crew(min(workers or cores(), len(tasks))) as crew:
-        for i, outcome in crew.work(tasks, queue):
+    with _Pool(min(workers or cores(), len(tasks))) as pool:
+        for i, outcome in pool.work(tasks, queue):
             outcomes[i] = outcome
             if progress is not None:
                 progress(len(outcomes), len(tasks), outcome.name)
@@ -129,7 +129,7 @@ class _Worker:
     begin: float = 0.0
 
 
-class _Crew:
+class _Pool:
     """The workers; leaving the `with` block ends them all, whatever they do."""
 
     def __init__(self, size: int) -> None:
@@ -137,7 +137,7 @@ class _Crew:
         self.workers: list[_Worker] = []
         self.context = multiprocessing.get_context("spawn")
 
-    def __enter__(self) -> _Crew:
+    def __enter__(self) -> _Pool:
         # FMUs are extracted below this folder: a worker that is killed cannot remove them, so we do
         self.folder = tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True)
         return self
@@ -154,7 +154,7 @@ class _Crew:
         """Yield each task's place and outcome as it ends."""
         waiting = iter(range(len(queue)))
         for i in itertools.islice(waiting, self.size):
-            self._give(self._hire(), i, queue)
+            self._submit(self._start_worker(), i, queue)
         while busy := {w.pipe: w for w in self.workers if w.task >= 0}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index] # we gave pipes alone
@@ -165,9 +165,9 @@ class _Crew:
                     self.workers.remove(worker)
                     worker.pipe.close()
                 if (following := next(waiting, None)) is not None:
-                    self._give(worker if worker in self.workers else self._hire(), following, queue)
+                    self._submit(worker if worker in self.workers else self._start_worker(), following, queue)
 
-    def _hire(self) -> _Worker:
+    def _start_worker(self) -> _Worker:
         ours, theirs = self.context.Pipe()
         process = self.context.Process(target=_serve, args=(theirs, self.folder.name), daemon=True)
         with _without_ctrl_c():
@@ -177,7 +177,7 @@ class _Crew:
         return self.workers[-1]
 
     @staticmethod
-    def _give(worker: _Worker, i: int, queue: Sequence[bytes]) -> None:
+    def _submit(worker: _Worker, i: int, queue: Sequence[bytes]) -> None:
         worker.task, worker.begin = i, time.perf_counter()
         with contextlib.suppress(
             OSError

@@ -45,7 +45,7 @@ def test_an_fmu_costs_little_beside_its_model_and_the_calls(monkeypatch: pytest.
 
 
 LAZY = {
-    "list": {"numpy", "pydantic"},
+    "list": {"pydantic"},
     "info scooter": {"numpy", "pydantic", "fmpy", "cantools"},
     "run scooter --no-plot --engine python": {"numpy", "pydantic", "fmpy", "cantools"},
     "run scooter --engine python": {"numpy", "pydantic", "fmpy", "cantools", "matplotlib"},

@@ -14,7 +14,7 @@ from evcosim.fmus.build import build_model
 from evcosim.master.cli import main
 from support import cli_models
 
-COMMAND = [sys.executable, "-m", "evcosim.master.cli"]
+COMMAND = [sys.executable, "-m", "evcosim"]
 
 
 @dataclasses.dataclass

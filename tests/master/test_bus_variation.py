@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from evcosim import Simulation, simulate
 from evcosim.cosim.can.dbc import Signal, load_dbc
 from evcosim.cosim.can.quantization import BusSettings, reference
 from evcosim.cosim.errors import ConfigError
@@ -16,7 +17,6 @@ from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.system import BusEntry, System, SystemFile, load_system
 from evcosim.cosim.system.toml import validate
 from evcosim.cosim.system.variation import BusVariation, varied, with_resolution
-from evcosim.master import Simulation, simulate
 from support.mocks import MockUnit, column, plan_of, real, started
 
 STEPS = 60

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from evcosim import Simulation, simulate
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results.results import Results
 from evcosim.fmus import build
-from evcosim.master import Simulation, simulate
 from evcosim.master.fmi.fmu import FmuError
 
 

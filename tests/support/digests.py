@@ -17,9 +17,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from evcosim import simulate
 from evcosim.cosim.system.scenario import scenario_names
 from evcosim.cosim.system.system import load_system, system_names
-from evcosim.master import simulate
 
 FILE = Path(__file__).parent.parent / "systems" / "golden" / "digests.txt"
 ENGINES = ("compiled", "python")

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from evcosim import simulate
 from evcosim.cosim.results.results import Results
-from evcosim.master import simulate
 
 FOLDER = Path(__file__).parent.parent / "systems" / "golden"
 CASES: dict[str, dict[str, Any]] = tomllib.loads((FOLDER / "golden.toml").read_text())

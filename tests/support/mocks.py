@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from evcosim.cosim.interface import UnitInterface, Value, VariableInfo
 from evcosim.cosim.plan.plan import Plan
 from evcosim.cosim.plan.resolve import Options, participating, resolve
-from evcosim.cosim.plan.unit_plan import Block, UnitPlan
+from evcosim.cosim.plan.unit_plan import SlotGroup, UnitPlan
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile
 from evcosim.master.engine.initialization import initialize
@@ -52,7 +52,7 @@ class MockUnit:
         self.warnings = 0
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        self.memory, self.blocks = memory, plan.blocks
+        self.memory, self.groups = memory, plan.groups
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         self.log.append("enter")
@@ -69,14 +69,14 @@ class MockUnit:
         self.values[name] = value
 
     def set_inputs(self) -> None:
-        for block, i, slot in self._slots("input"):
-            self.values[block.names[i]] = self.memory[slot]
+        for group, i, slot in self._slots("input"):
+            self.values[group.names[i]] = self.memory[slot]
 
     def get_feedthrough(self) -> None:
         self._through(self.values)
-        for block in self.blocks:
-            for i in range(block.feedthrough):
-                self.memory[block.slot + i] = self.memory[block.latest + i] = self.values[block.names[i]]
+        for group in self.groups:
+            for i in range(group.feedthrough):
+                self.memory[group.slot + i] = self.memory[group.latest + i] = self.values[group.names[i]]
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
         for i in range(count):
@@ -89,13 +89,13 @@ class MockUnit:
 
     def get_outputs(self) -> None:
         for kind in ("discrete", "continuous"):
-            for block, i, slot in self._slots(kind):
-                self.memory[slot] = self.values[block.names[i]]
+            for group, i, slot in self._slots(kind):
+                self.memory[slot] = self.values[group.names[i]]
 
-    def _slots(self, kind: str) -> list[tuple[Block, int, int]]:
+    def _slots(self, kind: str) -> list[tuple[SlotGroup, int, int]]:
         return [
             (b, i, (b.latest if kind == "continuous" else b.slot) + i)
-            for b in self.blocks
+            for b in self.groups
             if b.kind == kind
             for i in range(len(b.variables))
         ]

@@ -11,11 +11,11 @@ import functools
 import numpy as np
 import pytest
 
+from evcosim import Simulation, simulate
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import metrics
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import load_system
-from evcosim.master import Simulation, simulate
 
 ROADS = {"dry": 4.5, "wet": 8.0, "cobble": 7.0, "snow": 20.0}  # s that are enough to lock or stop
 VARIANTS = {"bus": {}, "ideal": {"ideal": True}}

@@ -11,9 +11,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from evcosim import Simulation, simulate
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system.toml import DATA
-from evcosim.master import Simulation, simulate
 from evcosim.models import lane_keeping_analysis as analysis
 from evcosim.models.lane_keeping_controller import LaneKeepingController
 

@@ -12,10 +12,10 @@ import math
 import numpy as np
 import pytest
 
+from evcosim import Simulation, simulate
 from evcosim.cosim.results import metrics
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import load_system
-from evcosim.master import Simulation, simulate
 from evcosim.models import multi_drive_analysis as analysis
 from evcosim.models.electronic_differential import ElectronicDifferential
 from evcosim.models.induction_motor_drive import InductionMotorDrive

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evcosim.master import simulate
+from evcosim import simulate
 from evcosim.master.reproduce.scooter_numbers import (
     CONSTANT_SPEEDS,
     KMH,

@@ -16,7 +16,7 @@ from ...fmi.fmi1 import Fmi1Unit
 from ...fmi.fmi2 import Fmi2Unit
 from ...fmi.fmi3 import Fmi3Unit
 from ...fmi.instance import Instance
-from ...fmi.transfer import Copy, Transfer, limits
+from ...fmi.transfer import Copy, Transfer, range_of
 from ..engine import Engine, Sender, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
@@ -143,8 +143,8 @@ class Program:
                 self._rows["routes"].append({L.SOURCE: r.source, L.SINK: r.sink} | _mapped(r.map))
             self._operation(at, action, L.TAKE, first, len(plan.units[i].routes))
         elif action.kind == "publish":
-            for block in self._engine.turns[i].continuous:
-                self._operation(at, action, L.COPY, block.latest, block.slot, len(block.variables))
+            for group in self._engine.turns[i].continuous:
+                self._operation(at, action, L.COPY, group.latest, group.slot, len(group.variables))
         else:
             self._turn(at, action, self._engine.turns[i])
 
@@ -158,7 +158,7 @@ class Program:
             self._end(at, action, turn, instance)
 
     def _begin(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
-        inputs = sum(len(b.variables) for b in turn.plan.blocks if b.kind == "input")
+        inputs = sum(len(b.variables) for b in turn.plan.groups if b.kind == "input")
         if inputs:
             op = self._operation(at, action, L.EFFECT, self._effect_rows)
             self.effects.append((op, self._effect_rows, turn))
@@ -234,7 +234,7 @@ class Program:
                 L.FIRST_ITEM: self._count("items"),
             }
         )
-        low, high = _limits(transfer.c_type)
+        low, high = _double_range(transfer.c_type)
         self._rows["items"] += [
             {L.SLOT: item.slot, L.SIGN: item.sign, L.LOW: low, L.HIGH: high} for item in transfer.items
         ]
@@ -371,9 +371,9 @@ def _format(transfer: Transfer) -> int:
     return kind + (L.GETS if transfer.gets else 0)
 
 
-def _limits(c_type: Any) -> tuple[float, float]:
+def _double_range(c_type: Any) -> tuple[float, float]:
     """The least and the largest double that a type holds."""
-    low, high = limits(c_type)
+    low, high = range_of(c_type)
     largest = float(high)
     return float(low), float(np.nextafter(largest, 0.0)) if largest > high else largest
 

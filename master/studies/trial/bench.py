@@ -11,7 +11,7 @@ import numpy as np
 
 from ....cosim.errors import RunError
 from ....cosim.interface import UnitInterface, Value
-from ....cosim.results.results import Array
+from ....cosim.row_store import Array
 from ....cosim.swap.mapping import present
 from ....cosim.system.scenario import Scenario, ScenarioFile, StimulusEntry
 from ....cosim.system.system import Isolation, System, SystemFile, UnitEntry

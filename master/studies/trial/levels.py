@@ -12,7 +12,7 @@ from ....cosim.plan.plan import Plan
 from ....cosim.system.scenario import Scenario, ScenarioFile
 from ....cosim.system.system import System
 from ....cosim.units import Affine, defined
-from ...simulation import prepare
+from ...prepare import prepare
 
 _USUAL = {
     "N": 200.0, "N.m": 50.0, "W": 1000.0, "A": 20.0, "V": 50.0, "m/s": 5.0, "m/s2": 1.0, "m": 1.0,
@@ -37,7 +37,7 @@ def levels(system: System, unit: str, inputs: Iterable[VariableInfo]) -> dict[st
     Raises ConfigError for a system that cannot run.
     """
     plan = prepare(system, Scenario("", None, ScenarioFile())).plan
-    return {v.name: _level(v, _limits(plan, unit, v)) for v in inputs}
+    return {v.name: _level(v, _reachable(plan, unit, v)) for v in inputs}
 
 
 def _level(v: VariableInfo, limits: tuple[float, float]) -> Level:
@@ -66,7 +66,7 @@ def _usual(unit: str) -> float | None:
     return None
 
 
-def _limits(plan: Plan, unit: str, v: VariableInfo) -> tuple[float, float]:
+def _reachable(plan: Plan, unit: str, v: VariableInfo) -> tuple[float, float]:
     name = f"{unit}.{v.name}"
     given = [(v.min, v.max), *_of_links(plan, (unit, v.name)), *_of_messages(plan, name)]
     low = max((low for low, _ in given if low is not None), default=-math.inf)

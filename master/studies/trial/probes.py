@@ -13,7 +13,7 @@ import numpy as np
 from ....cosim.analysis.signs import Pair, alike, direction
 from ....cosim.errors import ConfigError, RunError
 from ....cosim.interface import VariableInfo
-from ....cosim.results.results import Array
+from ....cosim.row_store import Array
 from ...fmi.fmu import is_true
 from ...isolation.unit import IsolatedUnit
 from .bench import Bench, largest
@@ -138,7 +138,7 @@ def _beyond(v: VariableInfo, reached: Sequence[Array], bench: Bench) -> str:
 # ---- limits of inputs
 
 
-def limits(bench: Bench, given: Mapping[str, Level]) -> list[Finding]:
+def input_ends(bench: Bench, given: Mapping[str, Level]) -> list[Finding]:
     """What the system can give to an input and the FMU does not take."""
     found = []
     for name, level in given.items():

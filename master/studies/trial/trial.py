@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from ....cosim.analysis.signs import Pair, turned
 from ....cosim.errors import ConfigError, RunError, counted
-from ....cosim.results.results import Array
+from ....cosim.row_store import Array
 from ....cosim.swap.swap_file import Proposal
 from ....cosim.system.scenario import Scenario
 from ....cosim.system.system import System, UnitEntry
@@ -60,7 +60,7 @@ def try_unit(
         raise ConfigError(f"--try {duration:g}: a trial takes some seconds")
     ours = Bench(system, scenario, unit, system.file.units[unit], None, tuple(names), duration)
     given = levels(system, unit, (v for v in ours.interface.of_causality("input") if v.type in _MOVED))
-    trial = _Trying(ours, given, Deadline(time.monotonic() + limit, answer))
+    trial = _TrialRun(ours, given, Deadline(time.monotonic() + limit, answer))
     try:
         theirs = Bench(system, scenario, unit, entry, ours.interface, tuple(names), duration)
         trial.work(theirs)
@@ -78,7 +78,7 @@ def _remarks(findings: Sequence[Finding]) -> tuple[str, ...]:
     return ("A trial found:", *told) if told else ("A trial found nothing wrong.",)
 
 
-class _Trying:
+class _TrialRun:
     """A trial under way: what it found so far."""
 
     def __init__(self, ours: Bench, given: Mapping[str, Level], deadline: Deadline) -> None:
@@ -105,7 +105,7 @@ class _Trying:
         self._compare_steps()
         self._react()
         self.findings += probes.values(self._seen, self._ours_seen, theirs)
-        self.findings += probes.limits(theirs, self.given)
+        self.findings += probes.input_ends(theirs, self.given)
         self._look_inside()
         warned = f", {counted(theirs.warnings, 'warning')}" if theirs.warnings else ""
         text = f"{self._runs} runs of {theirs.duration:g} s{warned}"
@@ -146,7 +146,7 @@ class _Trying:
         return {**base, name: [(0.0, level.rest), (0.6 * self.ours.duration, end)]}
 
     @contextlib.contextmanager
-    def _told(self, what: str) -> Iterator[None]:
+    def _as_finding(self, what: str) -> Iterator[None]:
         """A failure in here is a finding and stops nothing but what is in here."""
         try:
             yield
@@ -159,7 +159,7 @@ class _Trying:
 
     def _starts(self) -> bool:
         """Whether it runs with constant inputs, perhaps only with smaller steps."""
-        with self._told("constant inputs"):
+        with self._as_finding("constant inputs"):
             try:
                 self._run(self._at())
             except OutOfTime:
@@ -199,7 +199,7 @@ class _Trying:
         """What each input does to each output, beside what it does in the unit that is there now."""
         reactions: list[Reaction] = []
         for name in self.moved:
-            with self._told(f"{name} swept"):
+            with self._as_finding(f"{name} swept"):
                 reactions += self._reactions_to(name)
         self.findings += [reaction.finding for reaction in reactions]
         self._propose_signs({r.pair: r.sign for r in reactions if r.sign})
@@ -270,7 +270,7 @@ class _Trying:
             self._runs += 1
             return self.theirs.run(drive, self.deadline, count)
 
-        with self._told("steps"):
+        with self._as_finding("steps"):
             counts = [own * factor for factor in _FINER]
             finding, enough = probes.steps(run, counts, self.shown, self.theirs.period)
             self.findings.append(finding)
@@ -293,7 +293,7 @@ class _Trying:
         }
         drive = next((self._swept(self._telling_base(n), n) for n in self.moved), {})
         for what, look in looks.items():
-            with self._told(what), bench.loaded(drive, self.deadline) as simulation:
+            with self._as_finding(what), bench.loaded(drive, self.deadline) as simulation:
                 simulation.step(max(1, simulation.steps_left // 4))
                 unit = simulation.units[bench.unit]
                 assert isinstance(unit, IsolatedUnit)  # as the bench asks for

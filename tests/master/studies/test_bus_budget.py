@@ -12,6 +12,7 @@ import time
 
 import pytest
 
+from evcosim import simulate
 from evcosim.cosim.analysis.bus_budget import Budget, Series, as_data, as_markdown, series
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures.bus_budget import draw_budget
@@ -21,7 +22,6 @@ from evcosim.cosim.system.selection import metric_specs
 from evcosim.cosim.system.system import load_system, system_names
 from evcosim.cosim.system.variation import BusVariation
 from evcosim.fmus.build import build_model
-from evcosim.master import simulate
 from evcosim.master.studies.bus_budget import budget
 from support import bus_models
 

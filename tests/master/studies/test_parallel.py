@@ -87,7 +87,7 @@ def test_workers_keep_the_stdout_of_the_caller_clean(capfd):
 def test_workers_end_with_a_caller_that_is_killed(tmp_path):
     mark = tmp_path / "mark"
     text = f"""
-from evcosim.master.parallel import Task, run_all
+from evcosim import Task, run_all
 from support import tasks
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
-"""`python -m evcosim.master.cli` is `evcosim`."""
+"""`python -m evcosim` is the command `evcosim`."""
 
 from __future__ import annotations
 
 import sys
 
-from . import main
+from .master.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -1,0 +1,126 @@
+"""From the arguments of a run to all that is known before an FMU is instantiated."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Unpack
+
+from ..cosim.errors import ConfigError, nearest
+from ..cosim.figures.check import check_specs
+from ..cosim.interface import UnitInterface
+from ..cosim.plan.plan import Plan
+from ..cosim.plan.resolve import participating, resolve
+from ..cosim.swap.mapping import present, without_absent
+from ..cosim.swap.requirements import lacking
+from ..cosim.swap.swap_file import swapped
+from ..cosim.system.run_options import RunOptions, check_names
+from ..cosim.system.scenario import Scenario, load_scenario
+from ..cosim.system.system import System, load_system
+from ..cosim.system.toml import DATA
+from ..cosim.system.variation import varied
+from .builtin import fmu_file
+from .engine.initialization import ordered_links
+from .fmi.fmu import Fmu, check_runnable, read_fmu
+
+
+@dataclasses.dataclass(frozen=True)
+class Prepared:
+    """What is known of a run before any FMU is instantiated; whatever can be wrong so far was found."""
+
+    system: System
+    scenario: Scenario
+    fmus: dict[str, Fmu]
+    plan: Plan
+
+
+def prepare(
+    system: str | Path | System,
+    scenario: str | Path | Scenario | None = None,
+    *,
+    runnable: bool = True,
+    **options: Unpack[RunOptions],
+) -> Prepared:
+    """Read and check all that a run needs; the arguments are those of `Simulation`.
+
+    Without `runnable` an FMU that cannot run on this machine is taken too, as what is only shown may be.
+    Raises ConfigError naming place, rule and values; TypeError for an option that there is not.
+    """
+    check_names(options)
+    bus, ideal, swaps = options.get("bus"), options.get("ideal", False), options.get("swaps") or {}
+    read = system if isinstance(system, System) else load_system(str(system))
+    if isinstance(scenario, Scenario):
+        driven = scenario
+    else:
+        driven = load_scenario(read, None if scenario is None else str(scenario))
+    if bus is not None:
+        if ideal:
+            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
+        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
+    read = swapped(read, swaps)
+    read, driven, left_out = without_absent(read, driven)
+    loaded = _read_fmus(read, driven, options.get("fmus") or {}, options.get("strict", False), runnable)
+    interfaces = {
+        unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
+        for unit, fmu in loaded.items()
+    }
+    for unit, interface in interfaces.items():
+        _check_absent(read, unit, interface)
+    for unit, path in swaps.items():
+        if unit in interfaces:
+            _check_complete(read, driven, unit, interfaces[unit], path)
+    plan = _advised(read, lambda: resolve(read, driven, interfaces, options), swaps)
+    plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
+    check_specs(read, driven, plan.columns)
+    ordered_links(plan)  # refuses an algebraic loop
+    return Prepared(read, driven, loaded, plan)
+
+
+def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
+    for name in system.file.units[unit].absent:
+        if name in interface.variables:
+            raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
+
+
+def _check_complete(
+    system: System, scenario: Scenario, unit: str, interface: UnitInterface, path: str | Path
+) -> None:
+    """Raise ConfigError that tells all that a swapped unit lacks."""
+    if missing := lacking(system, scenario, unit, interface):
+        lines = "\n".join(f"unit '{unit}' has no variable {name}" for name in missing)
+        raise ConfigError(f"{path}: {lines}\nmap them, or declare them absent; {_advice(system, unit, path)}")
+
+
+def _advice(system: System, unit: str, path: str | Path) -> str:
+    name = system.path if DATA.resolve() not in system.path.resolve().parents else system.file.name
+    return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
+
+
+def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
+    """The plan; an error of a run with swapped units says what shows all that is missing."""
+    try:
+        return resolved()
+    except ConfigError as error:
+        if not swaps:
+            raise
+        unit, path = next(iter(swaps.items()))
+        raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
+
+
+def _read_fmus(
+    system: System, scenario: Scenario, fmus: Mapping[str, str | Path], strict: bool, runnable: bool
+) -> dict[str, Fmu]:
+    entries = participating(system, scenario)
+    for unit in fmus:
+        if unit not in entries:
+            raise ConfigError(
+                f"--fmu {unit}: there is no unit '{unit}'{nearest(unit, entries)}: {', '.join(entries)}"
+            )
+    read = {}
+    for unit, entry in entries.items():
+        path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
+        read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)
+        if runnable:
+            check_runnable(read[unit])
+    return read
