@@ -9,8 +9,8 @@
         sim.step(1000)
         print(sim.time, sim["vehicle.speed"])
 
-The names in `__all__` are the interface, described in docs/python.md; the modules behind them may move. Each is
-imported on first use, so that `import evcosim` loads none of numpy, fmpy, pydantic and cantools.
+The names in `__all__` are the interface, described in docs/python.md; the modules behind them may move. Each
+name is imported on first use, so that `import evcosim` loads none of numpy, fmpy, pydantic and cantools.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from evcosim.cosim.interface import UnitInterface, Value, VariableInfo
 from evcosim.cosim.plan.plan import Plan
-from evcosim.cosim.plan.resolve import Options, participating, resolve
+from evcosim.cosim.plan.resolve import participating, resolve
 from evcosim.cosim.plan.unit_plan import SlotGroup, UnitPlan
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile
@@ -125,9 +125,7 @@ def plan_of(
     described = System(Path("mocks.toml"), file)
     driven = Scenario("test", Path("test.toml"), ScenarioFile.model_validate(scenario or {}))
     taking_part = participating(described, driven)
-    return resolve(
-        described, driven, {u.name: u.interface for u in units if u.name in taking_part}, Options(**options)
-    )
+    return resolve(described, driven, {u.name: u.interface for u in units if u.name in taking_part}, options)
 
 
 def started(units: list[MockUnit], plan: Plan) -> PythonEngine:
