@@ -1,14 +1,14 @@
-"""How a model is declared: four records of variables and pure functions over them.
+"""Declaration of a model: four records of variables and pure functions over them.
 
 A model is a difference equation with parameters p, inputs u, state x and outputs y. With the
 communication points t_k = t_0 + k dt it reads
 
     x_0     = initial(p, u_0)
     x_{k+1} = step(p, x_k, u_k, dt)         the inputs are held over [t_k, t_k + dt)
-    y_k     = outputs(p, x_k[, u_k])        what the model shows at t_k
+    y_k     = outputs(p, x_k[, u_k])        the outputs at t_k
 
-`outputs(p, x)` without `u` proves that no output feeds an input straight through. With `u`, each output
-that does so names the inputs in `depends`.
+A model whose `outputs(p, x)` takes no `u` has no direct feedthrough. Where it takes `u`, each output that an
+input reaches at the same instant names these inputs in `depends`.
 
 A sampled model (`sampled = True`, a controller) computes in the step at t_k from the inputs at t_k, and
 its outputs hold from t_k on: y = outputs(p, step(p, x_k, u_k, dt)). They are FMI variables of variability
@@ -18,8 +18,8 @@ A variable is declared once, on one line:
 
     mass: float = var(200.0, "kg", "Vehicle and rider", min=1.0)
 
-The record it stands in is its causality; the type of its start is its FMI type. Everything else that
-shows the variable (model description, tables, range checks) is generated from that line.
+The record in which it stands gives its causality, the type of its start value its FMI type. Everything else
+that shows the variable (model description, tables, range checks) is generated from that line.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Variable:
 
     `type` is the FMI 2.0 type name: Real, Integer, Boolean or Enumeration. `unit` is a unit name of
     measure ("" where none applies). `depends` are the inputs that reach this output within one instant;
-    `initially` those that reach it during initialization (None: whatever the model's `initial` reads).
+    `initially` those that reach it during initialization (None: the inputs that the model's `initial` reads).
     """
 
     name: str
@@ -98,7 +98,7 @@ def time() -> Any:
 def record(cls: type[_T]) -> type[_T]:
     """Make a frozen record of declared variables, with slots.
 
-    One that extends another, or caches what derives from it as Parameters may, has no slots.
+    A record that extends another, or that has a cached property, as Parameters may, has no slots.
     """
     cached = any(isinstance(value, functools.cached_property) for value in vars(cls).values())
     if cached or cls.__bases__ != (object,):
@@ -109,10 +109,11 @@ def record(cls: type[_T]) -> type[_T]:
 
 
 def _quick(made: type[_T]) -> type[_T]:
-    """A slotted record that is made in 40 % of the time.
+    """Return a slotted record class whose objects are made in 40 % of the time.
 
     The `__init__` of a frozen dataclass writes its fields by a call for each of them. Here `__new__` writes
-    them to an object of a class that has the same slots and is not frozen, and makes it one of the record's.
+    them to an object of a class that has the same slots and is not frozen, and then makes the object one of
+    the record's class.
     """
     slow = vars(made)["__init__"]
     names = list(vars(made)["__dataclass_fields__"])
@@ -131,7 +132,7 @@ def _put_new(made: type, function: Callable[..., Any]) -> None:
 
 
 def variables(record_type: type) -> tuple[Variable, ...]:
-    """The declared variables of a record, in the order they are written."""
+    """Return the declared variables of a record, in the order of their declaration."""
     return tuple(
         Variable(name=f.name, type=_fmi_type(f.default), start=f.default, **f.metadata[_KEY])
         for f in dataclasses.fields(record_type)
@@ -151,7 +152,7 @@ def _fmi_type(start: Any) -> str:
 
 
 def violations(values: Any) -> list[str]:
-    """What is out of range in a record, one sentence for each variable: its name, the rule and the values."""
+    """Return a sentence for each variable of a record that is out of range: name, rule and values."""
     found = []
     for v in variables(type(values)):
         value = getattr(values, v.name)
@@ -190,7 +191,7 @@ class Model:
 
     @classmethod
     def feeds_through(cls) -> bool:
-        """Whether `outputs` takes the inputs: some output depends on an input at the same instant."""
+        """Return True if `outputs` takes the inputs: some output depends on an input at the same instant."""
         return len(inspect.signature(cls.outputs).parameters) == 3
 
 

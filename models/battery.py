@@ -1,22 +1,26 @@
 """Battery: an open-circuit voltage behind a resistance, discharged by a power.
 
-The paper (Dardanelli et al., IEEE CDC-ECC 2011) measures state of charge, current and voltage and gives no
-model: everything here is chosen.
+Source: chosen. Dardanelli et al. (IEEE CDC-ECC 2011) measure charge, current and voltage and give no model.
 
-    U  = U_0 + U_1 xi                                  open-circuit voltage [V]                      (B1)
-    P' = min(max(P, 0), U^2/(4 R_0))                   power the terminals can carry [W]             (B2)
-    i  = (U - sqrt(U^2 - 4 R_0 P'))/(2 R_0)            current that gives P' = (U - R_0 i) i [A]     (B3)
-    xi' = -i/(3600 Q)                                  state of charge [1], Q in A.h                 (B4)
-    E' = P'/3600                                       energy delivered at the terminals [Wh]        (B5)
-    L' = R_0 i^2/3600                                  energy lost in the resistance [Wh]            (B6)
+    U   = U_0 + U_1 xi                                  open-circuit voltage [V]                  (B1)
+    P_d = min(max(P, 0), U^2/(4 R_0))                   power that the terminals can deliver [W]  (B2)
+    i   = (U - sqrt(U^2 - 4 R_0 P_d))/(2 R_0)           current of P_d = (U - R_0 i) i [A]        (B3)
+    xi' = -i/(3600 Q)                                   state of charge [1], Q in A.h             (B4)
+    E'  = P_d/3600                                      energy delivered at the terminals [Wh]    (B5)
+    L'  = R_0 i^2/3600                                  energy lost in the resistance [Wh]        (B6)
 
-U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h (chosen). There is no regeneration: a negative power draws
-nothing. An empty battery (xi = 0) delivers nothing either: i = 0 and E rests. What a vehicle consumes is
-E + L, the energy that has left the cells: its consumption per distance is counted with it.
+The energy drawn from the cells is E + L; a vehicle's consumption is counted with it. Current and voltage
+follow the power at the same instant (direct feedthrough). The code computes (B3) as i = 2 P_d/(U +
+sqrt(...)), the same root without the difference of two near numbers.
 
-The code computes (B3) as i = 2 P'/(U + sqrt(...)), the same root without the difference of two near numbers.
-Current and voltage follow the power at the same instant (direct feedthrough). The step is explicit Euler: in
-10 ms at full power xi moves by 1e-5, so the current held over the step is off by 2e-6 of itself.
+published: nothing.
+chosen: U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h.
+
+At the edges: a negative power draws nothing (no regeneration). A power above U^2/(4 R_0) counts as that. An
+empty battery (xi = 0) delivers nothing: i = 0, and E and L stay as they are.
+
+Step: explicit Euler, order 1 in dt, with the current of the start of the step held over it. In 10 ms at full
+power xi falls by 1e-5, which changes the current by 2e-6 of itself.
 """
 
 from __future__ import annotations
@@ -24,6 +28,7 @@ from __future__ import annotations
 from math import sqrt
 
 from .base import Model, record, var
+from .constants import HOUR
 
 
 class Battery(Model):
@@ -41,13 +46,13 @@ class Battery(Model):
 
     @record
     class Inputs:
-        """What the vehicle draws."""
+        """The power that the vehicle draws."""
 
         power: float = var(0.0, "W", "Electrical power drawn at the terminals", nominal=1000.0)
 
     @record
     class State:
-        """Charge left and energy given."""
+        """The charge that is left, and the energy delivered and lost."""
 
         state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
         energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0)
@@ -55,7 +60,7 @@ class Battery(Model):
 
     @record
     class Outputs:
-        """What a battery management system reports."""
+        """The values that a battery management system reports."""
 
         state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
         current: float = var(0.0, "A", "Discharge current", min=0.0, nominal=50.0, depends=("power",))
@@ -65,27 +70,27 @@ class Battery(Model):
 
     @staticmethod
     def initial(p: Battery.Parameters, u: Battery.Inputs) -> Battery.State:
-        """Charged to `initial_state_of_charge`, nothing delivered yet."""
+        """Return a battery charged to `initial_state_of_charge` that has delivered nothing."""
         return Battery.State(p.initial_state_of_charge, 0.0, 0.0)
 
     @staticmethod
     def step(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs, dt: float) -> Battery.State:
-        """The state after `dt` [s] of the held power."""
+        """Return the state after `dt` [s] of the held power."""
         _, i, power = _draw(p, x, u)
-        xi = max(0.0, x.state_of_charge - dt * i / (3600.0 * p.capacity))  # (B4)
-        energy = x.energy + dt * power / 3600.0  # (B5)
-        return Battery.State(xi, energy, x.loss + dt * p.resistance * i * i / 3600.0)  # (B6)
+        xi = max(0.0, x.state_of_charge - dt * i / (HOUR * p.capacity))  # (B4)
+        energy = x.energy + dt * power / HOUR  # (B5)
+        return Battery.State(xi, energy, x.loss + dt * p.resistance * i * i / HOUR)  # (B6)
 
     @staticmethod
     def outputs(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> Battery.Outputs:
-        """Current and voltage of the power at this instant."""
+        """Return current and voltage at the power of this instant."""
         ocv, i, _ = _draw(p, x, u)
         voltage = ocv - p.resistance * i
         return Battery.Outputs(x.state_of_charge, i, voltage, x.energy, x.energy + x.loss)
 
 
 def _draw(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> tuple[float, float, float]:
-    """Open-circuit voltage [V], current [A] and delivered power [W]."""
+    """Return open-circuit voltage [V], current [A] and delivered power [W]."""
     ocv = p.empty_voltage + p.voltage_rise * x.state_of_charge  # (B1)
     if u.power <= 0.0 or x.state_of_charge <= 0.0:
         return ocv, 0.0, 0.0

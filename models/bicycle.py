@@ -1,27 +1,30 @@
 """Bicycle: the linear single-track model of a four-wheel-steered vehicle at a constant speed.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4 (2-DOF bicycle model); the paper's
-equations are numbered here. The left and the right wheel of an axle are one; C_f and C_r are the cornering
-stiffness of one tire, so an axle has twice as much. State x = (y', theta, w_z, beta), input u = (delta_f,
-delta_r):
+Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4 (2-DOF bicycle model). State
+x = (y' [m/s], theta [rad], w_z [rad/s], beta [m]), input u = (delta_f, delta_r) [rad]:
 
-    x' = A x + B u                                                                                   (B1)
-
+    x' = A x + B u                                                                               (B1)
     y''    = a11 y' + a13 w_z + b11 delta_f + b12 delta_r       lateral velocity y'
     theta' = w_z                                                heading angle theta, yaw rate w_z
     w_z'   = a31 y' + a33 w_z + b31 delta_f + b32 delta_r
     beta'  = -y' - v_x theta                                    displacement beta
+    a11 = -(2 C_f + 2 C_r)/(m v_x)               a13 = -v_x - (2 C_f l_1 - 2 C_r l_2)/(m v_x)    (B2)
+    a31 = (-2 l_1 C_f + 2 l_2 C_r)/(J_z v_x)     a33 = -(2 l_1^2 C_f + 2 l_2^2 C_r)/(J_z v_x)    (B3)
+    b11 = 2 C_f/m,  b12 = 2 C_r/m,  b31 = 2 l_1 C_f/J_z,  b32 = -2 l_2 C_r/J_z                   (B4)
 
-    a11 = -(2 C_f + 2 C_r)/(m v_x)               a13 = -v_x - (2 C_f l_1 - 2 C_r l_2)/(m v_x)        (B2)
-    a31 = (-2 l_1 C_f + 2 l_2 C_r)/(J_z v_x)     a33 = -(2 l_1^2 C_f + 2 l_2^2 C_r)/(J_z v_x)        (B3)
-    b11 = 2 C_f/m,  b12 = 2 C_r/m,  b31 = 2 l_1 C_f/J_z,  b32 = -2 l_2 C_r/J_z                       (B4)
+One wheel stands for the two of an axle. C_f and C_r are the cornering stiffness of one tire, so an axle has
+twice as much. The paper's axes are SAE (y right, z down); the equations are the same in ISO 8855 (y left, z
+up), which the bus uses. beta counts against y: it is positive to the right in ISO and to the left in SAE.
+
+Deviations: two misprints of the paper are corrected. It prints a13 without the leading minus. It prints the
+mass as 1280 kg, but its A and B are those of m = 1380 kg, the default here.
 
 published: C_f = C_r = 30000 N/rad, J_z = 2200 kg.m2, l_1 = 1.25 m, l_2 = 1.27 m, v_x = 21.3 m/s.
-Deviations, both misprints of the paper: a13 is printed without its leading minus; the mass is printed as 1280
-kg, but the printed A and B are those of m = 1380 kg, the default here.
+chosen: nothing but the corrected mass.
 
-Axes. The paper's are SAE (y right, z down); the equations are the same in ISO 8855 (y left, z up), which the
-bus uses. beta counts against y: to the right in ISO, to the left in SAE.
+At the edges: v_x is at least 0.1 m/s, because (B2) and (B3) divide by it.
+
+Step: `transition` gives A_d and B_d of x(t + dt) = A_d x + B_d u, exact for steering angles held over dt.
 """
 
 from __future__ import annotations
@@ -55,7 +58,7 @@ class Bicycle:
         l1, l2 = self.front_axle_distance, self.rear_axle_distance
         a11, a13 = -(cf + cr) / (m * vx), -vx - (cf * l1 - cr * l2) / (m * vx)  # (B2)
         a31, a33 = (l2 * cr - l1 * cf) / (jz * vx), -(l1 * l1 * cf + l2 * l2 * cr) / (jz * vx)  # (B3)
-        return (
+        return (  # (B1)
             (a11, 0.0, a13, 0.0),
             (0.0, 0.0, 1.0, 0.0),
             (a31, 0.0, a33, 0.0),
@@ -74,14 +77,15 @@ class Bicycle:
 
     @cached_property
     def transition(self) -> Callable[[float], Matrix]:
-        """dt [s] -> (A_d, B_d) of `discretized`; the last few step sizes are remembered."""
+        """The function dt [s] -> rows of (A_d, B_d), 4 x 6, of `discretized`; it keeps the last 8 values."""
         return lru_cache(maxsize=8)(partial(discretized, self.a, self.b))
 
 
 def discretized(a: Matrix, b: Matrix, dt: float) -> Matrix:
-    """The rows of (A_d, B_d), n x (n + m): x(t + dt) = A_d x + B_d u, exact for inputs held over dt [s].
+    """Return the rows of (A_d, B_d), n x (n + m), for A of n x n and B of n x m.
 
-    They are the first rows of exp([[A, B], [0, 0]] dt).
+    x(t + dt) = A_d x + B_d u is exact for inputs held over dt [s]: they are the first rows of
+    exp([[A, B], [0, 0]] dt).
     """
     import numpy as np
     from scipy.linalg import expm

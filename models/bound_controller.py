@@ -1,56 +1,51 @@
 """BoundController: keeps a scooter below a speed bound and an acceleration bound (the ECU).
 
 Source: Dardanelli et al., "Speed and acceleration controllers for a light electric two-wheeled vehicle",
-IEEE CDC-ECC 2011, section IV. Speeds are in km/h and throttles in %, as on the bus; T_s = dt.
+IEEE CDC-ECC 2011, section IV. Speeds are in km/h, accelerations in m/s2, throttles in %; T_s = dt.
 
-Observer of the speed from the quantized measurement v_m and the applied throttle g_e:
+    x' = -x/T + (mu/T) g_e + G1 (v_m - v_e) + G2 eta,  eta' = v_m - v_e,  v_e = x     observer    (5)
+    s^2 + (G1 + 1/T) s + G2 = s^2 + 2 zeta w_o s + w_o^2                              gives G1 and G2
+    a_e[k] = (v_e[k] - v_e[k-1])/(3.6 T_s)                                            acceleration
+    v_ref = v_e(t_0) + 3.6 * integral of a_b dt from t_0 in ACCELERATION, else v_ref = v_e        (8)
+    R_v, R_a = K_p (1 + 1/(s T_i)),  K_p = w_c T/mu                                          (9)-(10)
 
-    x' = -x/T + (mu/T) g_e + G1 (v_m - v_e) + G2 eta,  eta' = v_m - v_e,  v_e = x                    (5)
-    s^2 + (G1 + 1/T) s + G2 = s^2 + 2 zeta w_o s + w_o^2
-    a_e[k] = (v_e[k] - v_e[k-1])/(3.6 T_s)
-    v constant => |v_e - v| <= 0.5 km/h in the limit; not in transients                          (6)-(7)
+The observer sees the quantized measurement v_m and the applied throttle g_e. R_a tracks v_ref, with t_0 its
+entry; R_v tracks the speed bound v_b. Both are written as one law, with the indicator s = 1 in the state of
+the controller and 0 elsewhere, and r = v_ref or v_b:
 
-Reference of the acceleration controller, t_0 its entry:
+    e = s (r - v_e),  g_f = s (r - r(t_0))/mu,  u = I + K_p e + g_f                              (C1)
+    I' = (K_p/T_i) e + (g_e - u)/T_t                                always                       (C2)
 
-    v_ref = v_e(t_0) + 3.6 * integral of a_b dt from t_0 in ACCELERATION, else v_ref = v_e           (8)
-
-The factor 3.6 (v in km/h, a in m/s2) is missing in the paper. R_v tracks the speed bound v_b in its place.
-
-    R_v, R_a = K_p (1 + 1/(s T_i)),  K_p = w_c T/mu                                             (9)-(10)
-
-The paper draws anti-windup and bumpless switching in its Fig. 7; read as one law for both controllers, with
-the indicator s = 1 in the state of the controller and 0 elsewhere:
-
-    e = s (r - v_e),  g_f = s (r - r(t_0))/mu,  u = I + K_p e + g_f            r = v_ref or v_b     (C1)
-    I' = (K_p/T_i) e + (g_e - u)/T_t                                always                          (C2)
-
-Where the controller works inside 0..100 %, g_e = u and (C2) is the integral of (9)-(10); where the applied
-throttle is clipped or another's, I tracks it: anti-windup and bumpless entry in one. Once a sample, (C2) is
-I + (T_s K_p/T_i) e + min(1, T_s/T_t) (g_e - u).
-
-Supervisor, once a sample; g_a and g_v are the candidates u of R_a and R_v, g_d the rider's throttle:
+The supervisor decides once a sample; g_a and g_v are the candidates u of R_a and R_v, g_d is the rider's
+throttle, clipped to 0..100 %:
 
     DRIVER        g_e = g_d:   v_e >= v_b and g_v <= g_d                    -> VELOCITY
-                               a_e >= a_b and g_a <= g_d and v_e < v_b      -> ACCELERATION         (C3)
+                               a_e >= a_b and g_a <= g_d and v_e < v_b      -> ACCELERATION      (C3)
     ACCELERATION  g_e = g_a:   v_e >= v_b and g_a <= g_d                    -> VELOCITY
-                               g_a > g_d                                    -> DRIVER               (C4)
-    VELOCITY      g_e = g_v:   g_v > g_d                                    -> DRIVER               (C5)
+                               g_a > g_d                                    -> DRIVER            (C4)
+    VELOCITY      g_e = g_v:   g_v > g_d                                    -> DRIVER            (C5)
 
-The controller of a new state is evaluated once more, with s = 1. Throttles are compared to 1e-9 %: a
-tracking integrator nears the rider's constant throttle but need not reach its last bit. Optionally DRIVER is
-kept for `dwell_time` after each entry (the paper's remark against frequent switching).
+The controller of a new state is evaluated once more, with s = 1. DRIVER can be kept for `dwell_time` after
+each entry (the paper's remark against frequent switching).
+
+Deviations: the factor 3.6 in (8) is missing in the paper. (C1) and (C2) are one reading of the anti-windup
+and bumpless switching that the paper draws in its Fig. 7 ("Derivations" in docs/systems/scooter.md).
+`use_observer = false` is the paper's comparison: v_m in place of v_e, and as a_e its difference through a
+first-order low-pass.
 
 published: mu = 0.46 km/h per %, T from the pole at 0.03 Hz, 100 Hz, w_c = 2 pi 0.3 rad/s of R_v, the
 clipping of g_e to 0..100 %.
 chosen: w_o = 1.2 rad/s, zeta = 1, w_c = 1.5 rad/s of R_a ("slightly lower" in the paper), T_i = T, T_t = 10
-ms, no dwell time.
+ms, no dwell time, a low-pass of 0.5 s.
 
-The step at t_k reads v_e[k] from the observer, decides g_e[k], and then moves the observer on to t_k+1 by the
-exact solution of (5) for v_m[k] and g_e[k] held. At the start the observer is in equilibrium at (v_m, g_e),
-so that v_e = v_m, and the state is DRIVER, with its dwell time over.
+At the edges: at the start the observer is in equilibrium at (v_m, g_e), so that v_e = v_m, and the state is
+DRIVER, with its dwell time over. At a constant v the error |v_e - v| ends within 0.5 km/h (the paper's (6)
+and (7)); it can be larger in transients. Throttles are equal within 1e-9 %: a tracking integral nears the
+rider's constant throttle but need not reach its last bit. `enabled = false` applies the rider's throttle at
+all times.
 
-`use_observer = false` is the paper's comparison: v_m in place of v_e, and as a_e its difference through a
-first-order low-pass of 0.5 s (chosen). `enabled = false` applies the rider's throttle at all times.
+Step: the sample at t_k reads v_e[k], decides g_e[k], and moves the observer on to t_k+1 by the exact solution
+of (5) for v_m[k] and g_e[k] held. (C2) becomes I + (T_s K_p/T_i) e + min(1, T_s/T_t) (g_e - u), order 1.
 """
 
 from __future__ import annotations
@@ -61,14 +56,14 @@ from math import cos, cosh, exp, pi, sin, sinh, sqrt
 from typing import NamedTuple
 
 from .base import Model, record, var
+from .constants import KMH, SAME_TIME
 
-KMH = 3.6  # km/h in 1 m/s
+TIME_CONSTANT = 1.0 / (2.0 * pi * 0.03)  # s: that of the published pole at 0.03 Hz
 SAME_THROTTLE = 1e-9  # %, see the supervisor above
-SAME_TIME = 1e-9  # s, because a time counted down in steps ends near 0
 
 
 class ControllerState(IntEnum):
-    """Who commands the throttle."""
+    """The one that commands the throttle: the rider or a controller."""
 
     DRIVER = 0
     ACCELERATION = 1
@@ -86,17 +81,15 @@ class BoundController(Model):
 
     @record
     class Parameters:
-        """Model of the vehicle, tuning and options; the docstring of the module says which are published."""
+        """Model of the vehicle, tuning and options; the module's docstring marks what is published."""
 
         gain: float = var(0.46, "km/(h.%)", "Speed per throttle of the vehicle (mu)", min=1e-6)
-        time_constant: float = var(1.0 / (2.0 * pi * 0.03), "s", "Time constant of the vehicle (T)", min=1e-3)
+        time_constant: float = var(TIME_CONSTANT, "s", "Time constant of the vehicle (T)", min=1e-3)
         observer_bandwidth: float = var(1.2, "rad/s", "Natural frequency of the observer (w_o)", min=1e-3)
         observer_damping: float = var(1.0, "1", "Damping of the observer (zeta)", min=0.1)
         speed_bandwidth: float = var(0.6 * pi, "rad/s", "Crossover frequency of R_v (w_c)", min=0.0)
         acceleration_bandwidth: float = var(1.5, "rad/s", "Crossover frequency of R_a (w_c)", min=0.0)
-        integral_time: float = var(
-            1.0 / (2.0 * pi * 0.03), "s", "Integral time of R_v and R_a (T_i)", min=1e-3
-        )
+        integral_time: float = var(TIME_CONSTANT, "s", "Integral time of R_v and R_a (T_i)", min=1e-3)
         tracking_time: float = var(
             0.01, "s", "Time in which an idle or clipped integral follows (T_t)", min=1e-6
         )
@@ -107,18 +100,18 @@ class BoundController(Model):
 
         @cached_property
         def observer_gain(self) -> float:
-            """G1 of (5) [1/s]."""
+            """G1 of (5) [1/s]; G2 is w_o^2."""
             return 2.0 * self.observer_damping * self.observer_bandwidth - 1.0 / self.time_constant
 
         @cached_property
         def speed_gain(self) -> float:
-            """K_p of R_v [% per km/h], (9)."""
-            return self.speed_bandwidth * self.time_constant / self.gain
+            """K_p of R_v [% per km/h]."""
+            return self.speed_bandwidth * self.time_constant / self.gain  # (9)
 
         @cached_property
         def acceleration_gain(self) -> float:
-            """K_p of R_a [% per km/h], (10)."""
-            return self.acceleration_bandwidth * self.time_constant / self.gain
+            """K_p of R_a [% per km/h]."""
+            return self.acceleration_bandwidth * self.time_constant / self.gain  # (10)
 
     @record
     class Inputs:
@@ -131,7 +124,7 @@ class BoundController(Model):
 
     @record
     class State:
-        """Observer and integrals at the next sample, and what this sample shows."""
+        """Observer and integrals at the next sample, and the values that this sample outputs."""
 
         observer_speed: float = var(0.0, "km/h", "Speed of the observer at the next sample (x)")
         observer_offset: float = var(0.0, "km.s/h", "Integral of v_m - v_e at the next sample (eta)")
@@ -167,7 +160,7 @@ class BoundController(Model):
 
     @staticmethod
     def initial(p: BoundController.Parameters, u: BoundController.Inputs) -> BoundController.State:
-        """DRIVER, with the observer in equilibrium at the measured speed and the rider's throttle."""
+        """Return DRIVER, with the observer in equilibrium at the measured speed and the rider's throttle."""
         g, v = _clip(u.throttle_request), u.speed_measured
         return BoundController.State(v, _offset(p, v, g), g, g, v, 0.0, DRIVER, g, v, v, 0.0)
 
@@ -175,7 +168,7 @@ class BoundController(Model):
     def step(
         p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
     ) -> BoundController.State:
-        """The sample at t_k: estimate, decide, apply, then predict the observer at t_k + dt [s]."""
+        """Estimate, decide and apply at t_k, then predict the observer at t_k + dt [s]."""
         g_d, v_b, a_b = _clip(u.throttle_request), u.speed_bound, u.acceleration_bound
         v_e, a_e = _estimate(p, x, u, dt)
         active = x.state
@@ -197,7 +190,7 @@ class BoundController(Model):
 
         following = _supervise(p, x, (v_e, a_e), (v_b, a_b), (g_a, g_v, g_d))
         if following != active:
-            # Who leaves is idle from now on; who enters starts at t_0 = t_k, where g_f = 0.
+            # A controller that leaves is idle from now on; one that enters has t_0 = t_k, so that g_f = 0.
             e_a = e_v = 0.0
             g_a, g_v = i_a, i_v
             reference = v_e
@@ -221,7 +214,7 @@ class BoundController(Model):
 
     @staticmethod
     def outputs(p: BoundController.Parameters, x: BoundController.State) -> BoundController.Outputs:
-        """What the last sample decided."""
+        """Return the decisions of the last sample."""
         return BoundController.Outputs(
             x.throttle, x.state, x.speed_estimate, x.acceleration_estimate, x.reference
         )
@@ -234,7 +227,7 @@ def _clip(throttle: float) -> float:
 def _estimate(
     p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
 ) -> tuple[float, float]:
-    """v_e [km/h] and a_e [m/s2] of this sample."""
+    """Return v_e [km/h] and a_e [m/s2] of this sample."""
     if p.use_observer:
         v_e = x.observer_speed
         return v_e, (v_e - x.speed_estimate) / (KMH * dt)
@@ -251,7 +244,7 @@ def _supervise(
     bound: tuple[float, float],
     throttle: tuple[float, float, float],
 ) -> ControllerState:
-    """The state of this sample, from (v_e, a_e), (v_b, a_b) and the candidates (g_a, g_v, g_d)."""
+    """Return the state of this sample, from (v_e, a_e), (v_b, a_b) and the candidates (g_a, g_v, g_d)."""
     if not p.enabled:
         return DRIVER
     v_e, a_e = estimate
@@ -272,7 +265,7 @@ def _supervise(
 
 
 class _Transition(NamedTuple):
-    """How the observer's distance from its equilibrium (x, eta) decays over one step."""
+    """exp(A dt): the decay of the observer's distance from its equilibrium (x, eta) over one step."""
 
     speed_speed: float
     speed_offset: float
@@ -282,7 +275,7 @@ class _Transition(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _transition(w: float, zeta: float, dt: float) -> _Transition:
-    """exp(A dt) of (5), A = [[-2 zeta w, w^2], [-1, 0]]."""
+    """Return exp(A dt) with A = [[-2 zeta w, w^2], [-1, 0]] of (5), for the distance from its equilibrium."""
     decay = exp(-zeta * w * dt)
     turn = w * sqrt(abs(1.0 - zeta * zeta))
     if turn * dt < 1e-9:  # critically damped
@@ -296,18 +289,18 @@ def _transition(w: float, zeta: float, dt: float) -> _Transition:
 
 
 def _offset(p: BoundController.Parameters, v_m: float, g_e: float) -> float:
-    """eta of the equilibrium of (5) at a constant v_m and g_e; its speed is v_m."""
+    """Return eta [km.s/h] of the equilibrium of (5) at a constant v_m and g_e; its speed is v_m."""
     return (v_m - p.gain * g_e) / (p.time_constant * p.observer_bandwidth**2)
 
 
 def _predict(
     p: BoundController.Parameters, x: BoundController.State, v_m: float, g_e: float, dt: float
 ) -> tuple[float, float]:
-    """(5) after dt of constant v_m and g_e: it decays to their equilibrium."""
+    """Return x [km/h] and eta [km.s/h] after dt [s] of constant v_m and g_e."""
     phi = _transition(p.observer_bandwidth, p.observer_damping, dt)
     rest = _offset(p, v_m, g_e)
     dx, de = x.observer_speed - v_m, x.observer_offset - rest
-    return (
+    return (  # (5): the distance from the equilibrium decays
         v_m + phi.speed_speed * dx + phi.speed_offset * de,
         rest + phi.offset_speed * dx + phi.offset_offset * de,
     )

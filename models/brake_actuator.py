@@ -1,22 +1,24 @@
-"""BrakeActuator: what a brake makes of the torque that is asked of it.
+"""BrakeActuator: a pure delay and a first-order lag from the requested torque to the brake's torque.
 
 Source: Tanelli, Prandini, Codecà, Moia, Savaresi, "Analysing the interaction between braking control and
 speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008.
 
-    y(t) = T_request(t - delay),  0 before anything was asked                                        (A1)
-    T' = 2 pi f (y - T)                                                                              (A2)
+    y(t) = T_request(t - delay),  0 before the first request                   torque [N.m]      (A1)
+    T' = 2 pi f (y - T)                                                                          (A2)
 
-published: f = 10 Hz, delay = 10 ms. chosen: a negative request counts as 0, and the brake starts
-empty (T = 0).
+The output is the mean of T over the step just made, so that a wheel that holds it over the next step receives
+the exact impulse ("Derivations" in docs/systems/braking.md).
 
-What it shows is the mean of T over the step just made: a wheel that holds its torque over that step receives
-the exact impulse. With the value at the end, or at the beginning, it would be braked half a step too early or
-too late, and the loop's stopping distance depends on every millisecond of delay.
+published: f = 10 Hz, delay = 10 ms.
+chosen: a negative request counts as 0; QUEUE = 8.
 
-Step: (A1) and (A2) are exact for requests that are held from step to step, for every step size and delay. The
-state is a queue of requests on their way, each with the time for which it acts; one that does not change only
-acts longer. Of more than QUEUE different ones, the two neighbors that act shortest together become their
-mean: no impulse is lost, and (A1) is blurred over 2 delay/QUEUE = 2.5 ms, a sixth of the lag.
+At the edges: at the start the brake is empty (T = 0). The state is a queue of the requests on their way, each
+with the time for which it acts; a request equal to the one before only makes that one act longer. Of more
+than QUEUE different requests, the two neighbors that act shortest together become their mean: no impulse is
+lost, and (A1) is blurred over 2 delay/QUEUE = 2.5 ms, a sixth of the lag.
+
+Step: (A1) and (A2) are solved exactly for requests that are held from step to step, for every step size and
+delay, as long as the queue holds them.
 """
 
 from __future__ import annotations
@@ -26,11 +28,11 @@ from math import exp, pi
 from operator import attrgetter
 
 from .base import Model, record, var
+from .constants import SAME_TIME
 
 QUEUE = 8
-SAME_TIME = 1e-9  # s, because steps that are counted down from a delay end near 0
 
-Waiting = tuple[float, float]  # a request [N.m], and for how long it acts [s]
+Waiting = tuple[float, float]  # a request [N.m], and the time for which it acts [s]
 
 
 class BrakeActuator(Model):
@@ -50,13 +52,13 @@ class BrakeActuator(Model):
 
     @record
     class Inputs:
-        """What the controller asks for."""
+        """The request of the controller."""
 
         torque_request: float = var(0.0, "N.m", "Torque asked for; negative counts as 0", nominal=100.0)
 
     @record
     class State:
-        """The lag, and the requests on their way from the oldest: value, and for how long it was asked."""
+        """The lag, and the requests on their way from the oldest: value, and time for which each acts."""
 
         torque: float = var(0.0, "N.m", "Torque now (T)")
         mean_torque: float = var(0.0, "N.m", "Mean of the torque over the last step")
@@ -86,7 +88,7 @@ class BrakeActuator(Model):
 
     @staticmethod
     def initial(p: BrakeActuator.Parameters, u: BrakeActuator.Inputs) -> BrakeActuator.State:
-        """Empty: for the length of the delay nothing was asked."""
+        """Return an empty brake: no torque, and a request of 0 for the length of the delay."""
         if p.delay <= SAME_TIME:
             return BrakeActuator.State()
         return BrakeActuator.State(waiting=1, time_1=p.delay)
@@ -95,7 +97,7 @@ class BrakeActuator(Model):
     def step(
         p: BrakeActuator.Parameters, x: BrakeActuator.State, u: BrakeActuator.Inputs, dt: float
     ) -> BrakeActuator.State:
-        """The torque after `dt` [s] of a held request, and its mean over that time."""
+        """Return the torque after `dt` [s] of a held request, its mean over that time, and the queue."""
         queue = list(zip(_requests(x)[: x.waiting], _times(x)[: x.waiting], strict=True))
         request = max(0.0, u.torque_request)
         if queue and queue[-1][0] == request:
@@ -104,7 +106,7 @@ class BrakeActuator(Model):
             queue.append((request, dt))
         torque, impulse, left = x.torque, 0.0, dt
         while left > SAME_TIME:
-            y, acts = queue[0]
+            y, acts = queue[0]  # (A1)
             if acts > left + SAME_TIME:
                 h = left
                 queue[0] = (y, acts - h)
@@ -119,7 +121,7 @@ class BrakeActuator(Model):
 
     @staticmethod
     def outputs(p: BrakeActuator.Parameters, x: BrakeActuator.State) -> BrakeActuator.Outputs:
-        """The torque that a wheel holds over the step just made."""
+        """Return the mean torque over the step just made."""
         return BrakeActuator.Outputs(x.mean_torque)
 
 
@@ -130,7 +132,7 @@ _NONE = (0.0,) * QUEUE
 
 
 def _joined(queue: list[Waiting]) -> list[Waiting]:
-    """At most QUEUE requests, by the rule of the module's docstring."""
+    """Return at most QUEUE requests: the neighbors that act shortest together become their mean."""
     while len(queue) > QUEUE:
         i = min(range(len(queue) - 1), key=lambda j: queue[j][1] + queue[j + 1][1])
         (a, time_a), (b, time_b) = queue[i : i + 2]

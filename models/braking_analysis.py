@@ -1,28 +1,34 @@
-"""The braking two-wheeler in reduced form: Psi, the critical gains, and what the two propositions claim.
+"""Braking analysis: Psi, the critical gains and the two propositions for the braking two-wheeler.
 
 Source: Tanelli, Prandini, Codecà, Moia, Savaresi, "Analysing the interaction between braking control and
-speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. With the slips as states and no air drag,
-(1)-(5) of `two_wheeler_braking` become
+speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. Slips are states, without air drag:
 
-    lambda_i' = r/(J v) (T_i - Psi_i(lambda_f, lambda_r)),   i = f, r                                 (6)
-    Psi_f = r F_xf - (J/r) (1 - lambda_f) v',   F_xf = (m/l) (g l_r - h v') mu_f                       (7)
-    Psi_r = r F_xr - (J/r) (1 - lambda_r) v',   F_xr = (m/l) (g l_f + h v') mu_r                       (8)
-    v' = -g (l_r mu_f + l_f mu_r)/(l - h (mu_f - mu_r))
+    lambda_i' = r/(J v) (T_i - Psi_i(lambda_f, lambda_r)),   i = f, r                 slips [1]     (6)
+    Psi_f = r F_xf - (J/r) (1 - lambda_f) v',   F_xf = (m/l) (g l_r - h v') mu_f      torque [N.m]  (7)
+    Psi_r = r F_xr - (J/r) (1 - lambda_r) v',   F_xr = (m/l) (g l_f + h v') mu_r      torque [N.m]  (8)
+    v' = -g (l_r mu_f + l_f mu_r)/(l - h (mu_f - mu_r))            (1)-(5) of `two_wheeler_braking`
+    T_i = k_i (lambda* - lambda_i), not below 0                    proportional control             (9)
 
 Psi_i is the torque that keeps wheel i at its slip. Measured by s, ds = r/(J v) dt, (6) knows no speed:
-d lambda_i/ds = T_i - Psi_i. That is what is integrated here. Proportional control:
-
-    T_i = k_i (lambda* - lambda_i), not below 0                                                       (9)
+d lambda_i/ds = T_i - Psi_i. That is what is integrated here.
 
     Proposition 3.1   k_i > k-bar_i = max over slips and roads of -d Psi_i/d lambda_i, true speed:
                       one equilibrium, and every start ends there.
-    Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock.
-                      The fastest wheel believes in no slip and so is braked with k_i lambda*.
-
-k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip. It gives 324.5 and
-135.2 N.m (expected 324.5 and 135.1); the dry road sets the first, cobble the second.
+    Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock,
+                      because the fastest wheel believes in no slip and so is braked with k_i lambda*.
 
 Slips and torques are arrays of one shape unless said otherwise.
+
+Deviations: k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip. It gives 324.5
+and 135.2 N.m (expected 324.5 and 135.1); the dry road sets the first, cobble the second.
+
+published: lambda* = 0.22.
+chosen: the vehicle of `two_wheeler_braking`, the tolerances below.
+
+At the edges: slips lie in [0, 1]. With both wheels locked v_hat = 0, and the slip 0/0 counts as 0.
+
+Step: Proposition 3.1 by LSODA with a relative tolerance of 1e-9; Proposition 3.2 by Euler's rule with a step
+for each start, as short as the stiffness of (6) near the lock needs.
 """
 
 from __future__ import annotations
@@ -34,18 +40,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .constants import GRAVITY
 from .road_friction import FRICTION, Road
-from .two_wheeler_braking import GRAVITY, TwoWheelerBraking
+from .slip_controller import TARGET_SLIP as TARGET_SLIP
+from .two_wheeler_braking import TwoWheelerBraking
 
 Array = NDArray[np.float64]
 Parameters = TwoWheelerBraking.Parameters
 Torques = Callable[[Array, Array], tuple[Array, Array]]
 
-TARGET_SLIP = 0.22  # lambda*, published
-
 
 class Reduced(NamedTuple):
-    """v' [m/s2], Psi_f and Psi_r [N.m] at some slips, and how each Psi changes with its own slip [N.m]."""
+    """v' [m/s2], Psi_f and Psi_r [N.m] at some slips, and the slope of each Psi over its own slip [N.m]."""
 
     acceleration: Array
     psi_front: Array
@@ -69,14 +75,14 @@ class Equilibrium(NamedTuple):
 
 
 def reduced(p: Parameters, front_slip: Array, rear_slip: Array) -> Reduced:
-    """(6)-(8) and the partial derivatives d Psi_i/d lambda_i, on the road of p."""
+    """Return v', Psi_i and the derivatives d Psi_i/d lambda_i on the road of p, in the slips' shape."""
     mu_f, mu_r = _friction(p.road, front_slip), _friction(p.road, rear_slip)
     dmu_f, dmu_r = _slope(p.road, front_slip), _slope(p.road, rear_slip)
     g, h, lever = GRAVITY, p.center_height, p.wheel_inertia / p.wheel_radius
     force = p.wheel_radius * p.mass / p.wheelbase
     weight_f, weight_r = g * p.rear_distance, g * p.front_distance
     n, d = weight_f * mu_f + weight_r * mu_r, p.wheelbase - h * (mu_f - mu_r)
-    a = -n / d
+    a = -n / d  # v'
     a_f, a_r = -dmu_f * (weight_f * d + h * n) / d**2, -dmu_r * (weight_r * d - h * n) / d**2
     load_f, load_r = weight_f - h * a, weight_r + h * a
     roll_f, roll_r = 1.0 - front_slip, 1.0 - rear_slip
@@ -90,34 +96,34 @@ def reduced(p: Parameters, front_slip: Array, rear_slip: Array) -> Reduced:
 
 
 def psi_front(p: Parameters, front_slip: Array, rear_slip: Array) -> Array:
-    """Psi_f [N.m], (7)."""
+    """Return Psi_f [N.m] of (7), in the slips' shape."""
     return reduced(p, front_slip, rear_slip).psi_front
 
 
 def psi_rear(p: Parameters, front_slip: Array, rear_slip: Array) -> Array:
-    """Psi_r [N.m], (8)."""
+    """Return Psi_r [N.m] of (8), in the slips' shape."""
     return reduced(p, front_slip, rear_slip).psi_rear
 
 
 def highest_psi(p: Parameters) -> Gains:
-    """max Psi_f and max Psi_r [N.m] over all slips in [0, 1], on the road of p."""
+    """Return max Psi_f and max Psi_r [N.m] over all slips in [0, 1], on the road of p."""
     return Gains(
         _maximum(lambda f, r: reduced(p, f, r).psi_front), _maximum(lambda f, r: reduced(p, f, r).psi_rear)
     )
 
 
 def k_bar(p: Parameters, roads: Iterable[Road] = Road) -> Gains:
-    """The critical gains of Proposition 3.1 over all slips in [0, 1] and the given roads."""
+    """Return the critical gains of Proposition 3.1 over all slips in [0, 1] and the given roads."""
     falls = [_steepest_falls(replace(p, road=road)) for road in roads]
     return Gains(max(fall.front for fall in falls), max(fall.rear for fall in falls))
 
 
 def proportional(gains: Gains, target: float = TARGET_SLIP) -> Torques:
-    """(9) with the true slips."""
+    """Return the torques of (9) [N.m] as a function of the true slips."""
 
     def torques(front_slip: Array, rear_slip: Array) -> tuple[Array, Array]:
         return (
-            np.maximum(0.0, gains.front * (target - front_slip)),
+            np.maximum(0.0, gains.front * (target - front_slip)),  # (9)
             np.maximum(0.0, gains.rear * (target - rear_slip)),
         )
 
@@ -125,7 +131,10 @@ def proportional(gains: Gains, target: float = TARGET_SLIP) -> Torques:
 
 
 def proportional_by_fastest_wheel(gains: Gains, target: float = TARGET_SLIP) -> Torques:
-    """(9) with slips from v_hat = r max(w_f, w_r), (16); both wheels locked: 0/0, which counts as no slip."""
+    """Return the torques of (9) [N.m] as a function of the true slips; the controller sees those of v_hat.
+
+    v_hat = r max(w_f, w_r). With both wheels locked the slip is 0/0, which counts as no slip.
+    """
     true = proportional(gains, target)
 
     def torques(front_slip: Array, rear_slip: Array) -> tuple[Array, Array]:
@@ -139,7 +148,7 @@ def proportional_by_fastest_wheel(gains: Gains, target: float = TARGET_SLIP) -> 
 
 
 def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list[Equilibrium]:
-    """The equilibria of (6) with (9) and the true speed, all that Newton's method finds from 49 starts."""
+    """Return the equilibria of (6) with (9) and the true speed that Newton's method finds from 49 starts."""
     from scipy.optimize import root  # slow to import
 
     torques = proportional(gains, target)
@@ -159,9 +168,9 @@ def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list
 
 
 def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> Array:
-    """Proposition 3.1: where (6) with (9) and the true speed ends from `starts`; both of shape (n, 2).
+    """Return the slips at which (6) with (9) and the true speed ends from `starts`; both of shape (n, 2).
 
-    Raises RuntimeError where it has not come to rest, which the proposition excludes.
+    Raises RuntimeError where it has not come to rest, which Proposition 3.1 excludes.
     """
     from scipy.integrate import solve_ivp  # slow to import
 
@@ -184,15 +193,16 @@ def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGE
 
 
 def spread(points: Array) -> float:
-    """The largest difference in a slip between any two of n points, shape (n, 2)."""
+    """Return the largest difference in a slip between any two of n points, shape (n, 2)."""
     return float(np.ptp(points, axis=0).max())
 
 
 def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> NDArray[np.bool_]:
-    """Proposition 3.2: which of the `starts`, shape (n, 2), end with both wheels locked; shape (n,).
+    """Return True for each of the `starts`, shape (n, 2), that ends with both wheels locked; shape (n,).
 
-    (6) with the fastest wheel's speed, by Euler's rule with a step for each start. Near the lock a change of
-    slip seems to the controller 1/(1 - lambda) times as large, so the steps get as short; they end at LOCKED.
+    Proposition 3.2: (6) with the fastest wheel's speed, by Euler's rule with a step for each start. Near the
+    lock the controller sees a change of slip 1/(1 - lambda) times as large, so the steps shrink by that
+    factor; they end at LOCKED.
     """
     torques = proportional_by_fastest_wheel(gains, target)
     free = reduced(p, np.zeros(1), np.zeros(1))
@@ -213,7 +223,7 @@ def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLI
 
 
 def random_starts(count: int, seed: int = 0) -> Array:
-    """Slips in [0, 1], shape (count, 2); the same for the same seed."""
+    """Return slips in [0, 1], shape (count, 2); the same for the same seed."""
     return np.random.default_rng(seed).random((count, 2))
 
 
@@ -224,10 +234,10 @@ LONGEST = 20_000  # steps to a lock; those above need below 2000
 
 
 def _rates(p: Parameters, torques: Torques, x: Array) -> Array:
-    """d lambda/ds of (6); x and the outcome of shape (2,) or (2, n)."""
+    """Return d lambda/ds of (6) [N.m]; x and the result have the shape (2,) or (2, n)."""
     at = reduced(p, x[0], x[1])
     torque_f, torque_r = torques(x[0], x[1])
-    return np.array([torque_f - at.psi_front, torque_r - at.psi_rear])
+    return np.array([torque_f - at.psi_front, torque_r - at.psi_rear])  # (6)
 
 
 def _friction(road: Road, slip: Array) -> Array:
@@ -249,7 +259,7 @@ def _steepest_falls(p: Parameters) -> Gains:
 
 
 def _maximum(value: Callable[[Array, Array], Array]) -> float:
-    """The maximum over [0, 1] x [0, 1]: a grid, then finer ones around its best point."""
+    """Return the maximum over [0, 1] x [0, 1]: a grid of 81 x 81, then finer ones around its best point."""
     low, high = np.zeros(2), np.ones(2)
     best = -np.inf
     for _ in range(4):

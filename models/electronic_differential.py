@@ -3,17 +3,22 @@
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012.
 
-    R   = L/tan(d)                                                                               (9)
-    w_1 = (L - (d_w/2) tan(d))/L w_v,   w_2 = (L + (d_w/2) tan(d))/L w_v                         (10)-(12)
-    w_v = (w_1 + w_2)/2 = v_ref/R_w                                                              (13)
+    R   = L/tan(d)                                              radius of the turn [m]            (9)
+    w_1 = (L - (d_w/2) tan(d))/L w_v,   w_2 = (L + (d_w/2) tan(d))/L w_v      [rad/s]       (10)-(12)
+    w_v = (w_1 + w_2)/2 = v_ref/R_w                             v_ref in km/h: v_ref/3.6         (13)
 
-w_1 is the left wheel's reference and w_2 the right one's; d > 0 steers to the left. The paper's Table 1 swaps
-two labels: the wheelbase is L = 2.5 m and the track d_w = 1.5 m.
+w_1 is the left wheel's reference and w_2 the right one's; d > 0 [rad] steers to the left.
 
-published: L, d_w, R_w = 0.36 m. chosen: the stop of the steering, 45 deg.
+Deviations: the labels of two lengths, which the paper's Table 1 swaps, are put right: the wheelbase is
+L = 2.5 m and the track d_w = 1.5 m.
 
-At the edges: an angle beyond the stop counts as the stop; a stop at which R < d_w/2 is refused at the start
+published: L, d_w, R_w = 0.36 m.
+chosen: the stop of the steering, 45 deg.
+
+At the edges: an angle beyond the stop counts as the stop; a stop at which R <= d_w/2 is refused at the start
 (`turn_geometry`). A negative v_ref drives backward.
+
+Step: the sample at t_k computes the references from the inputs at t_k; there is no memory and no error.
 """
 
 from __future__ import annotations
@@ -21,6 +26,7 @@ from __future__ import annotations
 from math import pi
 
 from .base import Model, record, var
+from .constants import KMH
 from .turn_geometry import check_steering, wheel_ratios
 
 
@@ -41,7 +47,7 @@ class ElectronicDifferential(Model):
 
     @record
     class Inputs:
-        """What the driver asks for."""
+        """The speed and the angle that the driver asks for."""
 
         speed_reference: float = var(0.0, "km/h", "Speed asked for (v_ref)", nominal=10.0)
         steering_angle: float = var(0.0, "rad", "Angle of the front wheels (d), positive to the left")
@@ -55,7 +61,7 @@ class ElectronicDifferential(Model):
 
     @record
     class Outputs:
-        """What the wheel-speed controller is to hold."""
+        """The references that the wheel-speed controller holds."""
 
         left_reference: float = var(0.0, "rad/s", "Reference of the left wheel (w_1)", nominal=10.0)
         right_reference: float = var(0.0, "rad/s", "Reference of the right wheel (w_2)", nominal=10.0)
@@ -64,7 +70,7 @@ class ElectronicDifferential(Model):
     def initial(
         p: ElectronicDifferential.Parameters, u: ElectronicDifferential.Inputs
     ) -> ElectronicDifferential.State:
-        """The references of the first sample. Raises ValueError for a geometry that cannot turn so far."""
+        """Return the references of the first inputs. Raises ValueError for a stop that is too far."""
         check_steering(p.wheelbase, p.track, p.steering_limit)
         return ElectronicDifferential.step(p, ElectronicDifferential.State(), u, 0.0)
 
@@ -75,14 +81,14 @@ class ElectronicDifferential(Model):
         u: ElectronicDifferential.Inputs,
         dt: float,
     ) -> ElectronicDifferential.State:
-        """The sample at t_k: it remembers nothing."""
-        wheels = u.speed_reference / 3.6 / p.wheel_radius  # (13)
+        """Return the references of the inputs at t_k."""
         left, right = wheel_ratios(p.wheelbase, p.track, p.steering_limit, u.steering_angle)  # (9)
-        return ElectronicDifferential.State(left * wheels, right * wheels)  # (10)-(12)
+        w_v = u.speed_reference / KMH / p.wheel_radius  # (13)
+        return ElectronicDifferential.State(left * w_v, right * w_v)  # (10)-(12)
 
     @staticmethod
     def outputs(
         p: ElectronicDifferential.Parameters, x: ElectronicDifferential.State
     ) -> ElectronicDifferential.Outputs:
-        """The references."""
+        """Return the references of the last sample."""
         return ElectronicDifferential.Outputs(x.left_reference, x.right_reference)

@@ -2,45 +2,47 @@
 
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012, which prints the motor's
-data and no controller. Complex numbers are vectors in the frame of the rotor, real along its flux at the
-start of each step; amplitudes are peak values; w = p_p W is the electrical speed of the rotor.
+data and no controller.
 
-    sigma L_s di/dt = u - R_e i - j w sigma L_s i + k_r (1/T_r - j w) psi       stator current        (M1)
-    dpsi/dt = L_m/T_r i - psi/T_r                                               rotor flux            (M2)
-    T = 3/2 p_p k_r Im(conj(psi) i) - f_c W                                     torque at the shaft   (M3)
+    sigma L_s di/dt = u - R_e i - j w sigma L_s i + k_r (1/T_r - j w) psi       stator current [A]   (M1)
+    dpsi/dt = L_m/T_r i - psi/T_r                                               rotor flux [Wb]      (M2)
+    T = 3/2 p_p k_r Im(conj(psi) i) - f_c W                                     shaft torque [N.m]   (M3)
     L_s = L_m + L_ls,  L_r = L_m + L_lr,  sigma = 1 - L_m^2/(L_s L_r),  k_r = L_m/L_r,  T_r = L_r/R_r,
     R_e = R_s + k_r^2 R_r
 
+Complex numbers are vectors in the frame of the rotor, real along its flux at the start of each step;
+amplitudes are peak values. W is the speed of the shaft and w = p_p W its electrical speed [rad/s].
+
 Control, each `inner step`, in the frame of the flux (i_d along psi, i_q across):
 
-    i_d* constant;  i_q* = T*/(3/2 p_p k_r |psi|), limited to sqrt(I_max^2 - i_d*^2)                  (F1)
-    u = K (i* - i) + x + j w_s sigma L_s i - k_r (1/T_r - j w) |psi|, limited in amplitude to U_max   (F2)
-    x' = (R_e/tau) ((i* - i) + (u_limited - u)/K),   K = sigma L_s/tau                                (F3)
-    w_s = w + L_m i_q/(T_r |psi|)                                                                     (F4)
+    i_d* constant;  i_q* = T*/(3/2 p_p k_r |psi|), limited to sqrt(I_max^2 - i_d*^2)                 (F1)
+    u = K (i* - i) + x + j w_s sigma L_s i - k_r (1/T_r - j w) |psi|, limited in amplitude to U_max  (F2)
+    x' = (R_e/tau) ((i* - i) + (u_limited - u)/K),   K = sigma L_s/tau                               (F3)
+    w_s = w + L_m i_q/(T_r |psi|)                                                                    (F4)
 
 (F2)-(F3) cancel the motor's own dynamics, so that the current follows like 1/(1 + s tau): the one number
-`tau` is the bandwidth of both forms. With `ideal` the motor is
+`tau` is the bandwidth of both forms. With `ideal` the motor is the lag (I1). The gear is (G1): its losses are
+taken from the power whichever way that flows. T* is limited to -+247 N.m.
 
-    tau dT/dt = T* - T,   i_d = i_d*,  i_q from (F1),  u in steady state                              (I1)
+    tau dT/dt = T* - T,   i_d = i_d*,  i_q from (F1),  u in steady state                             (I1)
+    T* = (request at the wheel)/g,  wheel torque = g T,  g = N eta driving, N/eta braking            (G1)
 
-Gear: T* = (request at the wheel)/g, wheel torque = g T, with g = N eta while the motor drives and g = N/eta
-while it brakes, so that the gear takes its 7 % of the power in both directions. T* is limited to -+247 N.m;
-that is 2297 N.m at the wheel when driving and 2656 N.m when braking.
+Deviations: f_c = 0.0014 N.m.s is published and 0 here; gear and efficiency, which the paper gives to the car,
+are part of the drive.
 
 published: 247 N.m, R_r = 0.003, R_s = 0.0044 ohm, L_ls = 16.1, L_m = 482, L_lr = 12.9 uH, 4 poles, gear 10,
-efficiency 93 %, gear and efficiency being part of the drive here.
-chosen: everything of the control: i_d* = 419 A (247 N.m then need i_q = 419 A), I_max = 650 A, U_max = 400 V
-(not reached below 120 km/h; there is no field weakening), tau = 3 ms. f_c = 0.0014 N.m.s is published and 0
-here: it is 0.65 N.m at 60 km/h, a quarter of a percent of the torque, and an equilibrium of the car would
-have to count it. The flux is known to the control as (M2) gives it, from the current and the true parameters.
+efficiency 93 %.
+chosen: everything of the control: i_d* = 419 A, I_max = 650 A, U_max = 400 V, tau = 3 ms; the reasons, and
+that of f_c = 0: "Derivations" in docs/systems/multi_drive.md.
 
-Step. The wheel speed is held, so (M1)-(M2) are linear with constant coefficients in the rotor's frame, and
+At the edges: at the start the motor is magnetized and gives the torque that `torque_request` then asks for.
+I_max <= i_d* is refused at the start. With too little voltage the current falls short, without windup; there
+is no field weakening. The control knows the flux as (M2) gives it. Phase currents are not shown: at 60 km/h
+they have 147 Hz, which no record of 100 Hz can show.
+
+Step: the wheel speed is held, so (M1)-(M2) are linear with constant coefficients in the rotor's frame, and
 each inner step of 0.1 ms (or less, a whole number of them in a step) is their exact solution for the held
-voltage. The exponential is computed once a step. Torque, currents and flux are those at the end of the step;
-`power` is the mean over the step.
-
-At the start the motor is magnetized and without torque, or gives what `torque_request` then asks.
-Phase currents are not shown: at 60 km/h they have 147 Hz, which no record of 100 Hz can show.
+voltage. Torque, currents and flux are those at the end of the step; `power` is the mean over the step.
 """
 
 from __future__ import annotations
@@ -57,7 +59,7 @@ INNER_STEP = 1e-4  # s
 MAGNETIZING_CURRENT = 419.0  # A
 MAGNETIZING_INDUCTANCE = 482e-6  # H, published
 STATOR_RESISTANCE = 0.0044  # ohm, published
-SMALLEST_FLUX = 1e-3  # Wb, below which (F1) and (F4) count with this
+SMALLEST_FLUX = 1e-3  # Wb: (F1) and (F4) divide by at least this
 
 
 class InductionMotorDrive(Model):
@@ -67,7 +69,7 @@ class InductionMotorDrive(Model):
 
     @record
     class Parameters:
-        """Motor, gear and control; the docstring of the module says which are published."""
+        """Motor, gear and control; the module's docstring marks what is published."""
 
         ideal: bool = var(False, "", "Whether the motor is the lag (I1); if not, the machine (M1)-(F4)")
         time_constant: float = var(0.003, "s", "Time constant of the torque (tau)", min=2e-4)
@@ -87,19 +89,19 @@ class InductionMotorDrive(Model):
 
         @cached_property
         def machine(self) -> Machine:
-            """What (M1)-(F4) compute from these."""
+            """Numbers that (M1)-(F4) compute from these parameters."""
             return Machine(self)
 
     @record
     class Inputs:
-        """What is asked for, and the shaft."""
+        """The torque request and the speed of the shaft."""
 
         torque_request: float = var(0.0, "N.m", "Torque asked for at the wheel", nominal=1000.0)
         wheel_speed: float = var(0.0, "rad/s", "Speed of the wheel", nominal=10.0)
 
     @record
     class State:
-        """Currents and flux in the frame of the flux, integrals of the control, and what the step gave."""
+        """Currents and flux in the frame of the flux, integrals of the control, results of the step."""
 
         current_d: float = var(0.0, "A", "Current along the flux (i_d)")
         current_q: float = var(0.0, "A", "Current across the flux (i_q)")
@@ -113,7 +115,7 @@ class InductionMotorDrive(Model):
 
     @record
     class Outputs:
-        """What the drive gives and what it draws."""
+        """The torque, the electrical quantities and the power of the drive."""
 
         torque: float = var(0.0, "N.m", "Torque at the wheel", nominal=1000.0)
         motor_torque: float = var(0.0, "N.m", "Torque at the shaft (T)", nominal=100.0)
@@ -141,7 +143,7 @@ class InductionMotorDrive(Model):
     def initial(
         p: InductionMotorDrive.Parameters, u: InductionMotorDrive.Inputs
     ) -> InductionMotorDrive.State:
-        """Magnetized, and giving the torque that is asked for. Raises ValueError for contradicting limits."""
+        """Return a magnetized motor with the requested torque. Raises ValueError for contradicting limits."""
         if p.current_limit <= p.magnetizing_current:
             raise ValueError(
                 f"current_limit = {p.current_limit} A leaves no current for a torque: it must be above "
@@ -156,7 +158,7 @@ class InductionMotorDrive(Model):
         u: InductionMotorDrive.Inputs,
         dt: float,
     ) -> InductionMotorDrive.State:
-        """The state after `dt` [s] of held inputs."""
+        """Return the state after `dt` [s] of held inputs."""
         if p.ideal:
             wanted = _motor_request(p, u)
             torque = wanted + (x.motor_torque - wanted) * exp(-dt / p.time_constant)  # (I1)
@@ -167,7 +169,7 @@ class InductionMotorDrive(Model):
     def outputs(
         p: InductionMotorDrive.Parameters, x: InductionMotorDrive.State
     ) -> InductionMotorDrive.Outputs:
-        """What the last step gave."""
+        """Return the results of the last step."""
         current = sqrt(0.5 * (x.current_d * x.current_d + x.current_q * x.current_q))
         return InductionMotorDrive.Outputs(
             x.torque, x.motor_torque, x.current_d, x.current_q, current, x.flux, x.voltage, x.power
@@ -175,7 +177,7 @@ class InductionMotorDrive(Model):
 
 
 class Machine:
-    """Numbers that (M1)-(F4) need, from the parameters."""
+    """Numbers that (M1)-(F4) need, computed from the parameters."""
 
     def __init__(self, p: InductionMotorDrive.Parameters) -> None:
         l_m = p.magnetizing_inductance
@@ -191,8 +193,10 @@ class Machine:
         self.torque_limit = min(p.maximum_torque, by_current)  # [N.m]
 
     def advance(self, w: float, h: float) -> tuple[complex, complex, complex, complex, complex, complex]:
-        """Exact solution of (M1)-(M2) over h [s] at the speed w [rad/s]: exp(A h) row by row, then the
-        response of current and flux to 1 V."""
+        """Return the exact solution of (M1)-(M2) over h [s] at the electrical speed w [rad/s].
+
+        It is exp(A h), row by row, and then the response of current and flux to 1 V.
+        """
         a_11 = complex(-self.resistance / self.leakage, -w)
         a_12 = complex(self.rotor_rate, -w) * (self.ratio / self.leakage)
         a_21, a_22 = self.coupling, -self.rotor_rate
@@ -211,21 +215,21 @@ class Machine:
 
 
 def _motor_request(p: InductionMotorDrive.Parameters, u: InductionMotorDrive.Inputs) -> float:
-    """T* [N.m]: the request at the wheel through the gear, within the limits of torque and current."""
-    wanted = u.torque_request / _gear(p, u.torque_request, u.wheel_speed)
+    """Return T* [N.m], the request at the wheel through the gear, within the limits of torque and current."""
+    wanted = u.torque_request / _gear(p, u.torque_request, u.wheel_speed)  # (G1)
     limit = p.machine.torque_limit
     return limit if wanted > limit else -limit if wanted < -limit else wanted
 
 
 def _gear(p: InductionMotorDrive.Parameters, torque: float, speed: float) -> float:
-    """Wheel torque by motor torque: the gear loses power whichever way it flows."""
+    """Return g of (G1), wheel torque by motor torque [1]: the gear loses power whichever way it flows."""
     return p.gear_ratio * (p.gear_efficiency if torque * speed >= 0.0 else 1.0 / p.gear_efficiency)
 
 
 def _steady(
     p: InductionMotorDrive.Parameters, torque: float, wheel_speed: float
 ) -> InductionMotorDrive.State:
-    """(M1)-(F4) at rest in the frame of the flux, with a torque [N.m] at the shaft."""
+    """Return the steady state of (M1)-(F4) with a torque [N.m] at the shaft."""
     k = p.machine
     shaft = wheel_speed * p.gear_ratio
     w = shaft * p.pole_pairs
@@ -236,7 +240,7 @@ def _steady(
     i = complex(i_d, i_q)
     u = p.stator_resistance * i + 1j * w_s * (k.leakage * i + k.ratio * flux)
     power = 1.5 * (u.real * i_d + u.imag * i_q)
-    at_wheel = _gear(p, torque, wheel_speed) * torque
+    at_wheel = _gear(p, torque, wheel_speed) * torque  # (G1)
     return InductionMotorDrive.State(
         i_d, i_q, flux, k.resistance * i_d, k.resistance * i_q, torque, at_wheel, power, abs(u)
     )
@@ -248,7 +252,7 @@ def _machine_step(
     u: InductionMotorDrive.Inputs,
     dt: float,
 ) -> InductionMotorDrive.State:
-    """(F1)-(F4) and the exact solution of (M1)-(M2), inner step after inner step."""
+    """Return the state after `dt` [s]: (F1)-(F4), then the exact (M1)-(M2), inner step after inner step."""
     k = p.machine
     n = max(1, ceil(dt / INNER_STEP - 1e-9))
     h = dt / n
@@ -294,7 +298,7 @@ def _machine_step(
     size = abs(flux)
     i = current * flux.conjugate() / size if size else current
     torque = k.torque_factor * size * i.imag - p.friction * shaft  # (M3)
-    at_wheel = _gear(p, torque, u.wheel_speed) * torque
+    at_wheel = _gear(p, torque, u.wheel_speed) * torque  # (G1)
     power = 1.5 * 0.5 * energy / n
     return InductionMotorDrive.State(
         i.real, i.imag, size, held.real, held.imag, torque, at_wheel, power, amplitude

@@ -1,25 +1,29 @@
 """LaneKeepingController: linear-quadratic lane keeping of a four-wheel-steered vehicle.
 
 Source: "Optimal lane keeping control of a 4WS electric vehicle", section 5. For the vehicle x' = A x + B u of
-`bicycle`, x = (y', theta, w_z, beta), u = (delta_f, delta_r), and the reference r = (r_1, r_2):
+`bicycle`, x = (y', theta, w_z, beta), u = (delta_f, delta_r) [rad], and the reference r = (r_1, r_2):
 
     u = -K x + S r                                                                                   (C1)
     K = R^-1 B' P,   A' P + P A - P B R^-1 B' P + Q = 0         minimizes integral x'Q x + u'R u dt  (C2)
     S = -[C (A - B K)^-1 B]^-1                                  so that C x = r in steady state      (C3)
     C = [1 0 0 0; 0 c_theta 0 c_beta]                           tracked: y' and theta + beta         (C4)
 
+K and S are computed from the parameters, once for each set of them, in continuous time as in the paper.
+
+Deviations: the paper's text names y' and theta as what is tracked (c_beta = 0), for which there is no S
+("Not reproducible, and misprints" in docs/systems/lane_keeping.md). The K-hat that the paper also prints
+contradicts its own K; it is not used.
+
 published: Q = I (4 x 4), R = I (2 x 2), A, B, K, S.
-chosen: c_theta = 1 m/rad, c_beta = 1, which give the printed S. The paper's text names y' and theta as what
-is tracked (c_beta = 0), for which there is no S: in steady state beta' = 0, so y' = -v_x theta, and the two
-cannot be set independently. The K-hat that the paper also prints contradicts its own K; it is not used.
+chosen: c_theta = 1 m/rad, c_beta = 1, which give the printed S; `delay_steps` = 0.
 
-K and S are computed from the parameters, once for each set of them, in continuous time as in the paper; u is
-then held between samples. The law has no memory, except that `delay_steps` gives out the request of so many
-samples ago: the time that a slow control unit needs (chosen: 0). At the start the older requests are that of
-the first inputs.
+At the edges: `delay_steps` gives out the request of so many samples ago, the time that a slow control unit
+needs; at the start the older requests are that of the first inputs. Refused at the end of the initialization:
+a vehicle that no steering stabilizes; weights that leave out of the cost what does not decay by itself;
+outputs (C4) that steering cannot set independently.
 
-Errors, at the end of the initialization: a vehicle that no steering stabilizes; weights that leave out of the
-cost what does not decay by itself; outputs (C4) that steering cannot set independently.
+Step: the sample at t_k computes (C1) from the inputs at t_k, and u is held until the next; there is no memory
+but the older requests, and no error.
 """
 
 from __future__ import annotations
@@ -57,7 +61,7 @@ class LaneKeepingController(Model):
 
     @record
     class Parameters(Bicycle):
-        """The vehicle as the controller knows it, the weights, and what is tracked."""
+        """The vehicle as the controller knows it, the weights, and the tracked outputs."""
 
         lateral_velocity_weight: float = var(1.0, "s2/m2", "Q: weight of y'^2", min=0.0)
         heading_angle_weight: float = var(1.0, "1/rad2", "Q: weight of theta^2", min=0.0)
@@ -81,12 +85,12 @@ class LaneKeepingController(Model):
 
         @cached_property
         def shown(self) -> Callable[[Any], tuple[float, float]]:
-            """The two requests of a State that are given out."""
+            """The function State -> (front, rear) [rad], the two requests that are given out."""
             return attrgetter(f"front_{self.delay_steps}", f"rear_{self.delay_steps}")
 
     @record
     class Inputs:
-        """x as measured, and r."""
+        """The measured x, and r."""
 
         lateral_velocity: float = var(0.0, "m/s", "Lateral velocity (y')")
         heading_angle: float = var(0.0, "rad", "Heading relative to the lane (theta)", nominal=0.1)
@@ -110,7 +114,7 @@ class LaneKeepingController(Model):
 
     @record
     class Outputs:
-        """What the steering is asked for."""
+        """The angles that the steering is asked for."""
 
         front_steering_angle: float = var(0.0, "rad", "Front road-wheel angle (delta_f)", nominal=0.1)
         rear_steering_angle: float = var(0.0, "rad", "Rear road-wheel angle (delta_r)", nominal=0.1)
@@ -119,7 +123,7 @@ class LaneKeepingController(Model):
     def initial(
         p: LaneKeepingController.Parameters, u: LaneKeepingController.Inputs
     ) -> LaneKeepingController.State:
-        """The requests for the first inputs, as if these had been the same before.
+        """Return the requests for the first inputs, as if these had been the same before.
 
         Raises ValueError for parameters to which there is no K or S.
         """
@@ -133,7 +137,7 @@ class LaneKeepingController(Model):
         u: LaneKeepingController.Inputs,
         dt: float,
     ) -> LaneKeepingController.State:
-        """The sample at t_k."""
+        """Return the request at t_k and those before it."""
         front, rear = _law(p, u)
         return LaneKeepingController.State(
             front, rear, x.front_0, x.rear_0, x.front_1, x.rear_1, x.front_2, x.rear_2
@@ -143,7 +147,7 @@ class LaneKeepingController(Model):
     def outputs(
         p: LaneKeepingController.Parameters, x: LaneKeepingController.State
     ) -> LaneKeepingController.Outputs:
-        """What was asked for `delay_steps` samples ago."""
+        """Return the request of `delay_steps` samples ago."""
         front, rear = p.shown(x)
         return LaneKeepingController.Outputs(front, rear)
 
@@ -166,7 +170,7 @@ class _Design(NamedTuple):
 
 @lru_cache(maxsize=64)  # an FMU builds its Parameters anew in initialization and when a state is restored
 def _design(p: LaneKeepingController.Parameters) -> _Design:
-    """K and S. Raises ValueError that names what cannot be, and the parameters behind it."""
+    """Return K and S. Raises ValueError that names the reason where there is none, and its parameters."""
     import numpy as np
     from scipy.linalg import solve_continuous_are
 
@@ -193,7 +197,10 @@ def _design(p: LaneKeepingController.Parameters) -> _Design:
 
 
 def _check_stabilizable(p: LaneKeepingController.Parameters, a: Array, b: Array) -> None:
-    """Hautus: [s I - A, B] has full rank for every eigenvalue s of A that does not decay."""
+    """Raise ValueError where the steering does not move an eigenvalue of A that does not decay.
+
+    By Hautus, [s I - A, B] has full rank for every eigenvalue s of A that steering moves.
+    """
     import numpy as np
 
     eigenvalues = np.linalg.eigvals(a)

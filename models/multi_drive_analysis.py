@@ -1,8 +1,19 @@
-"""Numbers of the two-motor car that the paper prints, and those that a run gives: pure functions.
+"""Multi-drive analysis: numbers of the two-motor car that the paper prints, and those that a run gives.
 
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
-Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012. Some of its numbers
-contradict each other or the printed data; `claims` lists them with the reason.
+Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012.
+
+    dip = max(v_ref - v),   overshoot = max(v - v_ref)                                 [km/h]    (D1)
+    error = sqrt(sum e_1^2 dt/sum dt) from the first curve on                          [rad/s]   (D2)
+    rho = T_aero/(1/2 A C_x v^2 R)                       density of a torque of the air [kg/m3]  (D3)
+    a_rise = 0.8 v/(t_rise g)                            mean of a rise from 10 to 90 % [1]      (D4)
+    a_max = 2 T_max/(R (M + 2 J_e/R^2) g)                two wheels at their torque limit [1]    (D5)
+
+The symbols are those of `two_motor_vehicle`. Some of the paper's numbers contradict each other or the printed
+data; `claims` lists them with the reason.
+
+published: the numbers in `claims`.
+chosen: the times of the maneuver, FIRST_CURVE and RUN_TIME.
 """
 
 from __future__ import annotations
@@ -12,7 +23,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .two_motor_vehicle import GRAVITY, TwoMotorVehicle
+from .constants import AIR_DENSITY, GRAVITY, KMH
+from .two_motor_vehicle import TwoMotorVehicle
 
 Array = NDArray[np.float64]
 
@@ -21,7 +33,7 @@ RUN_TIME = 10.0  # s: its duration in the paper
 
 
 class Maneuver(NamedTuple):
-    """How a controller did: dip and overshoot of the speed, error of the left wheel, and the way."""
+    """The result of a controller: dip and overshoot of the speed, error of the left wheel, and distance."""
 
     dip: float  # km/h, largest shortfall of the speed
     overshoot: float  # km/h
@@ -30,10 +42,10 @@ class Maneuver(NamedTuple):
 
 
 def maneuver(time: Array, speed: Array, reference: float, left_error: Array, distance: Array) -> Maneuver:
-    """The numbers of a run: time [s], speed [m/s], left_error [rad/s], distance [m] are arrays of shape (n,).
+    """Return the numbers of a run from time [s], speed [m/s], left_error [rad/s] and distance [m].
 
-    `reference` is the speed asked for [m/s]. The error counts from FIRST_CURVE on, each sample until the
-    next.
+    The four are arrays of shape (n,); `reference` is the speed asked for [m/s]. The error counts from
+    FIRST_CURVE on, each sample until the next.
     Raises ValueError where the run ends before the first curve.
     """
     behind = time[:-1] >= FIRST_CURVE - 1e-9
@@ -41,23 +53,23 @@ def maneuver(time: Array, speed: Array, reference: float, left_error: Array, dis
         raise ValueError(f"the run ends at {time[-1]:g} s, before the first curve at {FIRST_CURVE:g} s")
     held, span = left_error[:-1][behind], np.diff(time)[behind]
     return Maneuver(
-        3.6 * float(reference - speed.min()),
-        3.6 * float(speed.max() - reference),
-        float(np.sqrt(np.sum(held**2 * span) / np.sum(span))),
+        KMH * float(reference - speed.min()),  # (D1)
+        KMH * float(speed.max() - reference),
+        float(np.sqrt(np.sum(held**2 * span) / np.sum(span))),  # (D2)
         float(distance[-1] - distance[0]),
     )
 
 
 def improvement(better: float, worse: float) -> float:
-    """By what share `better` is smaller than `worse`."""
+    """Return the share by which `better` is smaller than `worse`."""
     return 1.0 - better / worse
 
 
 def time_to_speed(time: Array, speed: Array, target: float, share: float = 0.99) -> float:
-    """When [s] a speed, shape (n,), first reaches a share of the target, linear between samples.
+    """Return the time [s] at which a speed, shape (n,), first reaches a share of the target [m/s].
 
-    NaN if it never does.     The wheels' references are those of a car without slip; the car itself stays
-    0.1 % below its target.
+    It is linear between samples, and NaN where the speed never reaches it. The wheels' references are those
+    of a car without slip; the car itself stays 0.1 % below its target.
     """
     above = np.flatnonzero(speed >= share * target)
     if not len(above):
@@ -69,19 +81,19 @@ def time_to_speed(time: Array, speed: Array, target: float, share: float = 0.99)
 
 
 def density_for(torque: float, p: TwoMotorVehicle.Parameters, speed: float) -> float:
-    """The air density [kg/m3] at which (2) gives a torque [N.m] at a speed [m/s]."""
-    return torque / (0.5 * p.frontal_area * p.drag_coefficient * speed**2 * p.wheel_radius)
+    """Return the air density [kg/m3] at which the air gives a torque [N.m] at a speed [m/s]."""
+    return torque / (0.5 * p.frontal_area * p.drag_coefficient * speed**2 * p.wheel_radius)  # (D3)
 
 
 def acceleration_of_rise(speed: float, rise_time: float) -> float:
-    """The mean acceleration, in g, of a rise from 10 % to 90 % of a speed [m/s] in a time [s]."""
-    return 0.8 * speed / rise_time / GRAVITY
+    """Return the mean acceleration, in g, of a rise from 10 % to 90 % of a speed [m/s] in a time [s]."""
+    return 0.8 * speed / rise_time / GRAVITY  # (D4)
 
 
 def grip_limit(p: TwoMotorVehicle.Parameters, torque_limit: float) -> float:
-    """The acceleration, in g, of two wheels at their torque limit [N.m]: mass and wheels, no resistance."""
+    """Return the acceleration, in g, of two wheels at their torque limit [N.m], without resistance."""
     inertia = p.mass + 2.0 * p.wheel_inertia / p.wheel_radius**2
-    return 2.0 * torque_limit / p.wheel_radius / inertia / GRAVITY
+    return 2.0 * torque_limit / p.wheel_radius / inertia / GRAVITY  # (D5)
 
 
 class Claim(NamedTuple):
@@ -93,7 +105,7 @@ class Claim(NamedTuple):
 
 
 def claims(p: TwoMotorVehicle.Parameters, speed: float, torque_limit: float) -> list[Claim]:
-    """The paper's numbers that are not reproducible, for a car, a speed [m/s] and a torque limit [N.m]."""
+    """Return the paper's numbers that are not reproducible, for a speed [m/s] and a torque limit [N.m]."""
     way = speed * RUN_TIME
     needed = [acceleration_of_rise(speed, rise) for rise in (0.50, 0.55)]
     able = grip_limit(p, torque_limit)
@@ -101,13 +113,13 @@ def claims(p: TwoMotorVehicle.Parameters, speed: float, torque_limit: float) -> 
         Claim(
             "distance in 10 s, for the two controllers",
             "460.2 / 354.4 m",
-            f"{RUN_TIME:g} s at {3.6 * speed:.0f} km/h are {way:.1f} m; the printed ones take "
+            f"{RUN_TIME:g} s at {KMH * speed:.0f} km/h are {way:.1f} m; the printed ones take "
             f"{460.2 / speed:.1f} and {354.4 / speed:.1f} s",
         ),
         Claim(
             "rise time, for the two controllers",
             "0.50 / 0.55 s",
-            f"10 % to 90 % of {3.6 * speed:.0f} km/h need {needed[0]:.1f} and {needed[1]:.1f} g; the printed "
+            f"10 % to 90 % of {KMH * speed:.0f} km/h need {needed[0]:.1f} and {needed[1]:.1f} g; the printed "
             f"torque, gear and mass give at most {able:.2f} g",
         ),
         Claim(
@@ -132,6 +144,6 @@ def claims(p: TwoMotorVehicle.Parameters, speed: float, torque_limit: float) -> 
             "torque of the air",
             "93.2 N.m",
             f"needs a density of {density_for(93.2, p, speed):.3f} kg/m3, which the paper does not print; "
-            f"1.2 kg/m3 give {1.2 / density_for(93.2, p, speed) * 93.2:.2f} N.m",
+            f"{AIR_DENSITY} kg/m3 give {AIR_DENSITY / density_for(93.2, p, speed) * 93.2:.2f} N.m",
         ),
     ]

@@ -1,32 +1,35 @@
 """Rider: follows a speed reference with throttle and brake, and counts what it could not follow.
 
-The paper has a human rider; everything here is chosen. A PI law in km/h and %, e = v_r - v:
+Source: chosen. The paper (Dardanelli et al., IEEE CDC-ECC 2011) has a human rider. Speeds are in km/h.
 
-    u = K_p e + I + K_v v_r                                     pedal demand [%]                    (R1)
-    I' = (K_p/T_i) e, except where that pushes u further past a pedal's end                         (R2)
-    u > 0:     throttle = min(u, 100), no brake                                                     (R3)
-    u < -u_c:  brake = min(K_b (-u - u_c), F_max), no throttle; between, it coasts                  (R4)
-    v_r = 0 and v < v_s:  stopped. Throttle 0, brake F_s, I = 0, until v_r > 0                      (R5)
-    d_r' = v_r/3.6                                              distance of the reference [m]       (R6)
-    d_m' = max(0, e - b)/3.6,  t_m' = 1 where e > b             distance and time missed            (R7)
+    u = K_p e + I + K_v v_r,   e = v_r - v                      pedal demand [%]                  (R1)
+    I' = (K_p/T_i) e, except where that pushes u further past a pedal's end                       (R2)
+    u > 0:     throttle = min(u, 100), no brake                                                   (R3)
+    u < -u_c:  brake = min(K_b (-u - u_c), F_max) [N], no throttle; between, it coasts            (R4)
+    v_r = 0 and v < v_s:  stopped. Throttle 0, brake F_s, I = 0, until v_r > 0                    (R5)
+    d_r' = v_r/3.6                                              distance of the reference [m]     (R6)
+    d_m' = max(0, e - b)/3.6,  t_m' = 1 where e > b             distance [m] and time [s] missed  (R7)
 
 K_v is the throttle that a speed needs in steady state. (R4) leaves a band without either pedal, so that
 throttle and brake do not alternate. (R2) stops the integral in saturation, so that a reference out of reach
-leaves nothing to unwind. e > b means slower than the cycle's tolerance allows: 3.2 km/h are the 2 mph of the
-legal band of the UDDS. (R7) counts only what is missed; a vehicle that is too fast misses nothing.
+leaves nothing to unwind. e > b means slower than the cycle's tolerance allows. (R7) counts only what is
+missed; a vehicle that is too fast misses nothing.
 
+published: nothing.
 chosen: K_p = 20 % per km/h, T_i = 4 s, K_v = 0.8 % per km/h, u_c = 5 %, K_b = 8.5 N per % (braking then
 answers like the scooter's full drive force of 850 N), F_max = 1500 N, v_s = 0.5 km/h, F_s = 600 N (holds a
-200 kg vehicle on a slope of 30 %), b = 3.2 km/h.
+200 kg vehicle on a slope of 30 %), b = 3.2 km/h (2 mph, the legal band of the UDDS).
 
-At the start no pedal is pressed and the integral is 0. A reference below 0 counts as 0.
+At the edges: a reference below 0 counts as 0. At the start no pedal is pressed and the integral is 0.
+
+Step: the sample at t_k takes u with the integral so far, then adds to the integrals of (R2), (R6) and (R7) by
+explicit Euler, order 1 in dt.
 """
 
 from __future__ import annotations
 
 from .base import Model, record, var
-
-KMH = 3.6  # km/h in 1 m/s
+from .constants import KMH
 
 
 class Rider(Model):
@@ -37,7 +40,7 @@ class Rider(Model):
 
     @record
     class Parameters:
-        """How the rider reacts; all chosen."""
+        """The rider's reactions; all chosen."""
 
         proportional_gain: float = var(20.0, "%.h/km", "Pedal per speed error (K_p)", min=0.0)
         integral_time: float = var(4.0, "s", "Integral time (T_i)", min=1e-3)
@@ -58,7 +61,7 @@ class Rider(Model):
 
     @record
     class State:
-        """Integrals and what this sample shows."""
+        """Integrals, and the values that this sample outputs."""
 
         integral: float = var(0.0, "%", "Integral of the PI law (I)")
         distance_reference: float = var(0.0, "m", "Distance of the reference (d_r)", min=0.0)
@@ -70,7 +73,7 @@ class Rider(Model):
 
     @record
     class Outputs:
-        """The two pedals and how well the cycle is followed."""
+        """The two pedals, and the shortfall against the cycle."""
 
         throttle: float = var(0.0, "%", "Throttle", min=0.0, max=100.0, nominal=10.0, initially=())
         brake_force: float = var(0.0, "N", "Force of the brakes", min=0.0, nominal=100.0, initially=())
@@ -87,12 +90,12 @@ class Rider(Model):
 
     @staticmethod
     def initial(p: Rider.Parameters, u: Rider.Inputs) -> Rider.State:
-        """No pedal pressed, nothing counted."""
+        """Return a state with no pedal pressed and nothing counted."""
         return Rider.State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, max(0.0, u.speed_reference) - u.speed)
 
     @staticmethod
     def step(p: Rider.Parameters, x: Rider.State, u: Rider.Inputs, dt: float) -> Rider.State:
-        """The sample at t_k: press a pedal, count what `dt` [s] of this speed misses."""
+        """Press a pedal at t_k, and count what `dt` [s] of this speed misses."""
         v_r = max(0.0, u.speed_reference)
         e = v_r - u.speed
         if v_r <= 0.0 and u.speed < p.standstill_speed:  # (R5)
@@ -108,7 +111,7 @@ class Rider(Model):
 
     @staticmethod
     def outputs(p: Rider.Parameters, x: Rider.State) -> Rider.Outputs:
-        """What the last sample decided and counted."""
+        """Return the pedals and the counts of the last sample."""
         return Rider.Outputs(
             x.throttle, x.brake_force, x.speed_error, x.distance_reference, x.distance_missed, x.time_missed
         )
@@ -117,7 +120,7 @@ class Rider(Model):
 def _pedals(
     p: Rider.Parameters, integral: float, v_r: float, e: float, dt: float
 ) -> tuple[float, float, float]:
-    """The next integral [%], throttle [%] and brake force [N]."""
+    """Return the next integral [%], the throttle [%] and the brake force [N]."""
     demand = p.proportional_gain * e + integral + p.speed_feedforward * v_r  # (R1)
     lowest = -p.coasting_band - p.maximum_brake_force / p.brake_gain
     if not ((demand >= 100.0 and e > 0.0) or (demand <= lowest and e < 0.0)):

@@ -1,9 +1,11 @@
-"""Friction of a tire on four roads, by Burckhardt's formula.
+"""Road friction: the friction coefficient of a tire on four roads, by Burckhardt's formula.
 
-    mu(lambda) = th_1 (1 - exp(-th_2 lambda)) - th_3 lambda      for 0 <= lambda <= 1                 (F1)
+Source: Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme, 1993.
 
-Source: Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme, 1993; the standard table of th_1, th_2, th_3
-(published). Odd in lambda, mu(-lambda) = -mu(lambda): a wheel faster than the vehicle drives it (chosen).
+    mu(lambda) = th_1 (1 - exp(-th_2 lambda)) - th_3 lambda [1]      for 0 <= lambda <= 1        (F1)
+
+published: th_1, th_2, th_3 of the standard table, for all four roads.
+chosen: mu is odd in lambda, mu(-lambda) = -mu(lambda): a wheel faster than the vehicle drives it.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from typing import NamedTuple
 
 
 class Road(IntEnum):
-    """What the tires roll on."""
+    """The surface that the tires roll on."""
 
     DRY = 0
     WET = 1
@@ -23,7 +25,7 @@ class Road(IntEnum):
 
 
 class Friction(NamedTuple):
-    """th_1, th_2, th_3 of (F1)."""
+    """th_1, th_2 and th_3 of (F1) [1]."""
 
     peak: float
     steepness: float
@@ -39,7 +41,7 @@ FRICTION = {
 
 
 def road_named(name: str) -> Road:
-    """The road of a name: dry, wet, cobble or snow. Raises ValueError for any other."""
+    """Return the road of a name: dry, wet, cobble or snow. Raises ValueError for any other."""
     try:
         return Road[name.upper()]
     except KeyError:
@@ -48,13 +50,13 @@ def road_named(name: str) -> Road:
 
 
 def friction_coefficient(road: Road, slip: float) -> float:
-    """mu [1] at a slip in [-1, 1]."""
+    """Return mu [1] at a slip in [-1, 1]."""
     th_1, th_2, th_3 = FRICTION[road]
     x = abs(slip)
     return copysign(th_1 * (1.0 - exp(-th_2 * x)) - th_3 * x, slip)  # (F1)
 
 
 def friction_slope(road: Road, slip: float) -> float:
-    """d mu/d lambda [1] at a slip in [-1, 1]; even in the slip."""
+    """Return d mu/d lambda [1] at a slip in [-1, 1]; even in the slip."""
     th_1, th_2, th_3 = FRICTION[road]
     return th_1 * th_2 * exp(-th_2 * abs(slip)) - th_3

@@ -1,38 +1,34 @@
 """Scooter: the longitudinal motion of a light electric two-wheeler and its motor drive (EMD).
 
 Source: Dardanelli et al., "Speed and acceleration controllers for a light electric two-wheeled vehicle",
-IEEE CDC-ECC 2011. SI inside; the throttle is in %.
+IEEE CDC-ECC 2011. SI inside; the throttle g is in %.
 
-    M dv/dt = F_w - F_br - F_f                                                                       (1)
-    F_f = 1/2 rho CxA v^2 + r_v v + M g (C_r cos th + sin th)                                        (2)
-    F_f on a level road, th = 0: the road load of the force map                                      (3)
-    tau_m F_w' = (g/100) fade(v) F_max(v) - F_w                       the drive's current loop       (S1)
-    F_max(v) = min(F_b, 100 mu R(v)/(v_kmh - c))                      the force map                  (S2)
-    fade(v)  = 1 below 49.5 km/h, 0 above 50.5 km/h, linear between   the drive's speed limit        (S3)
-    w_f = v/r_f,  w_r = v/r_r                                         pure rolling                   (S4)
-    P = F_w v/eta + P_0                                               at the battery terminals       (S5)
-    d' = v
+    M dv/dt = F_w - F_br - F_f                                        motion [N]                     (1)
+    F_f = 1/2 rho CxA v^2 + r_v v + M g (C_r cos th + sin th)         resistance [N]                 (2)
+    R(v) = F_f of a level road, th = 0                                road load of (S2) [N]          (3)
+    tau_m F_w' = (g/100) fade(v) F_max(v) - F_w                       the drive's current loop      (S1)
+    F_max(v) = min(F_b, 100 mu R(v)/(v_kmh - c))                      the force map [N]             (S2)
+    fade(v)  = 1 below 49.5 km/h, 0 above 50.5 km/h, linear between   the drive's speed limit       (S3)
+    w_f = v/r_f,  w_r = v/r_r                                         pure rolling [rad/s]          (S4)
+    P = F_w v/eta + P_0                                               at the battery terminals [W]  (S5)
+    d' = v                                                            distance [m]
 
-Deviation: the paper defines F_g = M g cos th and multiplies it by (C_r cos th + sin th) in (2); the double
-cosine is a misprint, the form above is used.
+(S2) is derived from the published gain mu and pole, c = 17.03 km/h ("Derivations" in
+docs/systems/scooter.md). It is valid from 24 to 49 km/h and belongs to the drive: R(v) is that of the default
+parameters, the vehicle that the drive was matched to, whatever the parameters are set to.
 
-Force map. At a working point of (1)-(3), pole [rad/s] times gain [m/s per %] is F_max/(100 M). The
-published gain mu = 0.46 km/h per % and pole 0.03 Hz at 30 km/h (published) therefore give F_max(30 km/h) =
-482 N. A gain that is the same at every speed means v_kmh = c + mu g in steady state, which is (S2); c =
-17.03 km/h makes it pass through that force. Then the pole gets slower with speed, as in the paper's Fig. 3.
-Valid from 24 to 49 km/h; below some 23 km/h the boost is limited to F_b. The map belongs to the drive: R(v)
-in (S2) is the road load (3) of the vehicle the drive was matched to, the one of the default parameters,
-whatever they are set to.
+Deviations: the paper defines F_g = M g cos th and multiplies it by (C_r cos th + sin th) in (2); the double
+cosine is a misprint.
 
-published: mu, the pole, the clipping of the throttle to 0..100 %, the limit of 50 km/h, v = (w_f r_f + w_r
-r_r)/2.
+published: mu = 0.46 km/h per % and the pole 0.03 Hz, both at 30 km/h, the clipping of the throttle to
+0..100 %, the limit of 50 km/h, v = (w_f r_f + w_r r_r)/2.
 chosen: M = 200 kg, rho = 1.2 kg/m3, CxA = 0.60 m2, r_v = 10 N.s/m, C_r = 0.014, F_b = 850 N, tau_m = 5 ms,
 the fade of 1 km/h, r_f = r_r = 0.2 m, eta = 0.85, P_0 = 40 W, g = 9.81 m/s2.
 
 At the edges: the vehicle never moves backward. At v = 0 it stands as long as the drive does not overcome
-brake, grade and rolling resistance, and its acceleration is then 0. Negative brake forces count as none. No
-slip, so that the paper's v = (w_f r_f + w_r r_r)/2 holds exactly. No regeneration: the brake is a friction
-brake, and P is never below P_0. At the start the drive gives no force.
+brake, grade and rolling resistance, and its acceleration is then 0. Negative brake forces count as none.
+There is no slip, so that the paper's v = (w_f r_f + w_r r_r)/2 holds exactly. There is no regeneration: the
+brake is a friction brake, and P is never below P_0. At the start the drive gives no force.
 
 Step: (S1) is solved exactly for a command that changes linearly over the step, (1) by Heun's rule: order 2 in
 dt, stable for any dt/tau_m. A step of 10 ms is exact to about 1e-5 m/s away from the corners of the map.
@@ -45,9 +41,8 @@ from functools import cached_property
 from math import cos, exp, pi, sin
 
 from .base import Model, record, var
+from .constants import AIR_DENSITY, GRAVITY, KMH
 
-GRAVITY = 9.81  # m/s2
-KMH = 3.6  # km/h in 1 m/s
 MATCHED_GAIN = 0.46  # km/h per %, published
 MATCHED_POLE = 0.03  # Hz at MATCHED_SPEED, published
 MATCHED_SPEED = 30.0  # km/h, published
@@ -58,10 +53,10 @@ class Scooter(Model):
 
     @record
     class Parameters:
-        """Vehicle and drive; the docstring of the module says which are published."""
+        """Vehicle and drive; the module's docstring marks what is published."""
 
         mass: float = var(200.0, "kg", "Vehicle and rider", min=1.0)
-        air_density: float = var(1.2, "kg/m3", "Density of the air", min=0.0)
+        air_density: float = var(AIR_DENSITY, "kg/m3", "Density of the air", min=0.0)
         drag_area: float = var(0.60, "m2", "Drag coefficient times frontal area", min=0.0)
         viscous_resistance: float = var(10.0, "N.s/m", "Resistance proportional to the speed", min=0.0)
         rolling_resistance: float = var(0.014, "1", "Rolling resistance coefficient", min=0.0)
@@ -82,22 +77,22 @@ class Scooter(Model):
 
         @cached_property
         def fade_end(self) -> float:
-            """Speed [m/s] from which the drive gives no force."""
+            """Speed [m/s] from which on the drive gives no force, (S3)."""
             return (self.speed_limit + 0.5 * self.speed_limit_band) / KMH
 
         @cached_property
         def fade_slope(self) -> float:
-            """Change of the fade with the speed [s/m]."""
+            """Fall of the fade with the speed [s/m], (S3)."""
             return KMH / self.speed_limit_band
 
         @cached_property
         def force_map(self) -> ForceMap:
-            """The map of the drive, matched to the vehicle of the default parameters."""
+            """The map (S2) of the drive, matched to the vehicle of the default parameters."""
             return _matched_map(Scooter.Parameters())
 
     @record
     class Inputs:
-        """What the drive, the brake and the road do."""
+        """The commands to drive and brake, and the slope of the road."""
 
         throttle: float = var(0.0, "%", "Throttle request, clipped to 0..100 % by the drive")
         brake_force: float = var(0.0, "N", "Force of the friction brakes", min=0.0)
@@ -113,7 +108,7 @@ class Scooter(Model):
 
     @record
     class Outputs:
-        """What the sensors of the vehicle and of the bench see."""
+        """The quantities that the sensors of the vehicle and of the bench measure."""
 
         speed: float = var(0.0, "m/s", "Speed", min=0.0, nominal=10.0)
         acceleration: float = var(0.0, "m/s2", "Acceleration", depends=("brake_force", "road_grade"))
@@ -125,12 +120,12 @@ class Scooter(Model):
 
     @staticmethod
     def initial(p: Scooter.Parameters, u: Scooter.Inputs) -> Scooter.State:
-        """Rolling at `initial_speed`, without force."""
+        """Return the state of rolling at `initial_speed`, without force."""
         return Scooter.State(p.initial_speed, 0.0, 0.0)
 
     @staticmethod
     def step(p: Scooter.Parameters, x: Scooter.State, u: Scooter.Inputs, dt: float) -> Scooter.State:
-        """The state after `dt` [s] of held inputs."""
+        """Return the state after `dt` [s] of held inputs."""
         v, f = x.speed, x.drive_force
         m = p.mass
         hold = _held_forces(p, u)
@@ -155,19 +150,19 @@ class Scooter(Model):
 
     @staticmethod
     def outputs(p: Scooter.Parameters, x: Scooter.State, u: Scooter.Inputs) -> Scooter.Outputs:
-        """What is measured at this instant; brake and grade act on the acceleration at once."""
+        """Return the quantities measured at this instant; brake and grade act on the acceleration at once."""
         v, f = x.speed, x.drive_force
         a = (f - _resistance(p, v) - _held_forces(p, u)) / p.mass  # (1)
         if v <= 0.0 and a < 0.0:
             a = 0.0
-        power = f * v / p.drive_efficiency + p.auxiliary_power  # (S5)
         w_f, w_r = v / p.front_wheel_radius, v / p.rear_wheel_radius  # (S4)
+        power = f * v / p.drive_efficiency + p.auxiliary_power  # (S5)
         return Scooter.Outputs(v, a, w_f, w_r, power, f, x.distance)
 
 
 @dataclass(frozen=True)
 class ForceMap:
-    """(S2) with its numbers: F = peak (static + v (viscous + drag v))/(v - offset), everything in SI."""
+    """Numbers of (S2) below its limit, in SI: F = peak (static + v (viscous + drag v))/(v - offset)."""
 
     peak: float
     offset: float
@@ -177,12 +172,12 @@ class ForceMap:
 
 
 def level_road_load(p: Scooter.Parameters, v: float) -> float:
-    """(3): the resistance [N] at speed v [m/s] on a level road."""
-    return p.mass * GRAVITY * p.rolling_resistance + _resistance(p, v)
+    """Return the resistance [N] at speed v [m/s] on a level road."""
+    return p.mass * GRAVITY * p.rolling_resistance + _resistance(p, v)  # (3)
 
 
 def _matched_map(p: Scooter.Parameters) -> ForceMap:
-    """The map with the published gain and pole for a vehicle of parameters p."""
+    """Return the map (S2) that has the published gain and pole in a vehicle of parameters p."""
     gain, v0 = MATCHED_GAIN / KMH, MATCHED_SPEED / KMH
     force = 100.0 * p.mass * 2.0 * pi * MATCHED_POLE * gain
     offset = v0 - 100.0 * gain * level_road_load(p, v0) / force
@@ -191,7 +186,7 @@ def _matched_map(p: Scooter.Parameters) -> ForceMap:
 
 
 def maximum_force(p: Scooter.Parameters, v: float) -> float:
-    """(S2), (S3): the force [N] of full throttle at speed v [m/s]."""
+    """Return the force [N] of full throttle at speed v [m/s], by (S2) and (S3)."""
     k = p.force_map
     force = p.maximum_force
     if v > k.offset:
@@ -203,16 +198,17 @@ def maximum_force(p: Scooter.Parameters, v: float) -> float:
 
 
 def _command(p: Scooter.Parameters, v: float, throttle: float) -> float:
+    """Return the command of (S1), (g/100) fade(v) F_max(v) [N]."""
     return 0.01 * min(100.0, max(0.0, throttle)) * maximum_force(p, v)
 
 
 def _resistance(p: Scooter.Parameters, v: float) -> float:
-    """The part of (2) that depends on the speed."""
-    return v * (p.viscous_resistance + p.drag * v)
+    """Return the part of (2) that depends on the speed [N]."""
+    return v * (p.viscous_resistance + p.drag * v)  # (2)
 
 
 def _held_forces(p: Scooter.Parameters, u: Scooter.Inputs) -> float:
-    """Brake, rolling resistance and grade [N]: what a step holds."""
+    """Return brake, rolling resistance and grade [N]: the forces that a step holds."""
     th = u.road_grade
     weight = p.mass * GRAVITY
     return max(0.0, u.brake_force) + weight * (p.rolling_resistance * cos(th) + sin(th))  # (2)

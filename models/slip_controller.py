@@ -1,36 +1,34 @@
-"""SlipController: keeps the slip of two braked wheels at its set point (the brake controller, both wheels).
+"""SlipController: keeps the slip of two braked wheels at its set point.
 
 Source: Tanelli, Prandini, Codecà, Moia, Savaresi, "Analysing the interaction between braking control and
 speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. T_s = dt.
 
-    lambda_i = (v - w_i r)/v  with the speed v that the controller believes;  0 where v = 0            (2)
-    e_i = lambda* - lambda_i
-    T_i = k(v) (K_p e_i + K_d e_i') + I_i,  clipped to 0..T_max                                      (C1)
-    I_i' = k(v) K_i e_i, not where T_i is clipped and e_i drives it further out                      (C2)
-    k(v) = clip(v/v_0, k_min, 1)                                                                     (C3)
+    lambda_i = (v - w_i r)/v  with the speed v that the controller believes;  0 where v = 0  [1]     (2)
+    T_i = k(v) (K_p e_i + K_d e_i') + I_i,  clipped to 0..T_max,  e_i = lambda* - lambda_i   [N.m]  (C1)
+    I_i' = k(v) K_i e_i, not where T_i is clipped and e_i drives it further out                     (C2)
+    k(v) = clip(v/v_0, k_min, 1)                                                                    (C3)
 
-With K_i = K_d = 0 and k_min = 1, (C1) is the proportional control (9) of the propositions.
-
-Strategies of the paper's Table I:
+With K_i = K_d = 0 and k_min = 1, (C1) is the proportional control (9) of the propositions. The strategies of
+the paper's Table I:
 
     KNOWN_SPEED       both wheels by (C1), v the true speed                                          (a)
     ESTIMATED_SPEED   both wheels by (C1), v = v_hat of the wheels                                   (b)
     FRONT_ONLY        front wheel by (C1), v = v_hat; the rear wheel is free and gives v_hat         (c)
     FRONT_COMPENSATED the same, and T_r = -J w_r' on the rear wheel, so that it runs without slip    (d)
 
-Both wheels locked: v_hat = 0, the slip is 0/0 and counts as 0. A guard such as max(v_hat, eps) would make it
-1, release the brakes and hide what the paper shows of (b).
+One controller has both wheels ("Units" in docs/systems/braking.md says why). (d) differences w_r over one
+sample, and so acts through the same actuator as any torque.
 
-published: set point 0.22 for both wheels, the strategies, a PID for the maneuvers.
-chosen, calibrated to Table I: K_p = 3000 N.m, K_i = 25000 N.m/s, K_d = 0, k_min = 0.09, v_0 = 100 km/h,
-T_max = 2000 N.m, J = 0.79 kg.m2, r = 0.25 m; below 2 m/s of believed speed the torques are frozen, since
-lambda' goes as 1/v. (d) differences w_r over one sample, and so acts through the same actuator as any torque.
+published: lambda* = 0.22 for both wheels, the strategies, a PID for the maneuvers.
+chosen: calibrated to Table I, K_p = 3000 N.m, K_i = 25000 N.m/s, K_d = 0, k_min = 0.09, v_0 = 100 km/h,
+T_max = 2000 N.m, J = 0.79 kg.m2, r = 0.25 m.
 
-One controller has both wheels, not one for each: the strategies are rules about the pair (which wheel is
-controlled, which one tells the speed), and both slips must be taken from the same believed speed.
+At the edges: both wheels locked is v_hat = 0, and the slip 0/0 counts as 0 ("0/0" in
+docs/systems/braking.md). Below 2 m/s of believed speed the torques are held, since lambda' goes as 1/v
+(chosen). The first sample has no difference: it counts as 0.
 
-Step: C2 by the forward rectangle after T_i is decided, C1's e' by the backward difference. The first sample
-has no difference: it counts as 0.
+Step: the sample at t_k; e' in (C1) by the backward difference, (C2) by the forward rectangle after T_i is
+decided, order 1 in dt.
 """
 
 from __future__ import annotations
@@ -39,12 +37,13 @@ from enum import IntEnum
 from functools import cached_property
 
 from .base import Model, record, var
+from .constants import KMH
 
-KMH = 3.6  # km/h in 1 m/s
+TARGET_SLIP = 0.22  # lambda*, published
 
 
 class Strategy(IntEnum):
-    """Which wheels are controlled, and by which speed: the rows of Table I."""
+    """The strategies of Table I: the wheels that are controlled, and the speed that is believed."""
 
     KNOWN_SPEED = 0
     ESTIMATED_SPEED = 1
@@ -62,10 +61,10 @@ class SlipController(Model):
 
     @record
     class Parameters:
-        """Tuning and strategy; the docstring of the module says which are published."""
+        """Tuning and strategy; the module's docstring marks what is published."""
 
         strategy: Strategy = var(KNOWN_SPEED, "", "Which wheels are controlled, and by which speed")
-        target_slip: float = var(0.22, "1", "Set point of both wheels (lambda*)", min=0.0, max=1.0)
+        target_slip: float = var(TARGET_SLIP, "1", "Set point of both wheels (lambda*)", min=0.0, max=1.0)
         proportional_gain: float = var(3000.0, "N.m", "Torque per slip at v_0 (K_p)", min=0.0)
         integral_gain: float = var(25000.0, "N.m/s", "Torque per slip and second at v_0 (K_i)", min=0.0)
         derivative_gain: float = var(0.0, "N.m.s", "Torque per slip rate at v_0 (K_d)", min=0.0)
@@ -83,7 +82,7 @@ class SlipController(Model):
 
     @record
     class Inputs:
-        """What the sensors and the estimator say."""
+        """The values of the sensors and of the estimator."""
 
         front_wheel_speed: float = var(0.0, "rad/s", "Speed of the front wheel (w_f)", nominal=100.0)
         rear_wheel_speed: float = var(0.0, "rad/s", "Speed of the rear wheel (w_r)", nominal=100.0)
@@ -92,7 +91,7 @@ class SlipController(Model):
 
     @record
     class State:
-        """Integrals at the next sample, and what this sample shows."""
+        """Integrals at the next sample, and the values that this sample outputs."""
 
         front_integral: float = var(0.0, "N.m", "Integral of the front wheel at the next sample (I_f)")
         rear_integral: float = var(0.0, "N.m", "Integral of the rear wheel at the next sample (I_r)")
@@ -106,7 +105,7 @@ class SlipController(Model):
 
     @record
     class Outputs:
-        """The torques and what explains them."""
+        """The torques, and the slips and the speed that explain them."""
 
         front_torque: float = var(0.0, "N.m", "Torque asked of the front brake (T_f)", min=0.0, nominal=100.0)
         rear_torque: float = var(0.0, "N.m", "Torque asked of the rear brake (T_r)", min=0.0, nominal=100.0)
@@ -116,14 +115,14 @@ class SlipController(Model):
 
     @staticmethod
     def initial(p: SlipController.Parameters, u: SlipController.Inputs) -> SlipController.State:
-        """No torque, empty integrals."""
+        """Return a state without torque, with empty integrals."""
         return SlipController.State()
 
     @staticmethod
     def step(
         p: SlipController.Parameters, x: SlipController.State, u: SlipController.Inputs, dt: float
     ) -> SlipController.State:
-        """The sample at t_k: slips from the believed speed, then the torques."""
+        """Take the slips at t_k from the believed speed, then compute the torques."""
         v = u.speed if p.strategy == KNOWN_SPEED else u.speed_estimate
         w_f, w_r = u.front_wheel_speed, u.rear_wheel_speed
         slip_f, slip_r = believed_slip(v, w_f * p.wheel_radius), believed_slip(v, w_r * p.wheel_radius)
@@ -143,19 +142,19 @@ class SlipController(Model):
 
     @staticmethod
     def outputs(p: SlipController.Parameters, x: SlipController.State) -> SlipController.Outputs:
-        """What the last sample decided."""
+        """Return the torques of the last sample, with its slips and its speed."""
         return SlipController.Outputs(x.front_torque, x.rear_torque, x.front_slip, x.rear_slip, x.speed)
 
 
 def believed_slip(v: float, rim: float) -> float:
-    """(2) for a believed speed and a wheel's circumferential speed [m/s]; 0 where v <= 0."""
-    return (v - rim) / v if v > 0.0 else 0.0
+    """Return the slip [1] for a believed speed and a wheel's circumferential speed [m/s]; 0 where v <= 0."""
+    return (v - rim) / v if v > 0.0 else 0.0  # (2)
 
 
 def _control(
     p: SlipController.Parameters, k: float, slip: float, slip_rate: float, integral: float, dt: float
 ) -> tuple[float, float]:
-    """(C1) and (C2): a wheel's torque, and its integral at the next sample [N.m]."""
+    """Return a wheel's torque, and its integral at the next sample [N.m]."""
     e = p.target_slip - slip
     demand = k * (p.proportional_gain * e - p.derivative_gain * slip_rate) + integral  # (C1)
     torque = _clip(demand, p.maximum_torque)

@@ -1,15 +1,20 @@
-"""Turn geometry: how fast the two rear wheels of a car roll when its front wheels are steered.
+"""Turn geometry: the speeds at which the two rear wheels of a car roll when its front wheels are steered.
 
-    R = L/tan(d)                                     from the turning center to the middle of the axle
-    v_1/v = (R - d_w/2)/R = (L - (d_w/2) tan(d))/L   left wheel
-    v_2/v = (R + d_w/2)/R = (L + (d_w/2) tan(d))/L   right wheel
+Source: B. Gasbaoui, A. Nasri (2012), as in `electronic_differential`; index 1 is the left wheel.
 
-Index 1 is the left wheel and d > 0 steers to the left (ISO 8855), so that in a left-hand curve the left wheel
-is the slow one. d = 0 is R = infinity, and both ratios are 1.
+    R = L/tan(d)                                     turning center to the middle of the axle [m]  (9)
+    v_1/v = (R - d_w/2)/R = (L - (d_w/2) tan(d))/L   left wheel [1]                               (10)
+    v_2/v = (R + d_w/2)/R = (L + (d_w/2) tan(d))/L   right wheel [1]                              (11)
 
-At the edge: the steering has a stop. An angle beyond it counts as the stop, and what is no number stays no
-number. With R < d_w/2 the turning center would lie between the wheels and the inner one run backward; no
-steering does that, so a stop that allows it is refused.
+d > 0 [rad] steers to the left (ISO 8855), so that in a left-hand curve the left wheel is the slow one. d = 0
+is R = infinity, and both ratios are 1.
+
+published: L = 2.5 m, d_w = 1.5 m, the models' defaults.
+chosen: the stop of the steering.
+
+At the edges: an angle beyond the stop counts as the stop, and NaN stays NaN. With R < d_w/2 the turning
+center would lie between the wheels and the inner one run backward; no steering does that, so a stop that
+allows it is refused.
 """
 
 from __future__ import annotations
@@ -18,7 +23,7 @@ from math import tan
 
 
 def check_steering(wheelbase: float, track: float, limit: float) -> None:
-    """Refuse a stop of the steering `limit` [rad] at which R <= track/2. Raises ValueError."""
+    """Raise ValueError for a stop of the steering `limit` [rad] at which R <= track/2 (lengths in m)."""
     shift = 0.5 * track * tan(limit)
     if shift >= wheelbase:
         raise ValueError(
@@ -29,7 +34,7 @@ def check_steering(wheelbase: float, track: float, limit: float) -> None:
 
 
 def wheel_ratios(wheelbase: float, track: float, limit: float, angle: float) -> tuple[float, float]:
-    """v_1/v and v_2/v at a steering angle [rad], which counts as `limit` beyond it."""
+    """Return v_1/v and v_2/v at a steering angle [rad], which counts as `limit` [rad] beyond it."""
     d = limit if angle > limit else -limit if angle < -limit else angle
-    shift = 0.5 * track * tan(d) / wheelbase
-    return 1.0 - shift, 1.0 + shift
+    shift = 0.5 * track * tan(d) / wheelbase  # (d_w/2)/R by (9)
+    return 1.0 - shift, 1.0 + shift  # (10), (11)

@@ -3,36 +3,33 @@
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012. Index 1 is the left wheel.
 
-    T_in   = J_v dw_v/dt                                       inertia                              (1)
-    T_aero = 1/2 rho A C_x R^3 w^2                             air                                  (2)
-    T_slope = M g R sin(a)                                     slope                                (3)
-    T_tyre = M g R f_v cos(a)                                  rolling                              (4)
-    T_res  = T_aero + T_slope + T_tyre                         resistance at the wheels             (5)
+    T_aero = 1/2 rho A C_x R^3 w^2                             air [N.m]                           (2)
+    T_slope = M g R sin(a)                                     slope [N.m]                         (3)
+    T_tire = M g R f_v cos(a)                                  rolling [N.m]                       (4)
+    T_res  = T_aero + T_slope + T_tire                         resistance at the wheels [N.m]      (5)
+    J_e dw_i/dt = T_i - R F_i                                  wheels, w in rad/s                 (V1)
+    F_i  = F_z mu(s_i),   F_z = M g cos(a)/4                   force of a tire [N]                (V2)
+    mu(s) = th_1 (1 - exp(-th_2 s)) - th_3 s for s >= 0        odd in s; see `road_friction` [1]  (V3)
+    s_i  = (w_i R - v_i)/max(|v_i|, |w_i R|, 0.5 m/s)          slip [1]                           (V4)
+    v_1,2 = v (1 -+ (d_w/2) tan(d)/L)                          `turn_geometry` [m/s]              (V5)
+    M dv/dt = F_1 + F_2 - T_res/R                              car [N]                            (V6)
 
-(3) and (4) are printed without R; cos(a) in (4) is ours. The paper has one wheel and no slip. Here the wheels
-and the car are apart, so that the two drives can disagree:
-
-    J_e dw_i/dt = T_i - R F_i                                                                       (V1)
-    F_i  = F_z mu(s_i),   F_z = M g cos(a)/4                                                        (V2)
-    mu(s) = th_1 (1 - exp(-th_2 s)) - th_3 s for s >= 0, odd in s     (Burckhardt, dry asphalt)     (V3)
-    s_i  = (w_i R - v_i)/max(|v_i|, |w_i R|, 0.5 m/s)                                               (V4)
-    v_1,2 = v (1 -+ (d_w/2) tan(d)/L)                          `turn_geometry`                      (V5)
-    M dv/dt = F_1 + F_2 - T_res/R                                                                   (V6)
+Deviations: (3) and (4) are printed without R; cos(a) in (4) is ours. The paper has one wheel without slip,
+(1) T_in = J_v dw_v/dt; (V1)-(V6) replace it, so that the two drives can disagree. Table 1 of the paper swaps
+the labels of L and d_w. f_e = 0.001, which the paper lists without an equation, is not used.
 
 published: M = 3904 kg, J_e = 7.07 kg.m2, R = 0.36 m, A = 3.48 m2, C_x = K_d = 0.46, f_v = 0.01, L = 2.5 m,
-d_w = 1.5 m (the paper's Table 1 swaps the labels of these two).
+d_w = 1.5 m.
 chosen: rho = 1.2 kg/m3, (V1)-(V6), a quarter of the weight on each rear wheel, dry asphalt, g = 9.81 m/s2,
 the stop of the steering, 45 deg. The paper's 93.2 N.m of air at 60 km/h would need rho = 1.164 kg/m3.
-Not used: f_e = 0.001, which the paper lists without an equation.
 
 At the edges: below 0.1 m/s rolling resistance is in proportion to the speed, so that it stops the car and
 does not push it backward; on a slope the car rolls back. Angles of the steering beyond its stop count as the
-stop. Beyond a slip of 100 % the tyre gives what it gives there.
+stop. Beyond a slip of 100 % a tire has the friction of 100 %.
 
-Numerics: at speed v a wheel's slip follows its torque with the rate lambda = R^2 F_z mu'(0)/(J_e v), 318 1/s
-at 60 km/h and 10 600 1/s at a standstill. A step is divided into inner steps of Heun's rule with
-h lambda <= 0.6 (the rule is stable below 2): 6 of them for 10 ms at 60 km/h, 177 at a standstill. Torques are
-held over the step.
+Step: Heun's rule, order 2, with torques held over the step and inner steps h as short as the rate of the
+slip needs, h lambda <= 0.6: 6 of them for 10 ms at 60 km/h, 177 at a standstill ("Derivations" in
+docs/systems/multi_drive.md).
 """
 
 from __future__ import annotations
@@ -41,9 +38,11 @@ from functools import cached_property
 from math import ceil, cos, exp, expm1, pi, sin
 
 from .base import Model, record, var
+from .constants import AIR_DENSITY, GRAVITY
+from .road_friction import FRICTION, Road
 from .turn_geometry import check_steering, wheel_ratios
 
-GRAVITY = 9.81  # m/s2
+ASPHALT = FRICTION[Road.DRY]
 SLOWEST = 0.5  # m/s, below which slip is measured against this speed
 ROLLING_SPEED = 0.1  # m/s, from which rolling resistance is complete
 RATE_STEP = 0.6  # largest inner step times the wheel's rate
@@ -56,7 +55,7 @@ class TwoMotorVehicle(Model):
 
     @record
     class Parameters:
-        """The car; the docstring of the module says which are published."""
+        """The car; the module's docstring marks what is published."""
 
         mass: float = var(3904.0, "kg", "Mass of the car (M)", min=1.0)
         wheel_inertia: float = var(7.07, "kg.m2", "Inertia of a wheel with its motor (J_e)", min=1e-3)
@@ -64,13 +63,13 @@ class TwoMotorVehicle(Model):
         wheelbase: float = var(2.5, "m", "Distance between the axles (L)", min=0.1)
         track: float = var(1.5, "m", "Distance between the rear wheels (d_w)", min=0.1)
         steering_limit: float = var(pi / 4.0, "rad", "Stop of the steering", min=0.0, max=1.57)
-        air_density: float = var(1.2, "kg/m3", "Density of the air (rho)", min=0.0)
+        air_density: float = var(AIR_DENSITY, "kg/m3", "Density of the air (rho)", min=0.0)
         frontal_area: float = var(3.48, "m2", "Frontal area (A)", min=0.0)
         drag_coefficient: float = var(0.46, "1", "Drag coefficient (C_x)", min=0.0)
         rolling_coefficient: float = var(0.01, "1", "Rolling resistance (f_v)", min=0.0)
-        friction_peak: float = var(1.2801, "1", "First number of (V3) (th_1)", min=0.0)
-        friction_rise: float = var(23.99, "1", "Second number of (V3) (th_2)", min=0.0)
-        friction_fall: float = var(0.52, "1", "Third number of (V3) (th_3)", min=0.0)
+        friction_peak: float = var(ASPHALT.peak, "1", "First number of (V3) (th_1)", min=0.0)
+        friction_rise: float = var(ASPHALT.steepness, "1", "Second number of (V3) (th_2)", min=0.0)
+        friction_fall: float = var(ASPHALT.fall, "1", "Third number of (V3) (th_3)", min=0.0)
         initial_speed: float = var(0.0, "m/s", "Speed at the start, on a level straight road")
 
         @cached_property
@@ -80,14 +79,14 @@ class TwoMotorVehicle(Model):
 
         @cached_property
         def stiffness(self) -> float:
-            """R^2 F_z mu'(0)/J_e on a level road [m/s2]: by |v|, the rate at which slip settles."""
+            """R^2 F_z mu'(0)/J_e on a level road [m/s2]: by |v|, the rate [1/s] at which slip settles."""
             load = 0.25 * self.mass * GRAVITY
             slope = self.friction_peak * self.friction_rise - self.friction_fall
             return self.wheel_radius**2 * load * slope / self.wheel_inertia
 
     @record
     class Inputs:
-        """What the drives, the driver and the road do."""
+        """The torques of the drives, the steering and the slope of the road."""
 
         left_torque: float = var(0.0, "N.m", "Torque at the left wheel (T_1)", nominal=1000.0)
         right_torque: float = var(0.0, "N.m", "Torque at the right wheel (T_2)", nominal=1000.0)
@@ -96,7 +95,7 @@ class TwoMotorVehicle(Model):
 
     @record
     class State:
-        """Motion."""
+        """The motion of car and wheels."""
 
         left_wheel_speed: float = var(0.0, "rad/s", "Speed of the left wheel (w_1)")
         right_wheel_speed: float = var(0.0, "rad/s", "Speed of the right wheel (w_2)")
@@ -105,7 +104,7 @@ class TwoMotorVehicle(Model):
 
     @record
     class Outputs:
-        """What the sensors of the car and of the bench see."""
+        """The quantities that the sensors of the car and of the bench measure."""
 
         left_wheel_speed: float = var(0.0, "rad/s", "Speed of the left wheel (w_1)", nominal=10.0)
         right_wheel_speed: float = var(0.0, "rad/s", "Speed of the right wheel (w_2)", nominal=10.0)
@@ -140,10 +139,10 @@ class TwoMotorVehicle(Model):
 
     @staticmethod
     def initial(p: TwoMotorVehicle.Parameters, u: TwoMotorVehicle.Inputs) -> TwoMotorVehicle.State:
-        """At `initial_speed` in equilibrium on a level straight road: the wheels slip as that takes.
+        """Return the equilibrium at `initial_speed` on a level straight road: the wheels slip as that takes.
 
         Raises ValueError for a geometry that cannot turn as far as the steering does, and for a speed at
-        which the tyres cannot overcome the resistance.
+        which the tires cannot overcome the resistance.
         """
         check_steering(p.wheelbase, p.track, p.steering_limit)
         wheel = _equilibrium_wheel_speed(p, p.initial_speed)
@@ -153,7 +152,7 @@ class TwoMotorVehicle(Model):
     def step(
         p: TwoMotorVehicle.Parameters, x: TwoMotorVehicle.State, u: TwoMotorVehicle.Inputs, dt: float
     ) -> TwoMotorVehicle.State:
-        """The state after `dt` [s] of held inputs."""
+        """Return the state after `dt` [s] of held inputs."""
         parts = max(1, ceil(dt / LONGEST - 1e-9))
         for _ in range(parts):
             x = _advance(p, x, u, dt / parts)
@@ -163,9 +162,9 @@ class TwoMotorVehicle(Model):
     def outputs(
         p: TwoMotorVehicle.Parameters, x: TwoMotorVehicle.State, u: TwoMotorVehicle.Inputs
     ) -> TwoMotorVehicle.Outputs:
-        """What is measured at this instant; steering and slope act at once."""
+        """Return the quantities measured at this instant; steering and slope act at once."""
         v, r = x.speed, p.wheel_radius
-        c_1, c_2 = wheel_ratios(p.wheelbase, p.track, p.steering_limit, u.steering_angle)
+        c_1, c_2 = wheel_ratios(p.wheelbase, p.track, p.steering_limit, u.steering_angle)  # (V5)
         s_1, s_2 = slip(x.left_wheel_speed * r, v * c_1), slip(x.right_wheel_speed * r, v * c_2)
         load = 0.25 * p.mass * GRAVITY * cos(u.road_grade)
         f_1, f_2 = load * friction(p, s_1), load * friction(p, s_2)  # (V2)
@@ -188,29 +187,30 @@ class TwoMotorVehicle(Model):
 
 
 def resistance_torques(p: TwoMotorVehicle.Parameters, v: float, grade: float) -> tuple[float, float, float]:
-    """(2), (3), (4): torques [N.m] of air, slope and rolling at speed v [m/s] on a slope [rad]."""
+    """Return the torques [N.m] of air, slope and rolling at speed v [m/s] on a slope [rad]."""
     r, weight = p.wheel_radius, p.mass * GRAVITY
     share = min(1.0, max(-1.0, v / ROLLING_SPEED))
-    aero = p.drag * v * abs(v) * r
-    return aero, weight * r * sin(grade), weight * r * p.rolling_coefficient * cos(grade) * share
+    aero = p.drag * v * abs(v) * r  # (2)
+    slope = weight * r * sin(grade)  # (3)
+    return aero, slope, weight * r * p.rolling_coefficient * cos(grade) * share  # (4)
 
 
 def slip(rim: float, ground: float) -> float:
-    """(V4): slip of a wheel whose rim has the speed `rim` over a ground of speed `ground` [m/s]."""
-    return (rim - ground) / max(abs(ground), abs(rim), SLOWEST)
+    """Return the slip of a wheel whose rim has the speed `rim` over a ground of speed `ground` [m/s]."""
+    return (rim - ground) / max(abs(ground), abs(rim), SLOWEST)  # (V4)
 
 
 def friction(p: TwoMotorVehicle.Parameters, s: float) -> float:
-    """(V3): friction coefficient at a slip."""
+    """Return the friction coefficient [1] at a slip, any number."""
     size = min(1.0, abs(s))
-    mu = -p.friction_peak * expm1(-p.friction_rise * size) - p.friction_fall * size
+    mu = -p.friction_peak * expm1(-p.friction_rise * size) - p.friction_fall * size  # (V3)
     return mu if s >= 0.0 else -mu
 
 
 def _advance(
     p: TwoMotorVehicle.Parameters, x: TwoMotorVehicle.State, u: TwoMotorVehicle.Inputs, dt: float
 ) -> TwoMotorVehicle.State:
-    """Heun's rule over `dt` [s], in as many inner steps as the rate of the slip needs."""
+    """Return the state after `dt` [s] of Heun's rule, in as many inner steps as the slip's rate needs."""
     w_1, w_2, v, d = x.left_wheel_speed, x.right_wheel_speed, x.speed, x.distance
     r = p.wheel_radius
     c_1, c_2 = wheel_ratios(p.wheelbase, p.track, p.steering_limit, u.steering_angle)  # (V5)
@@ -258,7 +258,7 @@ def _advance(
 
 
 def _equilibrium_wheel_speed(p: TwoMotorVehicle.Parameters, v: float) -> float:
-    """Speed [rad/s] at which two equal wheels hold v [m/s] on a level straight road: (V2)-(V6) at rest."""
+    """Return the speed [rad/s] of two wheels that hold v [m/s] on a level straight road, by (V2)-(V6)."""
     if v == 0.0:
         return 0.0
     aero, _, rolling = resistance_torques(p, v, 0.0)
@@ -268,7 +268,7 @@ def _equilibrium_wheel_speed(p: TwoMotorVehicle.Parameters, v: float) -> float:
         fall = p.friction_peak * p.friction_rise * exp(-p.friction_rise * s) - p.friction_fall
         if fall <= 0.0 or s >= 1.0:
             raise ValueError(
-                f"initial_speed = {v} m/s needs a friction of {wanted:.4g}, more than the tyres give"
+                f"initial_speed = {v} m/s needs a friction of {wanted:.4g}, more than the tires give"
             )
         s += (wanted - friction(p, s)) / fall
     if abs(v) < SLOWEST * (1.0 - s):

@@ -1,34 +1,32 @@
 """TwoWheelerBraking: a two-wheeler that brakes in a straight line, with the slip of both wheels.
 
 Source: Tanelli, Prandini, Codecà, Moia, Savaresi, "Analysing the interaction between braking control and
-speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. SI throughout;
-forces that brake are positive.
+speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. SI; forces that brake are positive.
 
-    J w_f' = r F_xf - T_bf,   J w_r' = r F_xr - T_br,   m v' = -F_xf - F_xr - 1/2 rho CdA v^2        (1)
-    F_xi = F_zi mu(lambda_i)                                                                         (2)
-    lambda_i = (v - w_i r)/max(v, w_i r),   0 where both are 0                                       (3)
-    mu(lambda) = th_1 (1 - exp(-lambda th_2)) - lambda th_3,  odd in lambda   (road_friction)        (4)
-    F_zf = m g l_r/l - (m h/l) v',   F_zr = m g l_f/l + (m h/l) v',   l = l_f + l_r                  (5)
-    d' = v
+    J w_f' = r F_xf - T_bf,   J w_r' = r F_xr - T_br,   m v' = -F_xf - F_xr - 1/2 rho CdA v^2     (1)
+    F_xi = F_zi mu(lambda_i)                                        tire force [N], i = f, r      (2)
+    lambda_i = (v - w_i r)/max(v, w_i r),   0 where both are 0      slip [1]                      (3)
+    mu(lambda) = th_1 (1 - exp(-lambda th_2)) - lambda th_3         odd; see `road_friction` [1]  (4)
+    F_zf = m g l_r/l - (m h/l) v',   F_zr = m g l_f/l + (m h/l) v',   l = l_f + l_r        [N]    (5)
+    v' = -(g l_r mu_f + g l_f mu_r + (l/m) 1/2 rho CdA v^2)/(l - h (mu_f - mu_r))     [m/s2]     (S1)
+    d' = v                                                          distance [m]
 
-(1), (2) and (5) are linear in v' for given slips, and are solved for it:
+(S1) is (1), (2) and (5), which are linear in v' for given slips, solved for it.
 
-    v' = -(g l_r mu_f + g l_f mu_r + (l/m) 1/2 rho CdA v^2)/(l - h (mu_f - mu_r))                     (S1)
+Deviations: the air drag in (1); the max in (3) and the odd mu, for a wheel faster than the vehicle (the paper
+has lambda >= 0 only).
 
-Beyond the paper: the air drag in (1); the max in (3) and the odd mu, for a wheel faster than the vehicle (the
-paper has lambda >= 0 only); w_i >= 0, a locked wheel stands until the road overcomes its brake; F_zi >= 0,
-where (S1) asks for less, the other wheel carries all the weight; T_bi >= 0.
+published: v_0 = 100 km/h, Burckhardt's table of mu.
+chosen: calibrated to the paper's Table I, m = 200 kg, r = 0.25 m, l_f = 0.834 m, l_r = 0.516 m, h = 0.506 m,
+J = 0.79 kg.m2 per wheel, CdA = 0.388 m2; rho = 1.2 kg/m3, dry road, g = 9.81 m/s2.
 
-published: v_0 = 100 km/h. Burckhardt's table of mu.
-chosen, calibrated to the paper's Table I: m = 200 kg, r = 0.25 m, l_f = 0.834 m, l_r = 0.516 m, h = 0.506 m,
-J = 0.79 kg.m2 per wheel, CdA = 0.388 m2, rho = 1.2 kg/m3, dry road, g = 9.81 m/s2.
-
-The end of the stop: lambda' goes as 1/v, so a slip is not defined at standstill. From `stop_speed` (1 m/s)
-on, the vehicle keeps the deceleration a and the slips that it has there: it stands after another v^2/(2 a),
-and the brakes have no say any more. `stopping_distance` is known from then on, and 0 before.
+At the edges: w_i >= 0, a locked wheel stands until the road overcomes its brake. F_zi >= 0: where (S1) asks
+for less, the other wheel carries all the weight. A negative torque counts as 0. From `stop_speed` on the
+vehicle keeps its deceleration a and its slips, so that it stands after another v^2/(2 a) ("The end of the
+stop" in docs/systems/braking.md); `stopping_distance` is known from then on, and 0 before.
 
 Step: Heun's rule with inner steps of at most 0.2 ms, held torques; shorter where the wheels are so light that
-their fastest eigenvalue, r^2 m g mu'(0)/(J v) at v = `stop_speed`, asks for it. Order 2 in the inner step.
+their fastest eigenvalue, r^2 m g mu'(0)/(J v) at v = `stop_speed`, needs it. Order 2 in the inner step.
 """
 
 from __future__ import annotations
@@ -39,11 +37,13 @@ from math import ceil, exp
 from typing import NamedTuple
 
 from .base import Model, record, var
+from .constants import AIR_DENSITY, GRAVITY, KMH
 from .road_friction import FRICTION, Road, friction_slope
 
-GRAVITY = 9.81  # m/s2
-KMH = 3.6  # km/h in 1 m/s
 INNER_STEP = 2e-4  # s, at most
+START_SPEED = 100.0  # km/h, published
+FREE_ROLL = START_SPEED / KMH  # m/s
+WHEEL_RADIUS = 0.25  # m
 
 Rates = Callable[[float, float, float], tuple[float, float, float]]
 
@@ -53,19 +53,19 @@ class TwoWheelerBraking(Model):
 
     @record
     class Parameters:
-        """Vehicle, road and start; the docstring of the module says which are published."""
+        """Vehicle, road and start; the module's docstring marks what is published."""
 
         road: Road = var(Road.DRY, "", "What the tires roll on")
-        initial_speed: float = var(100.0, "km/h", "Speed at the start, wheels rolling freely", min=0.0)
+        initial_speed: float = var(START_SPEED, "km/h", "Speed at the start, wheels rolling freely", min=0.0)
         stop_speed: float = var(1.0, "m/s", "Speed from which slips and deceleration are kept", min=0.1)
         mass: float = var(200.0, "kg", "Vehicle and rider (m)", min=1.0)
-        wheel_radius: float = var(0.25, "m", "Rolling radius of both wheels (r)", min=0.01)
+        wheel_radius: float = var(WHEEL_RADIUS, "m", "Rolling radius of both wheels (r)", min=0.01)
         wheel_inertia: float = var(0.79, "kg.m2", "Inertia of each wheel (J)", min=1e-3)
         front_distance: float = var(0.834, "m", "Center of mass to the front axle (l_f)", min=0.01)
         rear_distance: float = var(0.516, "m", "Center of mass to the rear axle (l_r)", min=0.01)
         center_height: float = var(0.506, "m", "Height of the center of mass (h)", min=0.0)
         drag_area: float = var(0.388, "m2", "Drag coefficient times frontal area (CdA)", min=0.0)
-        air_density: float = var(1.2, "kg/m3", "Density of the air (rho)", min=0.0)
+        air_density: float = var(AIR_DENSITY, "kg/m3", "Density of the air (rho)", min=0.0)
 
         @cached_property
         def wheelbase(self) -> float:
@@ -97,19 +97,19 @@ class TwoWheelerBraking(Model):
 
         @cached_property
         def rates(self) -> Rates:
-            """(1)-(5) for these parameters: see `_rates`."""
+            """The right side of (1) for these parameters, the function of `_rates`."""
             return _rates(self)
 
     @record
     class Inputs:
-        """What the brakes do."""
+        """The torques of the brakes."""
 
         front_torque: float = var(0.0, "N.m", "Front brake torque; negative counts as 0", nominal=100.0)
         rear_torque: float = var(0.0, "N.m", "Rear brake torque; negative counts as 0", nominal=100.0)
 
     @record
     class State:
-        """Motion, and how the stop ends."""
+        """Motion, and the end of the stop."""
 
         speed: float = var(0.0, "m/s", "Speed (v)", min=0.0)
         front_rim_speed: float = var(0.0, "m/s", "Circumferential speed of the front wheel (w_f r)", min=0.0)
@@ -120,25 +120,25 @@ class TwoWheelerBraking(Model):
 
     @record
     class Outputs:
-        """What sensors and the bench see; their starts are those of a free roll at 100 km/h."""
+        """The quantities measured on vehicle and bench; the starts are those of a free roll at 100 km/h."""
 
-        speed: float = var(100.0 / 3.6, "m/s", "Speed (v)", min=0.0, nominal=10.0)
+        speed: float = var(FREE_ROLL, "m/s", "Speed (v)", min=0.0, nominal=10.0)
         deceleration: float = var(0.8981481481481483, "m/s2", "Deceleration (-v')", nominal=10.0)
         distance: float = var(0.0, "m", "Distance travelled (d)", min=0.0, nominal=10.0)
         stopping_distance: float = var(
             0.0, "m", "Distance from the start to standstill; 0 before it is known", min=0.0, nominal=10.0
         )
         front_wheel_speed: float = var(
-            100.0 / 3.6 / 0.25, "rad/s", "Front wheel speed (w_f)", min=0.0, nominal=100.0
+            FREE_ROLL / WHEEL_RADIUS, "rad/s", "Front wheel speed (w_f)", min=0.0, nominal=100.0
         )
         rear_wheel_speed: float = var(
-            100.0 / 3.6 / 0.25, "rad/s", "Rear wheel speed (w_r)", min=0.0, nominal=100.0
+            FREE_ROLL / WHEEL_RADIUS, "rad/s", "Rear wheel speed (w_r)", min=0.0, nominal=100.0
         )
         front_rim_speed: float = var(
-            100.0 / 3.6, "m/s", "Circumferential speed of the front wheel (w_f r)", min=0.0, nominal=10.0
+            FREE_ROLL, "m/s", "Circumferential speed of the front wheel (w_f r)", min=0.0, nominal=10.0
         )
         rear_rim_speed: float = var(
-            100.0 / 3.6, "m/s", "Circumferential speed of the rear wheel (w_r r)", min=0.0, nominal=10.0
+            FREE_ROLL, "m/s", "Circumferential speed of the rear wheel (w_r r)", min=0.0, nominal=10.0
         )
         front_slip: float = var(0.0, "1", "Slip of the front wheel (lambda_f)", min=-1.0, max=1.0)
         rear_slip: float = var(0.0, "1", "Slip of the rear wheel (lambda_r)", min=-1.0, max=1.0)
@@ -153,7 +153,7 @@ class TwoWheelerBraking(Model):
 
     @staticmethod
     def initial(p: TwoWheelerBraking.Parameters, u: TwoWheelerBraking.Inputs) -> TwoWheelerBraking.State:
-        """Free rolling at `initial_speed`. Raises ValueError where that is not above `stop_speed`."""
+        """Return free rolling at `initial_speed`. Raises ValueError where that is not above `stop_speed`."""
         v = p.initial_speed / KMH
         if v <= p.stop_speed:
             raise ValueError(
@@ -169,7 +169,7 @@ class TwoWheelerBraking(Model):
         u: TwoWheelerBraking.Inputs,
         dt: float,
     ) -> TwoWheelerBraking.State:
-        """The state after `dt` [s] of held torques."""
+        """Return the state after `dt` [s] of held torques."""
         if x.stop_deceleration > 0.0:
             return _come_to_rest(x, dt)
         n = ceil(dt / p.inner_step - 1e-9)
@@ -183,7 +183,7 @@ class TwoWheelerBraking(Model):
 
     @staticmethod
     def outputs(p: TwoWheelerBraking.Parameters, x: TwoWheelerBraking.State) -> TwoWheelerBraking.Outputs:
-        """What is measured at this instant."""
+        """Return the quantities measured at this instant."""
         v, rim_f, rim_r = x.speed, x.front_rim_speed, x.rear_rim_speed
         a, force_f, force_r = p.rates(v, rim_f, rim_r)
         if x.stop_deceleration > 0.0:
@@ -208,23 +208,23 @@ class TwoWheelerBraking(Model):
 
 
 def slip(v: float, rim: float) -> float:
-    """(3) for a vehicle speed and a wheel's circumferential speed [m/s], both >= 0; in [-1, 1]."""
+    """Return the slip in [-1, 1] for a vehicle speed and a wheel's circumferential speed [m/s], both >= 0."""
     fastest = max(v, rim)
-    return (v - rim) / fastest if fastest > 0.0 else 0.0
+    return (v - rim) / fastest if fastest > 0.0 else 0.0  # (3)
 
 
 def loads(p: TwoWheelerBraking.Parameters, acceleration: float) -> tuple[float, float]:
-    """(5): F_zf and F_zr [N] at v' [m/s2]; a wheel in the air leaves the whole weight to the other."""
+    """Return F_zf and F_zr [N] at v' [m/s2]; a wheel in the air leaves the whole weight to the other."""
     weight = p.mass * GRAVITY
-    front = min(weight, max(0.0, p.front_weight - p.load_transfer * acceleration))
+    front = min(weight, max(0.0, p.front_weight - p.load_transfer * acceleration))  # (5)
     return front, weight - front
 
 
 def _rates(p: TwoWheelerBraking.Parameters) -> Rates:
-    """The function (v, w_f r, w_r r) [m/s] -> (v' [m/s2], F_xf, F_xr [N]).
+    """Return the function (v, w_f r, w_r r) [m/s] -> (v' [m/s2], F_xf, F_xr [N]), by (2)-(5) and (S1).
 
-    Called a hundred times a step of 10 ms: (3) and (4) stand in it twice instead of in a function, and its
-    constants are bound once for a set of parameters.
+    It is called a hundred times a step of 10 ms: (3) and (4) stand in it twice instead of in a function, and
+    its constants are bound once for a set of parameters.
     """
     th_1, th_2, th_3 = FRICTION[p.road]
     m, k, drag = p.mass, p.load_transfer, 0.5 * p.air_density * p.drag_area
@@ -260,7 +260,7 @@ def _rates(p: TwoWheelerBraking.Parameters) -> Rates:
 
 
 class _Motion(NamedTuple):
-    """After some inner steps: speeds [m/s], way [m], the last deceleration [m/s2] and the time left [s]."""
+    """Speeds [m/s], distance [m], last deceleration [m/s2] and time left [s] after some inner steps."""
 
     speed: float
     front: float
@@ -278,7 +278,7 @@ def _integrate(
     h: float,
     n: int,
 ) -> _Motion:
-    """(1) by n Heun steps of h [s], or as many as it takes down to `stop_speed`."""
+    """Return the motion after n Heun steps of h [s] of (1), or as many as it takes down to `stop_speed`."""
     rates, stop, r = p.rates, p.stop_speed, p.wheel_radius
     force_rate = h * r * r / p.wheel_inertia  # of w r, per N
     brake_f, brake_r = h * r * torque_f / p.wheel_inertia, h * r * torque_r / p.wheel_inertia
@@ -306,7 +306,7 @@ def _integrate(
 
 
 def _come_to_rest(x: TwoWheelerBraking.State, dt: float) -> TwoWheelerBraking.State:
-    """The last meters: constant deceleration and slips."""
+    """Return the state after `dt` [s] of the last meters: constant deceleration and slips."""
     v, a = x.speed, x.stop_deceleration
     if v <= a * dt:
         return TwoWheelerBraking.State(0.0, 0.0, 0.0, x.stopping_distance, a, x.stopping_distance)

@@ -3,30 +3,30 @@
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012. Index 1 is the left wheel.
 
-    u_i = K_p E_i + K_d dE_i/dt + K_i integral E_i dt                                       (6), (8)
-    E_1 = e_1 + kappa e_2,  E_2 = e_2 + kappa e_1,  e_i = w_i,ref - w_i                     (7), (8)
+    u_i = K_p E_i + K_d dE_i/dt + K_i integral E_i dt              torques [N.m]             (6), (8)
+    E_1 = e_1 + kappa e_2,  E_2 = e_2 + kappa e_1                  combined errors [rad/s]   (7), (8)
+    e_i = w_i,ref - w_i                                            wheel speed errors [rad/s]
 
-Deviations
-- (6) prints 1/K_i where (8) prints K_i. K_i is used; `reciprocal_integral` is the literal form of (6), whose
-  integral is 1/K_i = 0.0025 N.m/rad: next to none.
-- (8) does not define the cross error. E_i above is chosen, with kappa = 0.5: common errors see gains of
-  (1 + kappa), differences of the two wheels gains of (1 - kappa). kappa = 0 is the PID (6) for each wheel;
-  kappa = 1 would leave the difference of the wheels without control.
-- K_d is 0, where the paper prints 2500 N.m.s2/rad. Differenced over 10 ms that is K_d/dt = 250 000 N.m per
-  rad/s. A wheel on the road gives way by 1 rad/s for R^2 F_z mu'(0)/v = 2250 N.m (at 60 km/h), within 3 ms:
-  the sampled loop multiplies a change of the error by about -110 each sample, and the torque jumps from limit
-  to limit. It begins to at K_d = 2: the proportional part, K_p (1 + kappa) = 1800 N.m.s/rad against those
-  2250, takes nearly all that a loop of 100 Hz can carry.
+and as sampled at t_k, where dt is the time since the last sample and dE/dt the backward difference:
 
-The sample at t_k (backward difference for dE/dt; `dt` is the time since the last sample)
+    v_i = K_p E_i + I_i + K_d (E_i - E_i[k-1])/dt,   u_i = v_i limited to -+T_max                (C1)
+    I_i[k+1] = I_i + K_i E_i dt   unless v_i lies beyond a limit and E_i drives it further       (C2)
 
-    v_i = K_p E_i + I_i + K_d (E_i - E_i[k-1])/dt,   u_i = v_i limited to -+T_max                        (C1)
-    I_i[k+1] = I_i + K_i E_i dt   unless v_i lies beyond a limit and E_i drives it further               (C2)
+Common errors see gains of (1 + kappa), differences of the two wheels gains of (1 - kappa). kappa = 0 is the
+PID (6) for each wheel; kappa = 1 would leave the difference of the wheels without control.
 
-published: K_p = 1200, K_i = 400, T_max = 247 N.m x 10 x 93 % = 2297.1 N.m at the wheel. chosen: kappa,
-K_d = 0, conditional integration, that errors are wheel speeds in rad/s and the u_i torques at the wheels.
+Deviations: (8) does not define the cross error; E_i is chosen. (6) prints 1/K_i where (8) prints K_i, which
+is used; `reciprocal_integral` is the literal form of (6). K_d is 0, where the paper prints 2500 N.m.s2/rad:
+at 100 Hz that throws the torque from limit to limit ("Derivations" in docs/systems/multi_drive.md).
 
-At the start the integrals hold `initial_torque`, so that a start in equilibrium stays there.
+published: K_p = 1200, K_i = 400, T_max = 247 N.m x 10 x 93 % = 2297.1 N.m at the wheel.
+chosen: kappa = 0.5, K_d = 0, conditional integration, that errors are wheel speeds in rad/s and the u_i
+torques at the wheels.
+
+At the edges: at the start the integrals hold `initial_torque`, so that a start in equilibrium stays there.
+The first sample has no difference: it counts as 0.
+
+Step: the sample at t_k; (C2) is the forward rectangle, order 1 in dt.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class WheelSpeedController(Model):
 
     @record
     class Parameters:
-        """Gains and limits; the docstring of the module says which are published."""
+        """Gains and limits; the module's docstring marks what is published."""
 
         proportional_gain: float = var(1200.0, "N.m.s/rad", "K_p", min=0.0)
         integral_gain: float = var(400.0, "N.m/rad", "K_i", min=1e-6)
@@ -62,7 +62,7 @@ class WheelSpeedController(Model):
 
     @record
     class Inputs:
-        """What is wanted and what is."""
+        """References and measured speeds of the wheels."""
 
         left_reference: float = var(0.0, "rad/s", "Reference of the left wheel", nominal=10.0)
         right_reference: float = var(0.0, "rad/s", "Reference of the right wheel", nominal=10.0)
@@ -96,7 +96,7 @@ class WheelSpeedController(Model):
     def initial(
         p: WheelSpeedController.Parameters, u: WheelSpeedController.Inputs
     ) -> WheelSpeedController.State:
-        """In equilibrium: no errors, and the integrals give `initial_torque`."""
+        """Return an equilibrium: no errors, and integrals that give `initial_torque`."""
         torque = _limited(p.initial_torque, p.torque_limit)
         return WheelSpeedController.State(torque, torque, 0.0, 0.0, 0.0, 0.0, torque, torque, False)
 
@@ -107,10 +107,10 @@ class WheelSpeedController(Model):
         u: WheelSpeedController.Inputs,
         dt: float,
     ) -> WheelSpeedController.State:
-        """The sample at t_k, `dt` [s] after the last one."""
+        """Return the torques and the next integrals at t_k, `dt` [s] after the last sample."""
         e_1 = u.left_reference - u.left_wheel_speed
         e_2 = u.right_reference - u.right_wheel_speed
-        combined_1 = e_1 + p.coupling * e_2  # (8)
+        combined_1 = e_1 + p.coupling * e_2  # (7), (8)
         combined_2 = e_2 + p.coupling * e_1
         i_1, u_1 = _pid(p, x.left_integral, x.left_combined if x.started else combined_1, combined_1, dt)
         i_2, u_2 = _pid(p, x.right_integral, x.right_combined if x.started else combined_2, combined_2, dt)
@@ -120,15 +120,15 @@ class WheelSpeedController(Model):
     def outputs(
         p: WheelSpeedController.Parameters, x: WheelSpeedController.State
     ) -> WheelSpeedController.Outputs:
-        """What the last sample decided."""
+        """Return the torques and errors of the last sample."""
         return WheelSpeedController.Outputs(x.left_torque, x.right_torque, x.left_error, x.right_error)
 
 
 def _pid(
     p: WheelSpeedController.Parameters, integral: float, before: float, error: float, dt: float
 ) -> tuple[float, float]:
-    """The integral of the next sample and the torque of this one [N.m]."""
-    wanted = p.proportional_gain * error + integral + p.derivative_gain * (error - before) / dt
+    """Return the integral of the next sample and the torque of this one [N.m]."""
+    wanted = p.proportional_gain * error + integral + p.derivative_gain * (error - before) / dt  # (6), (8)
     torque = _limited(wanted, p.torque_limit)  # (C1)
     if wanted == torque or (wanted - torque) * error < 0.0:
         integral += p.applied_integral_gain * error * dt  # (C2)

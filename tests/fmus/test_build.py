@@ -116,6 +116,7 @@ def test_the_archive_holds_what_is_needed_and_nothing_else(tmp_path):
         "models/__init__.py",
         "models/base.py",
         "models/battery.py",
+        "models/constants.py",
     ]
     assert {f for f in files if not f.startswith("resources/")} == {
         "modelDescription.xml",

@@ -78,7 +78,7 @@ def test_a_start_in_equilibrium_stays_there() -> None:
 
 
 def test_energy_over_a_ride() -> None:
-    """Work of the drives = kinetic energy of car and wheels + air, rolling, climbing, slip of the tyres."""
+    """Work of the drives = kinetic energy of car and wheels + air, rolling, climbing, slip of the tires."""
     x = start = cruising()
     dt, work, lost = 1e-3, 0.0, 0.0
     for k in range(3000):
@@ -93,7 +93,7 @@ def test_energy_over_a_ride() -> None:
             left = y.left_force * (0.36 * s.left_wheel_speed - s.speed)
             right = y.right_force * (0.36 * s.right_wheel_speed - s.speed)
             lost += 0.5 * dt * (resisting + left + right)
-            assert left >= 0.0 <= right  # a tyre takes energy whichever way it slips
+            assert left >= 0.0 <= right  # a tire takes energy whichever way it slips
         x = after
 
     def kinetic(s: TwoMotorVehicle.State) -> float:
@@ -182,7 +182,7 @@ def test_on_a_slope_without_torque_it_rolls_back() -> None:
     assert x.speed == pytest.approx(-9.81 * (math.sin(0.05) - 0.01) * 2.0 * 3904.0 / 4013.1, rel=0.02)
 
 
-def test_more_torque_than_the_tyre_holds_spins_the_wheel_alone() -> None:
+def test_more_torque_than_the_tire_holds_spins_the_wheel_alone() -> None:
     x = drive(cruising(), TwoMotorVehicle.Inputs(8000.0, HOLDING), 0.5)
     y = TwoMotorVehicle.outputs(P, x, NOTHING)
     assert y.left_slip > 0.5
@@ -209,7 +209,7 @@ def test_every_speed_has_its_equilibrium(speed: float) -> None:
     assert (y.left_force >= 0.0) == (speed >= 0.0) or abs(y.left_force) < 1e-9
 
 
-def test_a_speed_that_the_tyres_cannot_hold_is_refused() -> None:
+def test_a_speed_that_the_tires_cannot_hold_is_refused() -> None:
     p = TwoMotorVehicle.Parameters(initial_speed=170.0, air_density=2.0)
     with pytest.raises(ValueError, match=r"initial_speed = 170.0 m/s needs a friction of 2\.4"):
         TwoMotorVehicle.initial(p, NOTHING)

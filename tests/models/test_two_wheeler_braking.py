@@ -11,8 +11,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from evcosim.models.base import violations
+from evcosim.models.constants import GRAVITY
 from evcosim.models.road_friction import Road, friction_coefficient
-from evcosim.models.two_wheeler_braking import GRAVITY, TwoWheelerBraking, loads, slip
+from evcosim.models.two_wheeler_braking import TwoWheelerBraking, loads, slip
 
 P = TwoWheelerBraking.Parameters()
 Parameters, Inputs, State = TwoWheelerBraking.Parameters, TwoWheelerBraking.Inputs, TwoWheelerBraking.State
