@@ -9,12 +9,13 @@
     resources/<Name>_<digest>/evcosim/...          the model's sources, and the user's own beside them
     resources/<Name>_<digest>/pythonfmu/...
 
-The digest is that of everything that goes in and of the code that puts it together; it also gives the guid.
-The same source gives the same bytes.
+The digest is that of everything that goes in and of the code of this package, which puts it together; it also
+gives the guid. The same sources give the same bytes.
 """
 
 from __future__ import annotations
 
+import functools
 import hashlib
 from importlib import import_module
 from pathlib import Path
@@ -26,8 +27,6 @@ from .sources import Source, collect, file_of, rewritten
 
 _OWN_LICENSE = "MIT"
 _HERE = Path(__file__).parent
-# The digest covers the code that writes the parts which are no copies.
-_WRITERS = ("build.py", "archive.py", "description.py", "sources.py", "unit_definitions.py")
 
 _ENTRY = '''\
 """The slave class of this FMU."""
@@ -56,7 +55,7 @@ ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 
 
 class Recipe(NamedTuple):
-    """What an FMU is made of, known without importing the model. `digest` is hexadecimal, 32 digits."""
+    """The ingredients of an FMU, known without importing the model; `digest` has 32 hexadecimal digits."""
 
     name: str
     module: str
@@ -68,12 +67,12 @@ class Recipe(NamedTuple):
 
     @property
     def identity(self) -> str:
-        """The name of the package inside the FMU, and so of this version of the model."""
+        """Name of the package inside the FMU, which stands for this version of the model."""
         return f"{self.name}_{self.digest[:12]}"
 
 
 def names() -> tuple[str, ...]:
-    """The FMUs that `build` and `built` know, in the catalog's order."""
+    """Return the names of the FMUs that `build` and `built` know, in the catalog's order."""
     return tuple(CATALOG)
 
 
@@ -83,7 +82,10 @@ def build(name: str, folder: str | Path) -> Path:
 
 
 def built(name: str) -> Path:
-    """The FMU of the present sources in the user's cache, built first if it is missing. Raises ValueError."""
+    """Return the FMU of the present sources in the user's cache, built first if it is missing.
+
+    Raises ValueError for an unknown name.
+    """
     recipe = _catalog_recipe(name)
     return cache.fetch(f"{recipe.identity}.fmu", lambda: _content(recipe))
 
@@ -96,11 +98,11 @@ def build_model(
     version: str = "",
     license: str = "",
 ) -> Path:
-    """Write `folder/<class name>.fmu` of a model of one's own, a subclass of evcosim.models.base.Model.
+    """Write `folder/<class name>.fmu` of a model of one's own, and return its path.
 
-    What of the user's files is embedded says `sources`; `version` and `license` are those of the model, and
-    are left out where empty. Raises ValueError for sources that cannot be embedded and for unknown units,
-    OSError.
+    `model` is a subclass of evcosim.models.base.Model. The docstring of `sources` lists which of the user's
+    files are embedded. `version` and `license` are those of the model, and are left out where empty. Raises
+    ValueError for sources that cannot be embedded and for unknown units, OSError.
     """
     module, file = file_of(model.__module__)
     recipe = _recipe(model.__qualname__, module, file, experiment or Experiment(), version, license)
@@ -129,7 +131,7 @@ def _recipe(name: str, module: str, file: Path, experiment: Experiment, version:
     for part in (
         repr(about).encode(),
         *(part for source in sources for part in (source.path.encode(), source.content)),
-        *((_HERE / file).read_bytes() for file in _WRITERS),
+        *_flat(_own_code(_HERE)),
         *_flat(runtime.binaries()),
         *_flat(runtime.python_files()),
         *_flat(runtime.licenses()),
@@ -139,12 +141,19 @@ def _recipe(name: str, module: str, file: Path, experiment: Experiment, version:
     return Recipe(name, module, sources, experiment, version, license, digest.hexdigest()[:32])
 
 
+@functools.cache
+def _own_code(folder: Path) -> dict[str, bytes]:
+    """Return every module of this package by its path: all of them may decide on the bytes of an FMU."""
+    files = sorted(folder.rglob("*.py"))
+    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
+
+
 def _flat(files: dict[str, bytes]) -> list[bytes]:
     return [part for name, content in files.items() for part in (name.encode(), content)]
 
 
 def _content(recipe: Recipe, model: type | None = None) -> bytes:
-    """The FMU's bytes. A catalog model is imported only now, for its declarations."""
+    """Return the FMU's bytes. A catalog model is imported only now, for its declarations."""
     import uuid  # this and the two below are slow to import, and a run that finds its FMUs builds nothing
 
     from .archive import packed

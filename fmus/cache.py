@@ -1,8 +1,8 @@
-"""Where built FMUs wait for the next run: one file per content, so nothing in it is ever wrong, only unused.
+"""The user's cache of built FMUs: one file per content, so that a file is never outdated, only unused.
 
-The folder is $EVCOSIM_CACHE, or else the user's cache folder: ~/.cache/evcosim on Linux ($XDG_CACHE_HOME is
-followed), ~/Library/Caches/evcosim on macOS, %LOCALAPPDATA%\\evcosim on Windows. FMUs of earlier sources stay
-in it; it can be deleted at any time.
+The folder is $EVCOSIM_CACHE if that is set, else the user's cache folder: ~/.cache/evcosim on Linux
+($XDG_CACHE_HOME is followed), ~/Library/Caches/evcosim on macOS, %LOCALAPPDATA%\\evcosim on Windows. FMUs of
+earlier sources stay in it; it can be deleted at any time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 
 
 def folder() -> Path:
-    """The cache folder, which need not exist."""
+    """Return the cache folder, which need not exist."""
     if chosen := os.environ.get("EVCOSIM_CACHE"):
         return Path(chosen)
     if sys.platform == "win32":
@@ -28,9 +28,9 @@ def folder() -> Path:
 
 
 def fetch(name: str, make: Callable[[], bytes]) -> Path:
-    """The cached file `name`, made first if it is missing.
+    """Return the cached file `name`, written first with the bytes of `make` if it is missing.
 
-    A cache that cannot be written is replaced by a temporary folder that lives as long as the process.
+    A cache that cannot be written is replaced by a temporary folder that lasts as long as the process.
     """
     path = folder() / name
     if path.is_file():
@@ -44,7 +44,7 @@ def fetch(name: str, make: Callable[[], bytes]) -> Path:
 
 
 def write(path: Path, content: bytes) -> Path:
-    """Write a file at once or not at all: two processes may write it at the same time. Raises OSError."""
+    """Write a file at once or not at all, and return its path; two processes may write it. Raises OSError."""
     import tempfile  # slow to import, and a run that finds its FMUs writes nothing
 
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -67,7 +67,7 @@ def write(path: Path, content: bytes) -> Path:
 
 @functools.cache
 def _umask() -> int:
-    """The mode that mkstemp ignores. It can only be read by setting it."""
+    """Return the process's mode mask, which mkstemp ignores; it can only be read by setting it."""
     mask = os.umask(0o022)
     os.umask(mask)
     return mask
@@ -75,6 +75,7 @@ def _umask() -> int:
 
 @functools.cache
 def _temporary(reason: str) -> Path:
+    """Make a folder that is deleted at exit, print the reason once, and return the folder."""
     import atexit
     import shutil
     import tempfile

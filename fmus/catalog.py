@@ -1,7 +1,7 @@
 """The FMUs that evcosim builds: name -> module of the model and the experiment that fits it.
 
 An FMU has the name of its model's class. One line adds one (docs/how-to/add-a-model.md). Nothing here imports
-a model: names are listed in no time.
+a model, so that names are listed at once.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 
 class Experiment(NamedTuple):
-    """FMI's DefaultExperiment [s]: what an importer does that is told nothing."""
+    """FMI's DefaultExperiment [s]: the stop time and the step size of an importer that is given none."""
 
     stop_time: float = 10.0
     step_size: float = 0.01
 
 
 class Entry(NamedTuple):
-    """The module of the model, below evcosim.models, and its experiment."""
+    """The name of the model's module, below evcosim.models, and its experiment."""
 
     module: str
     experiment: Experiment
@@ -44,14 +44,14 @@ CATALOG = {
 
 
 def model_file(name: str) -> Path:
-    """The source file of a catalog entry's model."""
+    """Return the source file of a catalog entry's model."""
     from .. import models  # light: a docstring
 
     return Path(models.__file__ or "").parent / f"{CATALOG[name].module}.py"
 
 
 def text(name: str) -> str:
-    """What the model is, in one line: the first of its docstring, read without importing it."""
+    """Return the first line of a model's docstring, read without importing the model."""
     from .sources import text_of_class  # the parser is needed here only
 
     return text_of_class(model_file(name), name)

@@ -1,4 +1,4 @@
-"""modelDescription.xml (FMI 2.0) from a model's declarations; nothing is written down twice.
+"""modelDescription.xml (FMI 2.0), generated from a model's declarations alone.
 
 `Outputs` lists as dependencies the inputs that reach an output within one instant; a sampled model's outputs
 hold between steps, so they have none. `InitialUnknowns` lists every parameter and the inputs that reach the
@@ -32,7 +32,7 @@ _CAPABILITIES = {
 
 
 class Origin(NamedTuple):
-    """Where an FMU comes from: `version` and `license` are the model's, `tool` built it."""
+    """The origin of an FMU: `version` and `license` are the model's, `tool` built it."""
 
     guid: str
     tool: str
@@ -41,7 +41,7 @@ class Origin(NamedTuple):
 
 
 def describe(model: type[Model], origin: Origin, experiment: Experiment) -> bytes:
-    """The file's bytes, UTF-8. Raises ValueError that names model and variable for an unknown unit."""
+    """Return the file's bytes, UTF-8. Raises ValueError that names model and variable of an unknown unit."""
     variables = exposed(model)
     root = Element(
         "fmiModelDescription",
@@ -78,13 +78,13 @@ def describe(model: type[Model], origin: Origin, experiment: Experiment) -> byte
 
 
 def headline(described: type) -> str:
-    """The first line of a class's own docstring, without code marks."""
+    """Return the first line of a class's own docstring, without code marks."""
     text = inspect.cleandoc(described.__doc__ or "") or described.__name__
     return text.splitlines()[0].replace("`", "")
 
 
 def _units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
-    """Only Real variables carry a unit in FMI 2.0."""
+    """Add the definitions of the units of Real variables; no other type carries one in FMI 2.0."""
     used = {}
     for _, _, v in variables:
         if v.type == "Real" and v.unit:
@@ -121,7 +121,7 @@ def _types(root: Element, variables: Iterable[Exposed]) -> None:
 
 
 def _text_of(item: enum.IntEnum) -> dict[str, str]:
-    """An item's text, where the enumeration gives its members a `text`."""
+    """Return an item's text as an attribute, where the enumeration gives its members a `text`."""
     text = getattr(item, "text", None)
     return {} if text is None else {"description": str(text)}
 
@@ -162,7 +162,7 @@ def _set(typed: Element, v: Variable, *attributes: str) -> None:
 
 
 def _number(value: float, kind: str) -> str:
-    """As FMI writes it: Boolean in words, Integer and Enumeration without a point, Real lossless."""
+    """Return a number in FMI's form: Boolean in words, Integer and Enumeration as integers, Real lossless."""
     if kind == "Boolean":
         return "true" if value else "false"
     return repr(float(value)) if kind == "Real" else str(int(value))

@@ -12,7 +12,7 @@ from ..models.base import Model, Variable, variables
 
 
 class Exposed(NamedTuple):
-    """A variable under its value reference; `causality` is FMI's word."""
+    """A variable with its value reference; `causality` is FMI's word."""
 
     reference: int
     causality: str
@@ -20,7 +20,7 @@ class Exposed(NamedTuple):
 
 
 def exposed(model: type[Model]) -> tuple[Exposed, ...]:
-    """Every parameter, input and output of a model; element k has value reference k."""
+    """Return every parameter, input and output of a model; element k has value reference k."""
     declared = [("parameter", v) for v in variables(model.Parameters)]
     declared += [("independent" if v.independent else "input", v) for v in variables(model.Inputs)]
     declared += [("output", v) for v in variables(model.Outputs)]

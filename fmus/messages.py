@@ -1,4 +1,4 @@
-"""What a failed call says in the importer's log."""
+"""Exceptions of failed calls, and their text in the importer's log."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ _FOLDER = os.path.join(os.path.dirname(__file__), "..", "..")
 
 
 class Refused(Exception):
-    """The importer asked for what FMI or the model's declaration does not allow; the text says all."""
+    """A request that FMI or the model's declaration does not allow; its text needs no type and no place."""
 
 
 class SlaveError(Exception):
-    """A failed call. pythonfmu logs the repr, so the repr is the message."""
+    """A failed call; its repr is the message, because pythonfmu logs the repr."""
 
     def __repr__(self) -> str:
         return str(self)
 
 
 def message(call: str, error: BaseException) -> str:
-    """One line for the importer's log: call, exception and place; safe for printf and UTF-8."""
+    """Return one line for the importer's log: call, exception and place; safe for printf and UTF-8."""
     try:
         text = str(error)
-    except Exception:  # a model's exception may fail to show itself, which must not hide that it was raised
+    except Exception:  # str() of a model's exception may raise, which must not hide the exception
         text = "(its text cannot be shown: str() of it fails)"
     if not isinstance(error, Refused):
         text = f"{type(error).__name__}: {text}{_place(error)}"

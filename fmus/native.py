@@ -1,7 +1,7 @@
-"""What pythonfmu's native library does wrong, made good from the side of the slave.
+"""Repairs of defects in pythonfmu's native library, made from the side of the slave.
 
-- On a failed call it gives up its references to class, instance and message list, and in fmi2FreeInstance
-  once more: `hold` takes them in advance.
+- On a failed call the library gives up its references to class, instance and message list, and in
+  fmi2FreeInstance once more: `hold` takes them in advance.
 - It puts the resources folder at the front of sys.path and leaves it there: `leave_search_path`.
 - On Linux, when the process ends, the static pointer to its interpreter guard is destroyed first and released
   once more by the library's destructor, which corrupts the heap of a process whose results are long written:
@@ -29,16 +29,16 @@ def hold(*objects: object) -> None:
 
 
 def leave_search_path(resources: str) -> None:
-    """Take the resources folder off sys.path; all that is in it has been imported."""
+    """Remove the resources folder from sys.path; everything in it has been imported."""
     if sys.path and sys.path[0] == resources:
         del sys.path[0]
 
 
 def settle_at_exit(resources: str, name: str) -> None:
-    """Have the library of the FMU `name` release its guard while it still can.
+    """Make the library of the FMU `name` release its interpreter guard at exit, while it still can.
 
-    Only where Python was started as a program: in an interpreter that the library itself started, the guard
-    ends that interpreter, and must outlive it.
+    This holds only where Python was started as a program: in an interpreter that the library itself started,
+    the guard ends that interpreter, and must outlive it.
     """
     library = os.path.join(os.path.dirname(resources.rstrip("/")), "binaries", "linux64", f"{name}.so")
     if sys.platform == "linux" and sys.orig_argv and library not in _watched:

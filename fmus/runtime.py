@@ -1,4 +1,4 @@
-"""What every FMU carries besides its model: pythonfmu's native libraries and Python files, and licenses."""
+"""The parts that every FMU carries besides its model: pythonfmu's libraries and Python files, licenses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PYTHON_FILES = ("fmi2slave", "logmsg", "default_experiment", "enums", "variable
 
 @functools.cache
 def binaries() -> dict[str, bytes]:
-    """Content of pythonfmu's native libraries by `platform/suffix`: linux64/.so, win64/.dll."""
+    """Return the content of pythonfmu's native libraries by `platform/suffix`: linux64/.so, win64/.dll."""
     folder = _folder() / "resources" / "binaries"
     files = (f for f in sorted(folder.glob("*/*")) if f.suffix in (".so", ".dll", ".dylib"))
     return {f"{file.parent.name}/{file.suffix}": file.read_bytes() for file in files}
@@ -19,26 +19,26 @@ def binaries() -> dict[str, bytes]:
 
 @functools.cache
 def python_files() -> dict[str, bytes]:
-    """The part of the package pythonfmu that a slave needs, by file name."""
+    """Return the content of the modules of pythonfmu that a slave needs, by file name."""
     return {f"{name}.py": (_folder() / f"{name}.py").read_bytes() for name in _PYTHON_FILES}
 
 
 @functools.cache
 def licenses() -> dict[str, bytes]:
-    """License texts by file name below documentation/licenses."""
+    """Return the license texts by file name below documentation/licenses."""
     return {f"{name}.txt": _license(name) for name in ("evcosim", "pythonfmu")}
 
 
 @functools.cache
 def version(distribution: str) -> str:
-    """The installed version of a distribution."""
+    """Return the installed version of a distribution."""
     from importlib import metadata  # slow to import
 
     return metadata.version(distribution)
 
 
 def _folder() -> Path:
-    """Where pythonfmu is installed, found without importing it."""
+    """Return the folder of pythonfmu, found without importing it. Raises ModuleNotFoundError."""
     spec = importlib.util.find_spec("pythonfmu")
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError("pythonfmu is not installed: pip install pythonfmu")
@@ -46,10 +46,11 @@ def _folder() -> Path:
 
 
 def _license(distribution: str) -> bytes:
-    """The text lies in dist-info/licenses since metadata version 2.4, before in dist-info itself.
+    """Return the license text of an installed distribution. Raises FileNotFoundError where it has none.
 
-    A checkout's own is beside the folder of this package. Several distributions of one name may be found: the
-    working folder can hold the egg-info of a build, which has no texts.
+    The text lies in dist-info/licenses since metadata version 2.4, before in dist-info itself. A checkout's
+    own is beside the folder of this package. Several distributions of one name may be found: the working
+    folder can hold the egg-info of a build, which has no texts.
     """
     checkout = Path(__file__).resolve().parents[1] / "LICENSE"
     if distribution == "evcosim" and checkout.is_file():

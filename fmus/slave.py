@@ -1,6 +1,6 @@
 """A model as an FMI 2.0 co-simulation slave, run by pythonfmu's native library.
 
-    instantiated, initialization    parameters and inputs can be set; outputs answer for the current ones:
+    instantiated, initialization    parameters and inputs can be set; outputs are those of the current ones:
                                     x_0 = initial(p, u), y = outputs(p, x_0[, u])
     exit of initialization          parameters outside their ranges are refused; then only inputs can be set
     do_step(t, dt)                  u.time = t; x = step(p, x, u, dt); y = outputs(p, x[, u])
@@ -11,16 +11,16 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
 - do_step that fails logs a message of status Error (category `logStatusError`) with type and text of the
   exception and the place it was raised, leaves state and outputs as they were, and returns Discard; the
   native library then also answers fmi2Terminated = true.
-- any other call that fails ends Fatal, and the native library writes the message. One of ours in the queue
-  would reach the importer's logger while the exception is still set: in an importer in Python it gets lost
-  ("unknown error", measured), and any call of the logger may trip over it.
+- any other call that fails ends Fatal, and the native library writes the message. A message in the queue
+  would reach the importer's logger while the exception is still set: an importer in Python loses it ("unknown
+  error", measured), and any call of the logger may fail because of it.
 - a step whose result is NaN or infinite is no error here: the importer checks what it receives.
 
-What pythonfmu's library does wrong stands in `native`, which makes it good: a failing FMU never kills its
-importer. Messages are printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments:
-"%" is doubled. What nobody here can help: a KeyboardInterrupt that arrives before an entry point's first line
-is a failed call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not
-clear fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
+`native` repairs defects of pythonfmu's library, so that a failing FMU never kills its importer. Messages are
+printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments: "%" is doubled. Four
+defects cannot be repaired from here. A KeyboardInterrupt that arrives before an entry point's first line is a
+failed call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
+fmi2Terminated. Messages of status Fatal carry no category. fmi2FreeFMUstate does not null the pointer.
 
 Relative imports only: this file also runs inside FMUs, in a package of another name.
 """
@@ -32,7 +32,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 from ..models.base import Model, violations
-from .layout import Layout, misfit
+from .accessors import Accessors, misfit
 from .messages import Refused, SlaveError, message
 from .native import hold, leave_search_path, settle_at_exit
 from .snapshot import Snapshot, from_bytes, to_bytes
@@ -41,10 +41,14 @@ _ERROR = 3  # fmi2Error
 
 
 class ModelSlave:
-    """Mixin before pythonfmu's Fmi2Slave. A subclass names its `model` and the `identity` of its FMU."""
+    """Mixin before pythonfmu's Fmi2Slave. A subclass sets its `model` and the `identity` of its FMU.
 
-    # Python finds slots and what stands in the instance ten times faster than what its class has
+    Every failed call but do_step raises SlaveError.
+    """
+
+    # Python finds slots and attributes of the instance ten times faster than those of its class
     __slots__ = (
+        "_access",
         "_feeds_through",
         "_follows_inputs",
         "_given",
@@ -61,7 +65,6 @@ class ModelSlave:
         "_started",
         "_state",
         "_step",
-        "_table",
         "_time",
         "_timed",
     )  # fmt: skip # words, not lines
@@ -70,7 +73,7 @@ class ModelSlave:
     identity: ClassVar[str]
     log_categories: ClassVar[dict[str, str]] = {"logStatusError": "Exceptions that the model raised"}
 
-    _layout: ClassVar[Layout]
+    _accessors: ClassVar[Accessors]
     _living: ClassVar[weakref.WeakSet[ModelSlave]]
 
     instance_name: str
@@ -80,21 +83,21 @@ class ModelSlave:
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        cls._layout = Layout(cls.model)
+        cls._accessors = Accessors(cls.model)
         cls._living = weakref.WeakSet()
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         leave_search_path(self.resources)
         settle_at_exit(self.resources, type(self).__name__)
-        self._table = layout = self._layout
+        self._access = access = self._accessors
         self._step, self._outputs = self.model.step, self.model.outputs
-        self._record, self._listed = layout.record, layout.listed
-        self._timed, self._feeds_through = layout.timed, layout.feeds_through
-        self._follows_inputs = layout.follows_inputs
-        self._real_inputs, self._real_outputs = layout.real_inputs, layout.real_outputs
-        self._settings, self._given = layout.starts("parameter"), layout.starts("input")
-        self._shown, self._time = layout.starts("output"), 0.0
+        self._record, self._listed = access.record, access.listed
+        self._timed, self._feeds_through = access.timed, access.feeds_through
+        self._follows_inputs = access.follows_inputs
+        self._real_inputs, self._real_outputs = access.real_inputs, access.real_outputs
+        self._settings, self._given = access.starts("parameter"), access.starts("input")
+        self._shown, self._time = access.starts("output"), 0.0
         self._parameters: Any = None
         self._inputs: Any = None
         self._state: Any = None
@@ -105,11 +108,11 @@ class ModelSlave:
     # -- time ----------------------------------------------------------------------------------------------
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
-        """fmi2SetupExperiment: the start time is what `initial` sees as time."""
+        """Set the start time [s], which `initial` sees as time (fmi2SetupExperiment)."""
         self._set_time(start_time)
 
     def exit_initialization_mode(self) -> None:
-        """fmi2ExitInitializationMode: check the parameters, compute x_0, and fix the parameters."""
+        """Check the parameters, compute x_0, and fix the parameters (fmi2ExitInitializationMode)."""
         try:
             self._initialize()
             self._started = True
@@ -117,7 +120,7 @@ class ModelSlave:
             raise self._failure("fmi2ExitInitializationMode", error) from None
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """fmi2DoStep: True for OK, False for Discard."""
+        """Advance by step_size [s] (fmi2DoStep); return True for OK, False for Discard."""
         try:
             if not self._started:
                 raise Refused("the initialization mode has not been left")
@@ -144,7 +147,7 @@ class ModelSlave:
             self._stale = self._stale or not self._started
 
     def _initialize(self) -> None:
-        """x_0 and its outputs from the current parameters and inputs."""
+        """Compute x_0 and its outputs from the current parameters and inputs."""
         p = self._derive_parameters()
         if bad := violations(p):
             raise Refused("; ".join(bad))
@@ -158,7 +161,7 @@ class ModelSlave:
         return self.model.Parameters(*self._settings)
 
     def _show(self, state: Any, u: Any) -> None:
-        """Store the outputs of a state; `u` None: of the inputs that are set now."""
+        """Store the outputs of a state at the inputs u; None stands for the inputs that are set now."""
         if self._feeds_through:
             if u is None:
                 u = self._inputs = self._record(self._given, self._time)
@@ -168,7 +171,7 @@ class ModelSlave:
         try:
             self._shown = self._listed(y)
         except (TypeError, ValueError, OverflowError):
-            raise misfit(self._table, y) from None
+            raise misfit(self._access.outputs, y) from None
         self._stale = False
 
     def _refresh(self) -> None:
@@ -180,45 +183,45 @@ class ModelSlave:
     # -- values --------------------------------------------------------------------------------------------
 
     def get_real(self, references: Sequence[int]) -> list[float]:
-        """fmi2GetReal."""
+        """Return the values of Real variables (fmi2GetReal)."""
         try:
             if self._stale:
                 self._refresh()
             if references == self._real_outputs:
                 return self._shown
-            return self._table.read_real[tuple(references)](self)
+            return self._access.read_real[tuple(references)](self)
         except BaseException as error:
             raise self._failure("fmi2GetReal", error) from None
 
     def get_integer(self, references: Sequence[int]) -> list[int]:
-        """fmi2GetInteger, for Integer and Enumeration."""
+        """Return the values of Integer and Enumeration variables (fmi2GetInteger)."""
         try:
             if self._stale:
                 self._refresh()
-            return self._table.read_integer[tuple(references)](self)
+            return self._access.read_integer[tuple(references)](self)
         except BaseException as error:
             raise self._failure("fmi2GetInteger", error) from None
 
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
-        """fmi2GetBoolean."""
+        """Return the values of Boolean variables (fmi2GetBoolean)."""
         try:
             if self._stale:
                 self._refresh()
-            return self._table.read_boolean[tuple(references)](self)
+            return self._access.read_boolean[tuple(references)](self)
         except BaseException as error:
             raise self._failure("fmi2GetBoolean", error) from None
 
     def get_string(self, references: Sequence[int]) -> list[str]:
-        """fmi2GetString: there are no String variables."""
+        """Return an empty list for no references (fmi2GetString): a model has no String variable."""
         try:
             if self._stale:
                 self._refresh()
-            return self._table.read_string[tuple(references)](self)
+            return self._access.read_string[tuple(references)](self)
         except BaseException as error:
             raise self._failure("fmi2GetString", error) from None
 
     def set_real(self, references: Sequence[int], values: list[float]) -> None:
-        """fmi2SetReal."""
+        """Set Real variables (fmi2SetReal)."""
         try:
             if references == self._real_inputs:
                 self._given = values  # the native library has made this list for this call alone
@@ -229,7 +232,7 @@ class ModelSlave:
             raise self._failure("fmi2SetReal", error) from None
 
     def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
-        """fmi2SetInteger, for Integer and Enumeration; a number that is no item of the enumeration fails."""
+        """Set Integer and Enumeration variables (fmi2SetInteger); a number that is no item fails."""
         try:
             self._set(
                 "Integer", references, [self._member(r, v) for r, v in zip(references, values, strict=True)]
@@ -238,27 +241,27 @@ class ModelSlave:
             raise self._failure("fmi2SetInteger", error) from None
 
     def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
-        """fmi2SetBoolean."""
+        """Set Boolean variables (fmi2SetBoolean)."""
         try:
             self._set("Boolean", references, values)
         except BaseException as error:
             raise self._failure("fmi2SetBoolean", error) from None
 
     def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
-        """fmi2SetString: there are no String variables."""
+        """Set nothing for no references (fmi2SetString): a model has no String variable."""
         try:
             self._set("String", references, values)
         except BaseException as error:
             raise self._failure("fmi2SetString", error) from None
 
     def _set(self, kind: str, references: Sequence[int], values: Sequence[Any]) -> None:
-        table = self._table
-        settable = (table.settable_later if self._started else table.settable_first)[kind]
+        access = self._access
+        settable = (access.settable_later if self._started else access.settable_first)[kind]
         if not settable.issuperset(references):
-            raise table.refusal(kind, references, settable)
+            raise access.refusal(kind, references, settable)
         for r, value in zip(references, values, strict=True):
-            kept = self._settings if r < table.first_input else self._given
-            kept[table.index[r]] = value
+            kept = self._settings if r < access.first_input else self._given
+            kept[access.index[r]] = value
         self._is_set()
 
     def _is_set(self) -> None:
@@ -267,14 +270,14 @@ class ModelSlave:
             self._stale = True
 
     def _member(self, reference: int, value: int) -> int:
-        enumeration = self._table.enumerations.get(reference)
+        enumeration = self._access.enumerations.get(reference)
         if enumeration is None:
             return value
         try:
             return enumeration(value)
         except ValueError:
             items = ", ".join(f"{int(item)} {item.name.lower()}" for item in enumeration)
-            name = self._table.variables[reference].name
+            name = self._access.variables[reference].name
             raise Refused(f"{name} = {value} is no item of its enumeration ({items})") from None
 
     # -- FMU state: pythonfmu calls the two conversions on the class -----------------------------------------
@@ -319,7 +322,10 @@ class ModelSlave:
 
     @classmethod
     def _class_failure(cls, call: str, error: BaseException) -> SlaveError:
-        """Which instance made the call is unknown here: hold all. The others leak, the lesser evil."""
+        """Return the exception of a call of the class, which does not know the instance that called.
+
+        All living instances are held; those that did not call leak, the lesser evil.
+        """
         hold(cls)
         for instance in list(cls._living):
             hold(instance, instance.log_queue)

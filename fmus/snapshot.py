@@ -17,10 +17,10 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 class Snapshot(NamedTuple):
-    """All that distinguishes two instances of one FMU.
+    """Everything that distinguishes two instances of one FMU.
 
-    `values` are those of parameters (from which the record of them is rebuilt), inputs and outputs, and the
-    time.
+    `values` are those of the parameters (from which their record is rebuilt), inputs and outputs, and the
+    time. `started` and `stale` are the flags of the slave.
     """
 
     values: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], float]
@@ -30,14 +30,14 @@ class Snapshot(NamedTuple):
 
 
 def to_bytes(snapshot: Snapshot, identity: str) -> bytes:
-    """Equal snapshots give equal bytes. Raises what pickle does for a state that it cannot take."""
+    """Return a snapshot as bytes, equal for equal snapshots. Raises the errors of pickle."""
     stream = io.BytesIO()
     _Pickler(stream, protocol=4).dump(tuple(snapshot))
     return _stamp(identity) + stream.getvalue()
 
 
 def from_bytes(data: bytes, identity: str) -> Snapshot:
-    """The snapshot that `to_bytes` was given. Raises Refused for bytes of another FMU or of no data."""
+    """Return the snapshot from bytes of `to_bytes`. Raises Refused for bytes of another FMU or of code."""
     stamp = _stamp(identity)
     if not data.startswith(stamp):
         found = data[: len(stamp)].partition(b"\n")[0].decode("ascii", "replace")
@@ -50,11 +50,13 @@ def _stamp(identity: str) -> bytes:
 
 
 class _Pickler(pickle.Pickler):
-    """Writes an item of an enumeration as a call of its class, as every Python does but 3.11.0 to 3.11.3:
-    those write a call of `getattr`, which is not loaded.
+    """Writes an item of an enumeration as a call of its class, in every version of Python.
+
+    3.11.0 to 3.11.3 would write a call of `getattr`, which is not loaded.
     """
 
     def reducer_override(self, obj: Any) -> Any:
+        """Return class and value of an item of an enumeration; leave any other object to pickle."""
         return (type(obj), (obj.value,)) if isinstance(obj, enum.Enum) else NotImplemented
 
 
@@ -64,6 +66,7 @@ class _Unpickler(pickle.Unpickler):
     _NUMPY: ClassVar = {"_reconstruct", "_frombuffer", "scalar", "ndarray", "dtype"}
 
     def find_class(self, module: str, name: str) -> Any:
+        """Return a class that may be loaded. Raises Refused for any other."""
         if module.split(".")[0] == "numpy" and name in self._NUMPY:
             return super().find_class(module, name)
         if module.split(".")[0] == _PACKAGE:

@@ -1,8 +1,8 @@
-"""Which Python files an FMU carries, and under what names.
+"""The Python files that an FMU carries, and their names in it.
 
-Embedded are, found by following import statements from the model's module and from the slave:
-- `evcosim.models` and what of `evcosim.fmus` the slave needs,
-- the model's own package, or the modules in the folder of a model that is a single file.
+Embedded files are found by following import statements from the model's module and from the slave:
+- those of `evcosim.models` and, for the slave, of `evcosim.fmus`,
+- those of the model's own package, or in the folder of a model that is a single file.
 Everything else (numpy, scipy, the standard library) is left to the Python in which the FMU runs.
 
 Inside the FMU all of it lies in one package that is named after the FMU and its content, because pythonfmu
@@ -27,7 +27,7 @@ _SLAVE = "evcosim.fmus.slave"
 
 
 class Source(NamedTuple):
-    """One embedded file: its module's dotted name and what is written in it."""
+    """One embedded file: its module's dotted name, its path on this machine and its content."""
 
     module: str
     file: Path
@@ -35,13 +35,13 @@ class Source(NamedTuple):
 
     @property
     def path(self) -> str:
-        """Where the file lies below the FMU's package."""
+        """The file's path below the FMU's package."""
         folder = self.module.replace(".", "/")
         return f"{folder}/__init__.py" if self.file.name == "__init__.py" else f"{folder}.py"
 
 
 class Roots(NamedTuple):
-    """Where embedded modules are looked for.
+    """The places in which embedded modules are looked for.
 
     `folder` holds the model's top-level package or file; `package` is that package, "" where the model is a
     single file and its siblings in `folder` count.
@@ -51,7 +51,7 @@ class Roots(NamedTuple):
     package: str
 
     def locate(self, module: str) -> Path | None:
-        """The file of an embedded module or package; None for a module that stays outside."""
+        """Return the file of an embedded module or package; None for a module that stays outside."""
         top, _, rest = module.partition(".")
         if top == "evcosim":
             part, _, rest = rest.partition(".")
@@ -63,14 +63,14 @@ class Roots(NamedTuple):
 
 
 def own_roots(module: str, file: Path) -> Roots:
-    """The roots of a model in `module`, which was read from `file`."""
+    """Return the roots of a model in `module`, which was read from `file`."""
     depth = len(module.split(".")) - (file.name != "__init__.py")
     folder = file.resolve().parents[depth]
     return Roots(folder, module.partition(".")[0] if "." in module else "")
 
 
 def collect(module: str, file: Path) -> list[Source]:
-    """Every file that the model in `module` needs, sorted by name.
+    """Return every file that the model in `module` needs, sorted by name.
 
     Raises ValueError that names file and line for an import that cannot be embedded.
     """
@@ -92,7 +92,7 @@ def collect(module: str, file: Path) -> list[Source]:
 
 
 def rewritten(source: Source, package: str, embedded: set[str]) -> bytes:
-    """The file as it stands in the FMU: absolute imports of embedded modules begin with `package`."""
+    """Return the file's content in the FMU: absolute imports of embedded modules begin with `package`."""
     lines = source.content.splitlines(keepends=True)
     for line, start, end, text in sorted(_edits(source, package, embedded), reverse=True):
         lines[line - 1] = lines[line - 1][:start] + text.encode() + lines[line - 1][end:]
@@ -100,7 +100,7 @@ def rewritten(source: Source, package: str, embedded: set[str]) -> bytes:
 
 
 def text_of_class(file: Path, name: str) -> str:
-    """The first line of a class's docstring, read without importing the module."""
+    """Return the first line of a class's docstring, read without importing the module. Raises ValueError."""
     for node in ast.parse(file.read_bytes()).body:
         if isinstance(node, ast.ClassDef) and node.name == name:
             return (ast.get_docstring(node) or name).splitlines()[0].replace("`", "")
@@ -108,7 +108,7 @@ def text_of_class(file: Path, name: str) -> str:
 
 
 def _edits(source: Source, package: str, embedded: set[str]) -> Iterator[tuple[int, int, int, str]]:
-    """(line, first column, last column, replacement), columns in bytes."""
+    """Yield (line, first column, last column, replacement), columns in bytes."""
     packages = {parent for name in embedded for parent in _parents(name)}
     tops = {name.partition(".")[0] for name in embedded}
     for node in _import_nodes(source):
@@ -148,7 +148,7 @@ def _edit_import(source: Source, alias: ast.alias, prefix: str) -> tuple[int, in
 
 
 def _imported(source: Source) -> Iterator[str]:
-    """The modules that the file's import statements may mean, as absolute dotted names."""
+    """Yield the modules that the file's import statements may mean, as absolute dotted names."""
     for node in _import_nodes(source):
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -167,7 +167,7 @@ def _imported(source: Source) -> Iterator[str]:
 
 @functools.lru_cache(maxsize=256)
 def _import_nodes(source: Source) -> tuple[ast.Import | ast.ImportFrom, ...]:
-    """The import statements that run when the module is imported or its functions are called."""
+    """Return the import statements that run when the module is imported or its functions are called."""
     try:
         tree = ast.parse(source.content, str(source.file))
     except SyntaxError as error:
@@ -176,7 +176,7 @@ def _import_nodes(source: Source) -> tuple[ast.Import | ast.ImportFrom, ...]:
 
 
 def _statements(node: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
-    """Import statements stand among statements: expressions are not searched, which is most of the tree."""
+    """Yield the import statements below a node; expressions, most of the tree, hold none and are skipped."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.Import | ast.ImportFrom):
             yield child
@@ -189,7 +189,7 @@ def _statements(node: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
 
 
 def _is_elsewhere(test: ast.expr) -> bool:
-    """Whether a condition is `TYPE_CHECKING` or `__name__ == "__main__"`."""
+    """Return True for the conditions `TYPE_CHECKING` and `__name__ == "__main__"`."""
     return ast.unparse(test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING", "__name__ == '__main__'")
 
 
@@ -208,7 +208,7 @@ def _file(folder: Path, module: str) -> Path | None:
 
 
 def _is_shared(folder: Path) -> bool:
-    """Whether a folder is one of Python's own, whose modules are not a model's siblings."""
+    """Return True for a folder of Python's own, whose modules are not a model's siblings."""
     paths = sysconfig.get_paths()
     shared = {Path(paths[key]).resolve() for key in ("stdlib", "platstdlib", "purelib", "platlib")}
     return folder in shared or folder.name in ("site-packages", "dist-packages")
@@ -222,7 +222,7 @@ def _models_folder() -> Path:
 
 
 def file_of(module: str) -> tuple[str, Path]:
-    """Dotted name and file of a loaded module; a script's is its file's name.
+    """Return dotted name and file of a loaded module; a script has the name of its file.
 
     Raises ValueError for code that stands in no file.
     """

@@ -1,4 +1,4 @@
-"""What a unit of measure means: FMI base-unit exponents, factor and offset, composed from a table of symbols.
+"""Definitions of units of measure in FMI: base-unit exponents, factor and offset, from a table of symbols.
 
 A name is symbols with optional powers, "." between factors and "/" once: `kg/m3`, `N.s/m`, `km/(h.%)`.
 Everything after "/" divides, with or without parentheses.
@@ -63,7 +63,7 @@ class UnitDefinition:
 
 
 def define(name: str) -> UnitDefinition:
-    """The definition of a unit name. Raises ValueError for a name that cannot be read."""
+    """Return the definition of a unit name. Raises ValueError for a name that cannot be read."""
     if name == "degC":  # an offset has a meaning only where the unit stands alone
         return UnitDefinition((("K", 1),), offset=273.15)
     above, slash, below = name.partition("/")
@@ -81,6 +81,7 @@ def define(name: str) -> UnitDefinition:
 
 
 def _read(name: str, token: str) -> tuple[Fraction, dict[str, int], int]:
+    """Return factor, exponents and power of one symbol of a unit name. Raises ValueError."""
     match = _TOKEN.fullmatch(token)
     if match is None or match[1] not in _SYMBOLS:
         raise ValueError(f"unit {name!r}: {token!r} is no unit symbol (known: {' '.join(_SYMBOLS)} degC)")

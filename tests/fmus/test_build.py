@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -107,8 +108,8 @@ def test_the_archive_holds_what_is_needed_and_nothing_else(tmp_path):
     assert sorted(carried) == [
         "__init__.py",
         "fmus/__init__.py",
+        "fmus/accessors.py",
         "fmus/interface.py",
-        "fmus/layout.py",
         "fmus/messages.py",
         "fmus/native.py",
         "fmus/slave.py",
@@ -156,10 +157,15 @@ def test_a_second_run_builds_nothing(own_cache, monkeypatch):
     assert built("Battery") == first
 
 
-def test_another_builder_is_another_file_in_the_cache(own_cache, monkeypatch):
+@pytest.mark.parametrize("changed", sorted(file.name for file in building._HERE.glob("*.py")))
+def test_another_builder_is_another_file_in_the_cache(changed, own_cache, tmp_path, monkeypatch):
     first = built("Battery")
-    monkeypatch.setattr(building, "_WRITERS", (*building._WRITERS, "cache.py"))
-    assert built("Battery") != first
+    for folder, line, equal in (("copy", "", True), ("other", "# another line\n", False)):
+        shutil.copytree(building._HERE, tmp_path / folder)
+        with (tmp_path / folder / changed).open("a") as file:
+            file.write(line)
+        monkeypatch.setattr(building, "_HERE", tmp_path / folder)
+        assert (built("Battery") == first) is equal
 
 
 def test_another_source_is_another_file_in_the_cache(own_cache, monkeypatch):

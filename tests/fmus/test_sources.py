@@ -141,7 +141,7 @@ def test_a_users_own_modules_go_with_the_model(project, files, module, own, valu
     assert {s.module for s in collect(module, file)} == own | {
         "evcosim.fmus",
         "evcosim.fmus.interface",
-        "evcosim.fmus.layout",
+        "evcosim.fmus.accessors",
         "evcosim.fmus.messages",
         "evcosim.fmus.native",
         "evcosim.fmus.slave",

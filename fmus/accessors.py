@@ -1,8 +1,9 @@
-"""The interface of one model as tables: which values are read and set, and how they become its records.
+"""Access of the slave to the values of one model: readers, settable references, and maker of its records.
 
 Value references count parameters, then inputs (time among them), then outputs. An instance of the slave
-keeps the values in the lists `_settings`, `_given` (inputs without the time) and `_shown`, and in `_time`.
-What each step does with them is source text that is made once: a loop over names takes three times as long.
+keeps the values in the lists `_settings` (parameters), `_given` (inputs without the time) and `_shown`
+(outputs), and in `_time`. The functions that each step calls are compiled once from source text that names
+every variable: a loop over names takes three times as long.
 """
 
 from __future__ import annotations
@@ -16,19 +17,19 @@ from .interface import exposed
 from .messages import Refused
 
 _KINDS = ("Real", "Integer", "Boolean", "String")  # a model has no String, but an importer may ask
-_MOST_LISTS = 256  # an importer asks for few lists of references; one that asks for many costs no memory
+_MOST_LISTS = 256  # readers kept at most, so that an importer with ever new lists fills no memory
 _CAUSALITIES = ("parameter", "input", "independent", "output")
 
 Reader = Callable[[Any], list[Any]]
-"""Takes from an instance the values that one list of references asks for."""
+"""Returns from an instance the values of one list of references."""
 
 
-class Layout:
-    """What the slave of one model looks up instead of reflecting on each call.
+class Accessors:
+    """Tables and functions of one model's variables, made once: no call of the slave inspects the model.
 
     `record(given, time)` makes the record of the inputs, `listed(y)` the list of the outputs as plain Python
-    numbers. `real_inputs` and `real_outputs` are the value references of all inputs (but for the time) and of
-    all outputs where all are Real, else None. `index` is a variable's place in its list.
+    numbers. `real_inputs` and `real_outputs` are the value references of all inputs (without the time) and of
+    all outputs where all are Real, else None. `index` maps a value reference to its place in its list.
     """
 
     def __init__(self, model: type[Model]) -> None:
@@ -57,16 +58,16 @@ class Layout:
         self.follows_inputs = self.feeds_through and not model.sampled
 
     def starts(self, causality: str) -> list[Any]:
-        """The start values of all variables of a causality."""
+        """Return the start values of all variables of a causality."""
         return [self.variables[r].start for r in self._all(causality)]
 
     def of(self, kind: str, causalities: Iterable[str] = _CAUSALITIES) -> frozenset[int]:
-        """The value references that the FMI functions of a type and these causalities share."""
+        """Return the value references with these causalities that the FMI functions of a type access."""
         found = enumerate(zip(self.variables, self.causalities, strict=True))
         return frozenset(r for r, (v, causality) in found if _storage(v) == kind and causality in causalities)
 
     def refusal(self, kind: str, references: Iterable[int], settable: frozenset[int]) -> Refused:
-        """Why these, of which not all are `settable`, cannot be set."""
+        """Return the exception for references of which not all are `settable`."""
         wrong = set(references) - settable
         if unknown := wrong - self.of(kind):
             return _unknown(kind, unknown)
@@ -79,7 +80,7 @@ class Layout:
         return [r for r, c in enumerate(self.causalities) if c == causality]
 
     def _recorder(self, inputs: type) -> Callable[[list[Any], float], Any]:
-        """`Inputs(given[0], time, given[1], ...)`, in the order of the record's fields."""
+        """Return `Inputs(given[0], time, given[1], ...)` as a function, in the order of the fields."""
         items = [
             "time" if causality == "independent" else f"given[{self.index[r]}]"
             for r, causality in enumerate(self.causalities)
@@ -91,16 +92,16 @@ class Layout:
 
 
 class Readers(dict[tuple[int, ...], Reader]):
-    """The reader of a call's references, made once for each list of them.
+    """The readers of one FMI type, `kind`, by list of references; each is made at its first use.
 
-    Raises Refused for references that are not of the FMI type `kind`.
+    A look-up raises Refused for references that are not of that type.
     """
 
     _LISTS = {"parameter": "_settings", "input": "_given", "output": "_shown"}
 
-    def __init__(self, layout: Layout, kind: str) -> None:
+    def __init__(self, accessors: Accessors, kind: str) -> None:
         super().__init__()
-        self._layout, self._kind, self._known = layout, kind, layout.of(kind)
+        self._accessors, self._kind, self._known = accessors, kind, accessors.of(kind)
 
     def __missing__(self, references: tuple[int, ...]) -> Reader:
         if not self._known.issuperset(references):
@@ -112,10 +113,10 @@ class Readers(dict[tuple[int, ...], Reader]):
         return reader
 
     def _place(self, reference: int) -> str:
-        causality = self._layout.causalities[reference]
+        causality = self._accessors.causalities[reference]
         if causality == "independent":
             return "slave._time"
-        return f"slave.{self._LISTS[causality]}[{self._layout.index[reference]}]"
+        return f"slave.{self._LISTS[causality]}[{self._accessors.index[reference]}]"
 
 
 def _unknown(kind: str, references: Iterable[int]) -> Refused:
@@ -125,7 +126,7 @@ def _unknown(kind: str, references: Iterable[int]) -> Refused:
 
 
 def _storage(v: Variable) -> str:
-    """The FMI functions that read and write a variable: enumerations are accessed as Integer."""
+    """Return the type of the FMI functions that access a variable: Integer for enumerations."""
     return "Integer" if v.type == "Enumeration" else v.type
 
 
@@ -142,15 +143,15 @@ _CONVERTERS = {"Real": float, "Boolean": bool, "Integer": _int32, "Enumeration":
 
 
 def _lister(outputs: list[Variable]) -> Callable[[Any], list[Any]]:
-    """`[Real(y.speed), Enumeration(y.state), ...]`, where each type is the name of its converter."""
+    """Return `[Real(y.speed), Enumeration(y.state), ...]` as a function; a type names its converter."""
     items = ", ".join(f"{v.type}(y.{v.name})" for v in outputs)
     listed: Callable[[Any], list[Any]] = eval(f"lambda y: [{items}]", dict(_CONVERTERS))
     return listed
 
 
-def misfit(layout: Layout, y: Any) -> Refused:
-    """The refusal that names which of the outputs has a value that its FMI type cannot hold."""
-    for v in layout.outputs:
+def misfit(outputs: Iterable[Variable], y: Any) -> Refused:
+    """Return the exception that names the output whose value in y its FMI type cannot hold."""
+    for v in outputs:
         value = getattr(y, v.name)
         try:
             _CONVERTERS[v.type](value)
