@@ -2,8 +2,8 @@
 
 `Outputs` lists as dependencies the inputs that reach an output within one instant; a sampled model's outputs
 hold between steps, so they have none. `InitialUnknowns` lists every parameter and the inputs that reach the
-output during initialization: those that `initial` reads and those that feed through, or what the variable's
-`initially` says instead.
+output during initialization: those that `initial` reads and those that feed through, or, in their place,
+those that the variable's `initially` lists.
 """
 
 from __future__ import annotations

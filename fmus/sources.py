@@ -22,7 +22,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 _HERE = Path(__file__).resolve().parent
-_MODELS = "evcosim.models"
 _SLAVE = "evcosim.fmus.slave"
 
 

@@ -1,4 +1,5 @@
 """Equations of plants and controllers: standard library, numpy and scipy only, no FMI.
 
-`base` says how a model is declared; every other module is one model.
+`base` declares models and `constants` holds the numbers that they share. Every other module is one model, or
+holds equations that models or the tables of the docs use.
 """

@@ -17,7 +17,7 @@ d lambda_i/ds = T_i - Psi_i. That is what is integrated here.
     Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock,
                       because the fastest wheel believes in no slip and so is braked with k_i lambda*.
 
-Slips and torques are arrays of one shape unless said otherwise.
+Slips and torques are arrays of one shape where nothing else is stated.
 
 Deviations: k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip. It gives 324.5
 and 135.2 N.m (expected 324.5 and 135.1); the dry road sets the first, cobble the second.
@@ -48,6 +48,11 @@ from .two_wheeler_braking import TwoWheelerBraking
 Array = NDArray[np.float64]
 Parameters = TwoWheelerBraking.Parameters
 Torques = Callable[[Array, Array], tuple[Array, Array]]
+
+END_TIME = 4.0  # s of the reduced form; the slowest gains of Proposition 3.1 need 1
+RESTING_RATE = 1e-6  # N.m: rates of (6) below this are rest
+LOCKED = 1.0 - 1e-6  # slip from which on a wheel counts as locked
+MOST_STEPS = 20_000  # a lock takes below 2000 steps at 1.05 times the gain of Proposition 3.2
 
 
 class Reduced(NamedTuple):
@@ -170,7 +175,7 @@ def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list
 def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> Array:
     """Return the slips at which (6) with (9) and the true speed ends from `starts`; both of shape (n, 2).
 
-    Raises RuntimeError where it has not come to rest, which Proposition 3.1 excludes.
+    Raises RuntimeError where it is not at rest at the end, which Proposition 3.1 excludes.
     """
     from scipy.integrate import solve_ivp  # slow to import
 
@@ -181,13 +186,13 @@ def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGE
 
     # Each start couples its own two slips alone: the Jacobian is banded.
     solution = solve_ivp(
-        rates, (0.0, REST), starts.reshape(-1), method="LSODA", rtol=1e-9, atol=1e-12, lband=1, uband=1
+        rates, (0.0, END_TIME), starts.reshape(-1), method="LSODA", rtol=1e-9, atol=1e-12, lband=1, uband=1
     )
     ends: Array = solution.y[:, -1].reshape(-1, 2)
-    left = float(np.abs(rates(REST, ends.reshape(-1))).max())
-    if not solution.success or left > AT_REST:
+    left = float(np.abs(rates(END_TIME, ends.reshape(-1))).max())
+    if not solution.success or left > RESTING_RATE:
         raise RuntimeError(
-            f"braking on {p.road.name.lower()}: not at rest after s = {REST}, rates {left:.3g}"
+            f"braking on {p.road.name.lower()}: not at rest after s = {END_TIME}, rates {left:.3g}"
         )
     return ends
 
@@ -208,7 +213,7 @@ def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLI
     free = reduced(p, np.zeros(1), np.zeros(1))
     stiffest = float(max(free.slope_front[0], free.slope_rear[0]))
     x: Array = starts.T
-    for _ in range(LONGEST):
+    for _ in range(MOST_STEPS):
         roll = 1.0 - x.min(axis=0)  # of the fastest wheel
         moving = roll > 1.0 - LOCKED
         if not moving.any():
@@ -225,12 +230,6 @@ def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLI
 def random_starts(count: int, seed: int = 0) -> Array:
     """Return slips in [0, 1], shape (count, 2); the same for the same seed."""
     return np.random.default_rng(seed).random((count, 2))
-
-
-REST = 4.0  # in s of the reduced form; the slowest gains of Proposition 3.1 need 1
-AT_REST = 1e-6  # N.m
-LOCKED = 1.0 - 1e-6  # slip
-LONGEST = 20_000  # steps to a lock; those above need below 2000
 
 
 def _rates(p: Parameters, torques: Torques, x: Array) -> Array:

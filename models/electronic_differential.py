@@ -47,7 +47,7 @@ class ElectronicDifferential(Model):
 
     @record
     class Inputs:
-        """The speed and the angle that the driver asks for."""
+        """The speed and the angle that the driver requests."""
 
         speed_reference: float = var(0.0, "km/h", "Speed asked for (v_ref)", nominal=10.0)
         steering_angle: float = var(0.0, "rad", "Angle of the front wheels (d), positive to the left")

@@ -34,7 +34,7 @@ efficiency 93 %.
 chosen: everything of the control: i_d* = 419 A, I_max = 650 A, U_max = 400 V, tau = 3 ms; the reasons, and
 that of f_c = 0: "Derivations" in docs/systems/multi_drive.md.
 
-At the edges: at the start the motor is magnetized and gives the torque that `torque_request` then asks for.
+At the edges: at the start the motor is magnetized and gives the torque of the first `torque_request`.
 I_max <= i_d* is refused at the start. With too little voltage the current falls short, without windup; there
 is no field weakening. The control knows the flux as (M2) gives it. Phase currents are not shown: at 60 km/h
 they have 147 Hz, which no record of 100 Hz can show.

@@ -114,7 +114,7 @@ class LaneKeepingController(Model):
 
     @record
     class Outputs:
-        """The angles that the steering is asked for."""
+        """The requested steering angles."""
 
         front_steering_angle: float = var(0.0, "rad", "Front road-wheel angle (delta_f)", nominal=0.1)
         rear_steering_angle: float = var(0.0, "rad", "Rear road-wheel angle (delta_r)", nominal=0.1)

@@ -44,7 +44,7 @@ class Maneuver(NamedTuple):
 def maneuver(time: Array, speed: Array, reference: float, left_error: Array, distance: Array) -> Maneuver:
     """Return the numbers of a run from time [s], speed [m/s], left_error [rad/s] and distance [m].
 
-    The four are arrays of shape (n,); `reference` is the speed asked for [m/s]. The error counts from
+    The four are arrays of shape (n,); `reference` is the requested speed [m/s]. The error counts from
     FIRST_CURVE on, each sample until the next.
     Raises ValueError where the run ends before the first curve.
     """

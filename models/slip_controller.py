@@ -16,7 +16,7 @@ the paper's Table I:
     FRONT_ONLY        front wheel by (C1), v = v_hat; the rear wheel is free and gives v_hat         (c)
     FRONT_COMPENSATED the same, and T_r = -J w_r' on the rear wheel, so that it runs without slip    (d)
 
-One controller has both wheels ("Units" in docs/systems/braking.md says why). (d) differences w_r over one
+One controller has both wheels ("Units" in docs/systems/braking.md). (d) differences w_r over one
 sample, and so acts through the same actuator as any torque.
 
 published: lambda* = 0.22 for both wheels, the strategies, a PID for the maneuvers.

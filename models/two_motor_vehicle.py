@@ -43,10 +43,10 @@ from .road_friction import FRICTION, Road
 from .turn_geometry import check_steering, wheel_ratios
 
 ASPHALT = FRICTION[Road.DRY]
-SLOWEST = 0.5  # m/s, below which slip is measured against this speed
-ROLLING_SPEED = 0.1  # m/s, from which rolling resistance is complete
+SLIP_SPEED = 0.5  # m/s: slip is measured against at least this speed
+ROLLING_SPEED = 0.1  # m/s, from which on rolling resistance is complete
 RATE_STEP = 0.6  # largest inner step times the wheel's rate
-LONGEST = 0.01  # s, after which the rate is looked at again
+RATE_PERIOD = 0.01  # s, after which the rate is computed anew
 EQUILIBRIUM_ITERATIONS = 30
 
 
@@ -153,7 +153,7 @@ class TwoMotorVehicle(Model):
         p: TwoMotorVehicle.Parameters, x: TwoMotorVehicle.State, u: TwoMotorVehicle.Inputs, dt: float
     ) -> TwoMotorVehicle.State:
         """Return the state after `dt` [s] of held inputs."""
-        parts = max(1, ceil(dt / LONGEST - 1e-9))
+        parts = max(1, ceil(dt / RATE_PERIOD - 1e-9))
         for _ in range(parts):
             x = _advance(p, x, u, dt / parts)
         return x
@@ -197,7 +197,7 @@ def resistance_torques(p: TwoMotorVehicle.Parameters, v: float, grade: float) ->
 
 def slip(rim: float, ground: float) -> float:
     """Return the slip of a wheel whose rim has the speed `rim` over a ground of speed `ground` [m/s]."""
-    return (rim - ground) / max(abs(ground), abs(rim), SLOWEST)  # (V4)
+    return (rim - ground) / max(abs(ground), abs(rim), SLIP_SPEED)  # (V4)
 
 
 def friction(p: TwoMotorVehicle.Parameters, s: float) -> float:
@@ -225,8 +225,8 @@ def _advance(
         other = abs(ground)
         if other > size:
             size = other
-        if size < SLOWEST:
-            size = SLOWEST
+        if size < SLIP_SPEED:
+            size = SLIP_SPEED
         s = (rim - ground) / size  # (V4)
         if s < 0.0:
             s = 1.0 if s < -1.0 else -s
@@ -240,7 +240,7 @@ def _advance(
         share = 1.0 if share > 1.0 else -1.0 if share < -1.0 else share
         return climb + rolling * share + drag * v * abs(v)  # (5)
 
-    slowest = max(SLOWEST, min(max(abs(v * c_1), abs(w_1 * r)), max(abs(v * c_2), abs(w_2 * r))))
+    slowest = max(SLIP_SPEED, min(max(abs(v * c_1), abs(w_1 * r)), max(abs(v * c_2), abs(w_2 * r))))
     n = max(1, ceil(dt * p.stiffness / (RATE_STEP * slowest)))
     h = dt / n
     half = 0.5 * h
@@ -271,6 +271,6 @@ def _equilibrium_wheel_speed(p: TwoMotorVehicle.Parameters, v: float) -> float:
                 f"initial_speed = {v} m/s needs a friction of {wanted:.4g}, more than the tires give"
             )
         s += (wanted - friction(p, s)) / fall
-    if abs(v) < SLOWEST * (1.0 - s):
-        return (v + (SLOWEST * s if v > 0.0 else -SLOWEST * s)) / p.wheel_radius
+    if abs(v) < SLIP_SPEED * (1.0 - s):
+        return (v + (SLIP_SPEED * s if v > 0.0 else -SLIP_SPEED * s)) / p.wheel_radius
     return v / (1.0 - s) / p.wheel_radius  # the rim is the faster one: s = (w R - v)/(w R)

@@ -20,10 +20,10 @@ published: v_0 = 100 km/h, Burckhardt's table of mu.
 chosen: calibrated to the paper's Table I, m = 200 kg, r = 0.25 m, l_f = 0.834 m, l_r = 0.516 m, h = 0.506 m,
 J = 0.79 kg.m2 per wheel, CdA = 0.388 m2; rho = 1.2 kg/m3, dry road, g = 9.81 m/s2.
 
-At the edges: w_i >= 0, a locked wheel stands until the road overcomes its brake. F_zi >= 0: where (S1) asks
-for less, the other wheel carries all the weight. A negative torque counts as 0. From `stop_speed` on the
-vehicle keeps its deceleration a and its slips, so that it stands after another v^2/(2 a) ("The end of the
-stop" in docs/systems/braking.md); `stopping_distance` is known from then on, and 0 before.
+At the edges: w_i >= 0, a locked wheel stands until the road overcomes its brake. F_zi >= 0: where (S1) gives
+less, the other wheel carries all the weight. A negative torque counts as 0. From `stop_speed` on the vehicle
+keeps its deceleration a and its slips, so that it stands after another v^2/(2 a) ("The end of the stop" in
+docs/systems/braking.md); `stopping_distance` is known from then on, and 0 before.
 
 Step: Heun's rule with inner steps of at most 0.2 ms, held torques; shorter where the wheels are so light that
 their fastest eigenvalue, r^2 m g mu'(0)/(J v) at v = `stop_speed`, needs it. Order 2 in the inner step.

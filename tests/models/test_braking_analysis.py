@@ -114,6 +114,6 @@ def test_random_starts_are_the_same_for_the_same_seed() -> None:
 
 
 def test_an_end_that_is_none_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysis, "REST", 1e-3)
+    monkeypatch.setattr(analysis, "END_TIME", 1e-3)
     with pytest.raises(RuntimeError, match=r"braking on snow: not at rest after s = 0\.001"):
         analysis.end_points(on(Road.SNOW), times(1.05, K_BAR), STARTS)
