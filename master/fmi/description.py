@@ -17,11 +17,9 @@ from .archive import FmuError
 from .attributes import mend_attributes
 from .structure import mend_structure
 from .supplement import negated_aliases, supplement
+from .types import INTEGER, REAL, FmiType, Kind, fmi_type
 
 _VERSIONS = ("1.0", "2.0", "3.0")
-_SCALAR_TYPES = ("Real", "Integer", "Boolean", "String", "Enumeration")
-_FLOATS = ("Real", "Float32", "Float64")
-_NUMBERS_ONLY = re.compile(r"[+-]?\d+")
 
 
 def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], frozenset[str]]:
@@ -90,12 +88,13 @@ def _mend(path: Path, root: Any) -> list[str]:
     defects: list[str] = []
     variables = [v for v in root.find("ModelVariables") if isinstance(v.tag, str)]
     places: dict[int, int] = {}
-    scalar = root.get("fmiVersion")[0] in "12"
+    version = root.get("fmiVersion")
+    scalar = version[0] in "12"
     types = {t.get("name") for t in root.iter("SimpleType", "Type")}
     types |= {t.get("name") for t in root.findall("TypeDefinitions/*")}
     seen: set[str] = set()
     for index, v in enumerate(variables, 1):
-        value = next((c for c in v if c.tag in _SCALAR_TYPES), None) if scalar else v
+        value = next((c for c in v if fmi_type(version, c.tag) is not None), None) if scalar else v
         name = v.get("name")
         if name is None or value is None:
             v.getparent().remove(v)
@@ -105,7 +104,7 @@ def _mend(path: Path, root: Any) -> list[str]:
             continue
         places[index] = len(places) + 1
         _require(path, v, name, seen)
-        defects += _mend_variable(v, value, name, types)
+        defects += _mend_variable(v, value, name, types, fmi_type(version, value.tag))
     return defects + mend_attributes(root) + mend_structure(root, places)
 
 
@@ -121,18 +120,15 @@ def _require(path: Path, v: Any, name: str, seen: set[str]) -> None:
         )
 
 
-def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> list[str]:
+def _mend_variable(v: Any, value: Any, name: str, types: set[str | None], kind: FmiType | None) -> list[str]:
+    """Mend the attributes of a variable `v` and of its type's element `value`, which in FMI 3.0 are one."""
     defects = []
     declared = value.get("declaredType")
     if declared is not None and declared not in types:
         del value.attrib["declaredType"]
         defects.append(f"{name}: declaredType '{declared}' is not defined; it is ignored")
-    for attribute in ("start", "min", "max"):
-        given = value.get(attribute)
-        if given is not None and not v.findall("Dimension") and not _is_of_type(given, value.tag):
-            del value.attrib[attribute]
-            defects.append(f"{name}: {attribute} = {given!r} is no {value.tag}; it is ignored")
-    defects += _contradictions(value, name)
+    if kind is not None and not v.findall("Dimension"):
+        defects += _mend_values(value, name, kind.kind)
     if (wrong := _illegal_variability(v)) is not None:
         causality = v.get("causality", "local")
         assumed = _ALLOWED[causality][0]
@@ -143,10 +139,19 @@ def _mend_variable(v: Any, value: Any, name: str, types: set[str | None]) -> lis
     return defects
 
 
+def _mend_values(value: Any, name: str, kind: Kind) -> list[str]:
+    """Leave out what is no value of a type; a start value outside of its limits is reported, and stays."""
+    defects = []
+    for attribute in ("start", "min", "max"):
+        given = value.get(attribute)
+        if given is not None and not kind.reads(given):
+            del value.attrib[attribute]
+            defects.append(f"{name}: {attribute} = {given!r} is no {value.tag}; it is ignored")
+    return defects + (_contradictions(value, name) if kind in (REAL, INTEGER) else [])
+
+
 def _contradictions(value: Any, name: str) -> list[str]:
-    """A minimum above the maximum bounds nothing; a start value outside is told, and stays."""
-    if (value.tag not in _FLOATS and "Int" not in value.tag) or value.findall("Dimension"):
-        return []
+    """Leave out limits where the minimum is above the maximum, and report a start value beyond one."""
     low, high, start = (None if (x := value.get(a)) is None else float(x) for a in ("min", "max", "start"))
     if low is not None and high is not None and low > high:
         del value.attrib["min"], value.attrib["max"]
@@ -156,19 +161,6 @@ def _contradictions(value: Any, name: str) -> list[str]:
     if start is not None and high is not None and start > high:
         return [f"{name}: start = {start:g} is above max = {high:g}"]
     return []
-
-
-def _is_of_type(text: str, kind: str) -> bool:
-    if kind in _FLOATS:
-        try:
-            return float(text) == float(text)
-        except ValueError:
-            return False
-    if kind == "Boolean":
-        return text.strip().lower() in ("true", "false", "1", "0")
-    if "Int" in kind or kind == "Enumeration":
-        return _NUMBERS_ONLY.fullmatch(text.strip()) is not None
-    return True
 
 
 _ALLOWED = {

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.unit_plan import UnitPlan
-from ..unit import UnitError, floats
+from ..unit import UnitError
+from .binding import Place
 from .cvode import Cvode, Function, SolverError
 from .fmu import Fmu
 from .instance import Instance
@@ -38,8 +39,6 @@ _SOLVER_STEPS = 100_000  # from one event, or the start of a step, to the next
 _DISCARD = 2
 _SHOWN = 3
 _CLOSE = 16 * sys.float_info.epsilon  # of a time: what the solver cannot step over
-
-Place = tuple[int, VariableInfo]
 
 
 class ModelExchange(Instance):
@@ -87,10 +86,9 @@ class ModelExchange(Instance):
         for group in plan.groups:
             for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
                 self._inputs[_is_continuous(variable)].append((slot, variable))
-        self._view = floats(memory)
+        binding, self._view = self._binding, self._binding.view
         self._set_continuous, self._set_discrete = (
-            one_after_the_other(*(self._acting(t, self._view) for t in transfers))
-            for transfers in (self._transfers("Set", memory, self._inputs[kind]) for kind in (True, False))
+            binding.calls(binding.transfers("Set", self._inputs[kind])) for kind in (True, False)
         )
         self.set_inputs = self._take_inputs
 

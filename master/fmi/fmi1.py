@@ -10,17 +10,13 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
-from ...cosim.interface import UnitInterface, Value, VariableInfo
+from ...cosim.interface import UnitInterface, Value
 from .fmu import Fmu, FmuError
 from .instance import Instance
 from .library import Library
 from .transfer import StepCall
 
 _FALSE, _TRUE = ctypes.c_char(0), ctypes.c_char(1)  # fmiBoolean
-_C_TYPES: dict[str, Any] = {
-    "Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_byte, "String": ctypes.c_char_p,
-}  # fmt: skip # a table
-_NOTHING: dict[str, Value] = {"Real": 0.0, "Boolean": False, "String": ""}
 
 
 class Fmi1Unit(Instance):
@@ -61,10 +57,6 @@ class Fmi1Unit(Instance):
             self.log.belongs_to(component)
         return component
 
-    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
-        kind = "Integer" if variable.type == "Enumeration" else variable.type
-        return f"fmi{direction}{kind}", _C_TYPES[kind]
-
     def get(self, name: str) -> Value:
         """See `unit.Unit`; before the initialization, the value that was set, else the start value."""
         if self._initialized:
@@ -72,7 +64,7 @@ class Fmi1Unit(Instance):
         if name in self._given:
             return self._given[name]
         variable = self.interface.variables[name]
-        return _NOTHING.get(variable.type, 0) if variable.start is None else variable.start
+        return self.type_of(variable).kind.zero if variable.start is None else variable.start
 
     def set(self, name: str, value: Value) -> None:
         """See `unit.Unit`."""

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import ctypes
 from pathlib import Path
-from typing import Any
 
 from fmpy.fmi2 import fmi2EventInfo
 
-from ...cosim.interface import VariableInfo
 from .exchange import ModelExchange
 from .instance import Instance
 from .transfer import Call, StepCall
 
 _INVISIBLE, _LOGGING = ctypes.c_int(0), ctypes.c_int(1)  # fmi2Boolean
 _MODEL_EXCHANGE, _CO_SIMULATION = ctypes.c_int(0), ctypes.c_int(1)
-_C_TYPES: dict[str, Any] = {
-    "Real": ctypes.c_double, "Integer": ctypes.c_int, "Boolean": ctypes.c_int, "String": ctypes.c_char_p,
-}  # fmt: skip # a table
 
 
 class Fmi2Unit(Instance):
@@ -38,10 +33,6 @@ class Fmi2Unit(Instance):
             _LOGGING,
         )
         return component
-
-    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
-        kind = "Integer" if variable.type == "Enumeration" else variable.type
-        return f"fmi2{direction}{kind}", _C_TYPES[kind]
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """See `unit.Unit`."""

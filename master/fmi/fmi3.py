@@ -6,7 +6,6 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
-from ...cosim.interface import VariableInfo
 from ..unit import UnitError
 from .exchange import ModelExchange
 from .instance import Instance, resources_path
@@ -14,12 +13,6 @@ from .log import receive_3
 from .transfer import Call, StepCall
 
 _FALSE, _TRUE = ctypes.c_bool(False), ctypes.c_bool(True)
-_C_TYPES: dict[str, Any] = {
-    "Float32": ctypes.c_float, "Float64": ctypes.c_double,
-    "Int8": ctypes.c_int8, "Int16": ctypes.c_int16, "Int32": ctypes.c_int32, "Int64": ctypes.c_int64,
-    "UInt8": ctypes.c_uint8, "UInt16": ctypes.c_uint16, "UInt32": ctypes.c_uint32, "UInt64": ctypes.c_uint64,
-    "Boolean": ctypes.c_bool, "String": ctypes.c_char_p,
-}  # fmt: skip # a table, as in section 2.2.2 of FMI 3.0
 
 
 class Fmi3Unit(Instance):
@@ -53,12 +46,8 @@ class Fmi3Unit(Instance):
             _TRUE,
         )
 
-    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
-        kind = str(self._declared[variable.declared_name].type)
-        kind = "Int64" if kind == "Enumeration" else kind
-        return f"fmi3{direction}{kind}", _C_TYPES[kind]
-
-    def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
+    def arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
+        """See `Instance`; the values have a count of their own."""
         return self._component, references, ctypes.c_size_t(count), values, ctypes.c_size_t(count)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:

@@ -15,6 +15,7 @@ from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
+from .types import ENUMERATION, INTEGER, REAL, FmiType, Kind, fmi_type
 
 __all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
 
@@ -182,9 +183,9 @@ def _interface(fmu: Fmu) -> UnitInterface:
     initially = {u.variable.name: _names(u.dependencies) for u in md.initialUnknowns}
     unusable = _unusable(fmu)
     variables = {
-        v.name: _variable(v, depends, initially, v.name in fmu.negated)
+        v.name: _variable(v, kind.kind, depends, initially, v.name in fmu.negated)
         for v in md.modelVariables
-        if v.name not in unusable
+        if v.name not in unusable and (kind := fmi_type(md.fmiVersion, str(v.type))) is not None
     }
     units = {u.name: _unit_of_measure(u) for u in md.unitDefinitions}
     return UnitInterface(str(fmu.path), variables, units, unusable)
@@ -194,57 +195,55 @@ def _names(variables: Any) -> tuple[str, ...] | None:
     return None if variables is None else tuple(v.name for v in variables)
 
 
-_KINDS = {"Real": "Real", "Float32": "Real", "Float64": "Real", "Boolean": "Boolean", "String": "String"}
-_KINDS |= {"Enumeration": "Enumeration", "Integer": "Integer"}
-_KINDS |= {f"{sign}Int{bits}": "Integer" for sign in ("", "U") for bits in (8, 16, 32, 64)}
-
-
 def _unusable(fmu: Fmu) -> dict[str, str]:
     """The variables that no one can ask for, with the reason."""
     found: dict[str, str] = {}
     inputs: dict[tuple[str, int], str] = {}
-    shared = fmu.description.fmiVersion.startswith("3")  # all types share the value references
+    version = fmu.description.fmiVersion
+    shared = version.startswith("3")  # all types share the value references
     for v in fmu.description.modelVariables:
-        reason = _why_unusable(v, v.name in fmu.negated)
-        if not reason and v.causality == "input":
-            kind = "" if shared else {"Enumeration": "Integer"}.get(v.type, v.type)
-            first = inputs.setdefault((kind, int(v.valueReference)), v.name)
+        kind = fmi_type(version, str(v.type))
+        reason = _why_unusable(v, kind, v.name in fmu.negated)
+        if kind is not None and not reason and v.causality == "input":
+            of = "" if shared else kind.accessed
+            first = inputs.setdefault((of, int(v.valueReference)), v.name)
             reason = f"is an alias of the input {first}: connect that one" if first != v.name else ""
         if reason:
             found[v.name] = reason
     return found
 
 
-def _why_unusable(v: Any, negated: bool) -> str:
+def _why_unusable(v: Any, kind: FmiType | None, negated: bool) -> str:
     """Why no value of a variable can be asked for ("": it can)."""
-    if negated and v.type not in ("Real", "Integer"):
+    if negated and (kind is None or kind.kind not in (REAL, INTEGER)):
         return f"is a negated alias of type {v.type}, which is not supported"
     if v.clocks:
         return "belongs to a clock; clocks are not supported"
     if v.dimensions:
         size = ", ".join(str(n) for n in v.shape or ())
         return f"is an array, {v.type}[{size}]; arrays are not supported"
-    return "" if str(v.type) in _KINDS else f"is of type {v.type}, which is not supported"
+    return "" if kind is not None else f"is of type {v.type}, which is not supported"
 
 
-def _variable(v: Any, depends: dict[str, Any], initially: dict[str, Any], negated: bool) -> VariableInfo:
+def _variable(
+    v: Any, kind: Kind, depends: dict[str, Any], initially: dict[str, Any], negated: bool
+) -> VariableInfo:
     declared = v.declaredType
-    kind = _KINDS[str(v.type)]
     items = (
         tuple((int(i.value), i.name) for i in (declared.items or ()))
-        if kind == "Enumeration" and declared
+        if kind is ENUMERATION and declared
         else ()
     )
-    variability = v.variability or ("continuous" if kind == "Real" else "discrete")
-    if kind != "Real" and variability == "continuous":  # the default of FMI 2.0, but only a Real can be
+    variability = v.variability or ("continuous" if kind is REAL else "discrete")
+    if kind is not REAL and variability == "continuous":  # the default of FMI 2.0, but only a Real can be
         variability = "discrete"
     return VariableInfo(
         name=v.name,
-        type=kind,
+        type=kind.name,
         causality=v.causality or "local",
         variability=variability,
         unit=_inherited(v, "unit") or "",
-        start=_number(v.start, kind),
+        start=None if v.start is None else kind.parse(v.start),
         min=_limit(_inherited(v, "min")),
         max=_limit(_inherited(v, "max")),
         description=v.description or "",
@@ -259,14 +258,6 @@ def _inherited(v: Any, attribute: str) -> Any:
     """An attribute of a variable, else of its declared type (FMI 2.0 section 2.2.3)."""
     own = getattr(v, attribute, None)
     return own if own is not None else getattr(v.declaredType, attribute, None)
-
-
-def _number(text: Any, kind: str) -> float | int | bool | str | None:
-    if text is None or kind == "String":
-        return None if text is None else str(text)
-    if kind == "Boolean":
-        return str(text).strip().lower() in ("true", "1")
-    return float(text) if kind == "Real" else int(text)
 
 
 def _limit(text: Any) -> float | None:

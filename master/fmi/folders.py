@@ -11,34 +11,43 @@ import shutil
 import threading
 from pathlib import Path
 
-from .fmu import Fmu
+from .fmu import Fmu, FmuError, is_true
 
 
 @dataclasses.dataclass
 class _Folder:
     path: Path
-    units: int = 0
+    units: list[str] = dataclasses.field(default_factory=list)  # their names, which two systems may share
 
 
 _folders: dict[str, _Folder] = {}
 _lock = threading.Lock()
 
 
-def take(fmu: Fmu) -> Path:
-    """The folder of an FMU for one more unit. Raises FmuError where it cannot be extracted."""
+def take(fmu: Fmu, unit: str) -> Path:
+    """The folder of an FMU for one more unit.
+
+    Raises FmuError where it cannot be extracted, or can be instantiated once in a process and is.
+    """
     with _lock:
-        if fmu.digest not in _folders:
-            _folders[fmu.digest] = _Folder(fmu.extract())
-        folder = _folders[fmu.digest]
-        folder.units += 1
+        there = _folders.get(fmu.digest)
+        if there is not None and is_true(fmu.kind, "canBeInstantiatedOnlyOncePerProcess"):
+            raise FmuError(
+                f"{fmu.path}: can be instantiated only once in a process "
+                f"(canBeInstantiatedOnlyOncePerProcess), and unit '{there.units[0]}' is it already: unit "
+                f"'{unit}' needs isolation = \"process\""
+            )
+        folder = there or _Folder(fmu.extract())
+        _folders[fmu.digest] = folder
+        folder.units.append(unit)
         return folder.path
 
 
-def give_back(fmu: Fmu) -> None:
+def give_back(fmu: Fmu, unit: str) -> None:
     """A unit no longer needs the folder; its library is closed."""
     with _lock:
         folder = _folders[fmu.digest]
-        folder.units -= 1
+        folder.units.remove(unit)
         if not folder.units:
             del _folders[fmu.digest]
             shutil.rmtree(folder.path, ignore_errors=True)

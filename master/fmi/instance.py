@@ -7,7 +7,7 @@ counts, and buffers that are parts of the run's memory where the FMI type is tha
 A class for a version or a kind (Co-Simulation, Model Exchange) defines, see there:
   `fmi`               what the names of its C functions begin with; `_prefix`: what stands before that
   `_instantiate`      the one call that makes the component
-  `_access`           function and C type for a variable; `_arguments`, where they are not those of FMI 2.0
+  `arguments`         those of a function that gets or sets values, where they are not those of FMI 2.0
   `enter_initialization`, `exit_initialization`, `start_step`; `_free_instance`, where it has another name
 and has for its own C functions `_call` (once or seldom), `function` with `_judge` (in a step) and `_fail`.
 A class that does more around a transfer wraps the calls that `bind` makes: `set_inputs`, `get_feedthrough`,
@@ -20,7 +20,6 @@ import contextlib
 import ctypes
 import functools
 import os
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -28,34 +27,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
-from ...cosim.plan.unit_plan import SlotGroup, UnitPlan
-from ..unit import UnitError, floats
+from ...cosim.plan.unit_plan import UnitPlan
+from ..unit import UnitError
 from . import binary, folders
-from .fmu import Fmu, FmuError, check_runnable, is_true
+from .binding import Binding
+from .fmu import Fmu, FmuError, check_runnable
 from .library import Library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
 from .state import States
 from .step_status import beside
-from .transfer import (
-    Call,
-    Copy,
-    Item,
-    StepCall,
-    Transfer,
-    copying,
-    getting,
-    getting_booleans,
-    one_after_the_other,
-    range_of,
-    setting,
-    setting_booleans,
-)
+from .transfer import Call, Copy, StepCall, Transfer, one_after_the_other
+from .types import BOOLEAN, FmiType, fmi_type
 
 _WARNING = 1
 _TROUBLE = ("warn", "discard", "error", "fatal", "pending")
-_alone: dict[str, Instance] = {}
-"""The units in this process whose FMU can be there only once, by the digest of the FMU."""
 
 
 class Instance:
@@ -93,8 +79,7 @@ class Instance:
         self._initialized = False
         self._folder: Path | None = None
         try:
-            self._take_place()
-            folder = self._folder = folders.take(fmu)
+            folder = self._folder = folders.take(fmu, name)
             self._library = self._load(folder)
             with self.log.instantiating():
                 component = self._instantiate(folder)
@@ -114,21 +99,6 @@ class Instance:
         self.get_feedthrough: Call = one_after_the_other()
         self.get_outputs: Call = one_after_the_other()
 
-    def _take_place(self) -> None:
-        """Raise FmuError where the FMU can be instantiated once in a process, and is."""
-        if not is_true(self.fmu.kind, "canBeInstantiatedOnlyOncePerProcess"):
-            return
-        if (other := _alone.setdefault(self.fmu.digest, self)) is not self:
-            raise FmuError(
-                f"{self.fmu.path}: can be instantiated only once in a process "
-                f"(canBeInstantiatedOnlyOncePerProcess), and unit '{other.name}' is it already: unit "
-                f"'{self.name}' needs isolation = \"process\""
-            )
-
-    def _leave_place(self) -> None:
-        if _alone and _alone.get(self.fmu.digest) is self:
-            del _alone[self.fmu.digest]
-
     def _listen_to_trouble(self) -> None:
         """Leave out the log categories that tell of each call: they cost more than steps, and drown the
         reason of a failure. An FMU that declares no category of trouble goes on telling all."""
@@ -146,11 +116,7 @@ class Instance:
         """Call the version's function; the component, or None (0) when the FMU refuses."""
         raise NotImplementedError
 
-    def _access(self, direction: str, variable: VariableInfo) -> tuple[str, Any]:
-        """The name of the function that gets or sets a variable, and the ctypes type of its values."""
-        raise NotImplementedError
-
-    def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
+    def arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
         """The arguments of a function that gets or sets values."""
         return self._component, references, ctypes.c_size_t(count), values
 
@@ -192,93 +158,19 @@ class Instance:
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """See `unit.Unit`. Makes the calls of a turn, with all their arguments."""
+        binding = self._binding = Binding(self, memory)
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
             if group.kind == "input":
-                self.inputs += self._transfers("Set", memory, enumerate(group.variables, group.slot))
+                self.inputs += binding.transfers("Set", enumerate(group.variables, group.slot))
             elif group.kind == "discrete":
-                self.outputs += self._transfers("Get", memory, enumerate(group.variables, group.slot))
+                self.outputs += binding.transfers("Get", enumerate(group.variables, group.slot))
             else:
-                self.outputs += self._transfers("Get", memory, enumerate(group.variables, group.latest))
-                self.through += self._feedthrough(memory, group)
-        view = floats(memory)
-        self.set_inputs = one_after_the_other(*(self._acting(t, view) for t in self.inputs))
-        self.get_feedthrough = one_after_the_other(*(self._acting(t, view) for t in self.through))
-        self.get_outputs = one_after_the_other(*(self._acting(t, view) for t in self.outputs))
-
-    def _feedthrough(self, memory: NDArray[np.float64], group: SlotGroup) -> list[Transfer | Copy]:
-        if not group.feedthrough:
-            return []
-        through = enumerate(group.variables[: group.feedthrough], group.latest)
-        transfers = self._transfers("Get", memory, through)
-        return [*transfers, Copy(group.latest, group.slot, group.feedthrough)]
-
-    def _transfers(
-        self, direction: str, memory: NDArray[np.float64], places: Iterable[tuple[int, VariableInfo]]
-    ) -> list[Transfer]:
-        """What moves values between the unit and their slots of the memory.
-
-        One for each function: what is one type in a plan may be several in FMI 3.0.
-        """
-        groups: dict[tuple[str, Any], list[tuple[int, VariableInfo]]] = {}
-        for slot, variable in places:
-            groups.setdefault(self._access(direction, variable), []).append((slot, variable))
-        return [
-            self._transfer(name, c_type, memory, [slot for slot, _ in members], [v for _, v in members])
-            for (name, c_type), members in groups.items()
-        ]
-
-    def _transfer(
-        self,
-        name: str,
-        c_type: Any,
-        memory: NDArray[np.float64],
-        slots: list[int],
-        variables: list[VariableInfo],
-    ) -> Transfer:
-        n, first = len(slots), slots[0]
-        references = (ctypes.c_uint * n)(*(self._reference(v.name) for v in variables))
-        in_order = slots == list(range(first, first + n)) and not any(v.inverted for v in variables)
-        in_place = c_type is ctypes.c_double and in_order
-        values = (c_type * n).from_buffer(memory[first : first + n].data) if in_place else (c_type * n)()
-        items = [Item(i, slots[i], -1.0 if v.inverted else 1.0, v) for i, v in enumerate(variables)]
-        return Transfer(
-            function=name,
-            pointer=self.function(name),
-            references=references,
-            values=values,
-            c_type=c_type,
-            gets="Get" in name,
-            boolean=variables[0].type == "Boolean",
-            items=() if in_place else tuple(items),
-        )
-
-    def _acting(self, transfer: Transfer | Copy, memory: memoryview[float]) -> Call:
-        """A call without arguments that does it."""
-        if isinstance(transfer, Copy):
-            return copying(memory, transfer)
-        call, values, items = self._caller(transfer), transfer.values, transfer.items
-        if not items:
-            return call
-        if transfer.boolean:
-            return (getting_booleans if transfer.gets else setting_booleans)(call, memory, values, items)
-
-        def refuse(place: int, value: float) -> NoReturn:
-            self.refuse(transfer, place, value)
-
-        made = getting if transfer.gets else setting
-        return made(call, memory, values, items, transfer.c_type, refuse)
-
-    def _caller(self, transfer: Transfer) -> Call:
-        function, name = transfer.pointer, transfer.function
-        arguments = self._arguments(transfer.references, len(transfer.references), transfer.values)
-
-        def call() -> None:
-            status = function(*arguments)
-            if status:
-                self._judge(name, status)
-
-        return call
+                self.outputs += binding.transfers("Get", enumerate(group.variables, group.latest))
+                self.through += binding.feedthrough(group)
+        self.set_inputs = binding.calls(self.inputs)
+        self.get_feedthrough = binding.calls(self.through)
+        self.get_outputs = binding.calls(self.outputs)
 
     def judge_transfer(self, transfer: Transfer, status: int) -> None:
         """Count the warning, or raise the UnitError, that the status of a transfer is."""
@@ -301,14 +193,19 @@ class Instance:
         name = variable.name
         if "Get" in function:
             raise UnitError(f"unit '{self.name}': {name} = {value} is more than a double holds (2^53)")
-        kind = str(self._declared[variable.declared_name].type)
-        low, high = range_of(self._access("Set", variable)[1])
+        kind = self.type_of(variable)
         raise UnitError(
-            f"unit '{self.name}': {name} cannot be set to {value:.17g}: it is of type {kind}, "
-            f"from {low:.17g} to {high:.17g}"
+            f"unit '{self.name}': {name} cannot be set to {value:.17g}: it is of type {kind.name}, "
+            f"from {kind.low:.17g} to {kind.high:.17g}"
         )
 
-    def _reference(self, name: str) -> int:
+    def type_of(self, variable: VariableInfo) -> FmiType:
+        """The FMI type of a variable of the unit's interface."""
+        kind = fmi_type(self.fmu.description.fmiVersion, self._declared[variable.declared_name].type)
+        assert kind is not None  # the interface has no other variables
+        return kind
+
+    def reference(self, name: str) -> int:
         """The value reference of a variable, by the name that the system uses."""
         return int(self._declared[self.interface.variables[name].declared_name].valueReference)
 
@@ -317,32 +214,33 @@ class Instance:
     def get(self, name: str) -> Value:
         """See `unit.Unit`."""
         variable = self.interface.variables[name]
-        function, c_type = self._access("Get", variable)
-        buffer = (c_type * 1)()
-        self._call(function, *self._arguments((ctypes.c_uint * 1)(self._reference(name)), 1, buffer), of=name)
-        value = buffer[0]
-        if variable.type == "String":
-            return str((value or b"").decode("utf-8", "replace"))
-        if variable.type == "Boolean":
-            return bool(value)
-        number = float(value) if variable.type == "Real" else int(value)
-        return -number if variable.inverted else number
+        kind = self.type_of(variable)
+        buffer = (kind.c_type * 1)()
+        self._access("Get", kind, name, buffer)
+        value = kind.kind.from_c(buffer[0])
+        if isinstance(value, bool | str):
+            return value
+        return -value if variable.inverted else value
 
     def set(self, name: str, value: Value) -> None:
         """See `unit.Unit`."""
         variable = self.interface.variables[name]
-        function, c_type = self._access("Set", variable)
+        kind = self.type_of(variable)
         if isinstance(value, str):
-            buffer = (c_type * 1)(value.encode())
-        elif variable.type == "Boolean":
-            buffer = (c_type * 1)(bool(value))
+            buffer = (kind.c_type * 1)(value.encode())
+        elif kind.kind is BOOLEAN:
+            buffer = (kind.c_type * 1)(bool(value))
         else:
             number = -value if variable.inverted else value
-            low, high = range_of(c_type)
-            if not low <= number <= high:
-                self._refuse(variable, number, function)
-            buffer = (c_type * 1)(number)
-        self._call(function, *self._arguments((ctypes.c_uint * 1)(self._reference(name)), 1, buffer), of=name)
+            if not kind.low <= number <= kind.high:
+                self._refuse(variable, number, "Set")
+            buffer = (kind.c_type * 1)(number)
+        self._access("Set", kind, name, buffer)
+
+    def _access(self, direction: str, kind: FmiType, name: str, buffer: Any) -> None:
+        """Get or set the value of one variable in a buffer."""
+        arguments = self.arguments((ctypes.c_uint * 1)(self.reference(name)), 1, buffer)
+        self._call(f"{self.fmi}{direction}{kind.accessed}", *arguments, of=name)
 
     # ---- its state (see `state.States`)
 
@@ -394,10 +292,9 @@ class Instance:
                     self._free_instance(library, component)
             library.close()
         self.log.close()
-        self._leave_place()
         folder, self._folder = self._folder, None
         if folder is not None:
-            folders.give_back(self.fmu)
+            folders.give_back(self.fmu, self.name)
 
     def _free_instance(self, library: Library, component: Any) -> None:
         library.function(f"{self.fmi}FreeInstance", None)(component)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from .types import INTEGER, fmi_type
+
 _CAPABILITIES = (
     "canHandleVariableCommunicationStepSize",
     "canBeInstantiatedOnlyOncePerProcess",
@@ -40,10 +42,15 @@ def _causalities(description: Any) -> None:
 
 
 def _limits(description: Any, root: Any) -> None:
-    limits = {v.get("name"): v for v in root.find("ModelVariables") if str(v.tag).startswith("UInt")}
+    limits = {v.get("name"): v for v in root.find("ModelVariables") if _is_unsigned(root, str(v.tag))}
     for variable in description.modelVariables if limits else ():
         if (found := limits.get(variable.name)) is not None:
             variable.min, variable.max = found.get("min"), found.get("max")
+
+
+def _is_unsigned(root: Any, name: str) -> bool:
+    kind = fmi_type(root.get("fmiVersion"), name)
+    return kind is not None and kind.kind is INTEGER and kind.low == 0
 
 
 def negated_aliases(root: Any) -> frozenset[str]:

@@ -6,16 +6,12 @@ their C type: a number that the type does not hold is refused there, since C wou
 
 from __future__ import annotations
 
-import ctypes
 import dataclasses
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, NamedTuple, NoReturn
 
 from ...cosim.interface import VariableInfo
-
-LARGEST_WHOLE = 2**53
-"""Beyond it a double does not hold every whole number."""
+from .types import BOOLEAN, LARGEST_WHOLE, REAL, FmiType
 
 Call = Callable[[], None]
 Refusal = Callable[[int, Any], NoReturn]
@@ -43,9 +39,8 @@ class Transfer:
     pointer: Any
     references: Any
     values: Any
-    c_type: Any
+    type: FmiType
     gets: bool
-    boolean: bool
     items: tuple[Item, ...]
 
 
@@ -67,43 +62,35 @@ class Copy:
     count: int
 
 
-def range_of(c_type: Any) -> tuple[float, float]:
-    """The least and the largest number of a ctypes type."""
-    if c_type is ctypes.c_double:
-        return -math.inf, math.inf
-    if c_type is ctypes.c_float:
-        largest = (2.0 - 2.0**-23) * 2.0**127
-        return -largest, largest
-    bits = 8 * ctypes.sizeof(c_type)
-    signed = c_type(-1).value < 0
-    return (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+def moving(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Refusal) -> Call:
+    """Return `call`, the C call of a transfer, with what moves its values between buffer and memory."""
+    if not transfer.items:
+        return call
+    if transfer.type.kind is BOOLEAN:
+        return (_getting_booleans if transfer.gets else _setting_booleans)(transfer, call, memory)
+    return (_getting if transfer.gets else _setting)(transfer, call, memory, refuse)
 
 
-def setting(
-    call: Call,
-    memory: memoryview[float],
-    values: Any,
-    items: Sequence[Item],
-    c_type: Any,
-    refuse: Refusal,
-) -> Call:
-    """Fill the buffer `values` from the memory, then call. A fraction is cut off from what shall be whole."""
-    low, high = range_of(c_type)
-    kind = float if c_type in (ctypes.c_double, ctypes.c_float) else int
+def _setting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Refusal) -> Call:
+    """Fill the buffer from the memory, then call. A type of whole numbers gets no fraction: it is cut off."""
+    values, items = transfer.values, transfer.items
+    low, high = transfer.type.low, transfer.type.high
+    number = float if transfer.type.kind is REAL else int
 
     def set_values() -> None:
         for place, slot, sign, _ in items:
             value = sign * memory[slot]
             if not low <= value <= high:
                 refuse(place, value)
-            values[place] = kind(value)
+            values[place] = number(value)
         call()
 
     return set_values
 
 
-def setting_booleans(call: Call, memory: memoryview[float], values: Any, items: Sequence[Item]) -> Call:
-    """The same for Booleans: all but 0 is true."""
+def _setting_booleans(transfer: Transfer, call: Call, memory: memoryview[float]) -> Call:
+    """Write Booleans: any number but 0 becomes true."""
+    values, items = transfer.values, transfer.items
 
     def set_values() -> None:
         for place, slot, *_ in items:
@@ -113,11 +100,9 @@ def setting_booleans(call: Call, memory: memoryview[float], values: Any, items: 
     return set_values
 
 
-def getting(
-    call: Call, memory: memoryview[float], values: Any, items: Sequence[Item], c_type: Any, refuse: Refusal
-) -> Call:
+def _getting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Refusal) -> Call:
     """Call, then write the buffer into the memory; a 64-bit integer that no double holds is refused."""
-    wide = c_type in (ctypes.c_int64, ctypes.c_uint64)
+    values, items = transfer.values, transfer.items
 
     def get_values() -> None:
         call()
@@ -132,11 +117,12 @@ def getting(
                 refuse(place, value)
             memory[slot] = sign * value
 
-    return get_wide_values if wide else get_values
+    return get_wide_values if transfer.type.wide else get_values
 
 
-def getting_booleans(call: Call, memory: memoryview[float], values: Any, items: Sequence[Item]) -> Call:
-    """The same for Booleans: 0.0 or 1.0, whatever number an FMU takes for true."""
+def _getting_booleans(transfer: Transfer, call: Call, memory: memoryview[float]) -> Call:
+    """Read Booleans: 0.0 or 1.0, whatever number an FMU takes for true."""
+    values, items = transfer.values, transfer.items
 
     def get_values() -> None:
         call()
@@ -147,7 +133,7 @@ def getting_booleans(call: Call, memory: memoryview[float], values: Any, items: 
 
 
 def copying(memory: memoryview[float], copy: Copy) -> Call:
-    """What copies slots."""
+    """Return a call that copies slots of the memory."""
     values = memory[copy.source : copy.source + copy.count]
     place = slice(copy.target, copy.target + copy.count)
 
@@ -158,7 +144,7 @@ def copying(memory: memoryview[float], copy: Copy) -> Call:
 
 
 def one_after_the_other(*calls: Call) -> Call:
-    """One call of several."""
+    """Return one call that makes all of these in order."""
     if len(calls) == 1:
         return calls[0]
 

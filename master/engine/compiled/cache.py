@@ -1,7 +1,7 @@
 """The compiled kernel from numba's cache, or made now.
 
 The cache lies in the user's folder of built FMUs, not beside the sources, which may stand where nobody can
-write; its name has a digest of all sources of the kernel, since numba looks at one of them alone.
+write; its name has a digest of all SOURCES of the kernel, since numba looks at one of them alone.
 """
 
 # numba has no types
@@ -14,13 +14,17 @@ import hashlib
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numba
 
 from ...builtin import cache_folder
+from ...fmi import types
+from . import call, kernel, tables
 
-_SOURCES = ("call.py", "kernel.py", "tables.py")
+SOURCES: tuple[ModuleType, ...] = (kernel, call, tables, types)
+"""The modules of this project that the machine code is made of: `kernel` and what it imports."""
 _made: dict[bool, Any] = {}
 
 
@@ -29,8 +33,6 @@ def compiled(timed: bool = False) -> tuple[int, str]:
 
     Compiling takes some seconds, the cache a tenth of one.
     """
-    from . import kernel
-
     function = kernel.run_timed if timed else kernel.run
     folder, notice = _folder()
     if timed not in _made:
@@ -40,9 +42,9 @@ def compiled(timed: bool = False) -> tuple[int, str]:
 
 
 def _folder() -> tuple[Path, str]:
-    """Where the cache is, and a notice where nothing can be written there."""
-    sources = b"".join(Path(__file__).with_name(name).read_bytes() for name in _SOURCES)
-    digest = hashlib.sha256(sources + numba.__version__.encode()).hexdigest()[:16]
+    """The folder of the cache, and a notice where nothing can be written there."""
+    content = b"".join(Path(module.__file__ or "").read_bytes() for module in SOURCES)
+    digest = hashlib.sha256(content + numba.__version__.encode()).hexdigest()[:16]
     folder = cache_folder() / f"engine-{digest}"
     try:
         folder.mkdir(parents=True, exist_ok=True)

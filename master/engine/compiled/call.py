@@ -5,11 +5,15 @@
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
+
+from ...fmi.types import BOOLEAN, BUFFERS, REAL, FmiType
 
 _INT, _LONG = ir.IntType(32), types.int64
 _TRUE = ir.Constant(_INT, 1)
@@ -77,18 +81,6 @@ def peek(typingctx, address, kind):
     return found(_LONG, kind), implement
 
 
-@intrinsic
-def poke(typingctx, address, value):
-    """Put a number at an address, as what type it is."""
-
-    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        address, number = values
-        builder.store(number, builder.inttoptr(address, number.type.as_pointer()))
-        return context.get_dummy_value()
-
-    return types.void(_LONG, value), implement
-
-
 def _reading(kind: Any) -> tuple[Any, Any]:
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         pointer = builder.inttoptr(values[0], context.get_value_type(kind).as_pointer())
@@ -128,3 +120,91 @@ def put_word(typingctx, table, place, value):
 def put_number(typingctx, table, place, value):
     """Write a float64."""
     return _writing(types.float64)
+
+
+# ---- values of FMI types, by the codes of `fmi.types`
+
+
+def _choosing(builder: Any, code: Any, made: Callable[[FmiType], Any]) -> Any:
+    """Emit what `made` emits for the type of a code, and return its value. All codes stand in BUFFERS."""
+    unknown, end = builder.append_basic_block("unknown"), builder.append_basic_block("end")
+    switch = builder.switch(code, unknown)
+    found = []
+    for number, kind in BUFFERS.items():
+        block = builder.append_basic_block(kind.name)
+        switch.add_case(ir.Constant(code.type, number), block)
+        builder.position_at_end(block)
+        found.append((made(kind), builder.block))
+        builder.branch(end)
+    builder.position_at_end(unknown)
+    builder.unreachable()
+    builder.position_at_end(end)
+    value = builder.phi(found[0][0].type)
+    for each, block in found:
+        value.add_incoming(each, block)
+    return value
+
+
+def _type_in_memory(kind: FmiType) -> Any:
+    if kind.kind is REAL:
+        return ir.DoubleType() if ctypes.sizeof(kind.c_type) == 8 else ir.FloatType()
+    return ir.IntType(8 * ctypes.sizeof(kind.c_type))
+
+
+def _from_double(builder: Any, kind: FmiType, value: Any) -> Any:
+    """A double that fits, as a number of a type; what is not 0 is true."""
+    target = _type_in_memory(kind)
+    if kind.kind is BOOLEAN:
+        return builder.zext(builder.fcmp_unordered("!=", value, ir.Constant(value.type, 0.0)), target)
+    if kind.kind is REAL:
+        return value if target == value.type else builder.fptrunc(value, target)
+    return (builder.fptosi if kind.low < 0 else builder.fptoui)(value, target)
+
+
+def _to_double(builder: Any, kind: FmiType, value: Any) -> Any:
+    double = ir.DoubleType()
+    if kind.kind is BOOLEAN:
+        return builder.uitofp(builder.icmp_unsigned("!=", value, ir.Constant(value.type, 0)), double)
+    if kind.kind is REAL:
+        return value if value.type == double else builder.fpext(value, double)
+    return (builder.sitofp if kind.low < 0 else builder.uitofp)(value, double)
+
+
+@intrinsic
+def size_of(typingctx, code):
+    """The bytes of a value of the type of a code."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        size = ir.IntType(64)
+        return _choosing(builder, values[0], lambda kind: ir.Constant(size, ctypes.sizeof(kind.c_type)))
+
+    return _LONG(_LONG), implement
+
+
+@intrinsic
+def value_at(typingctx, address, code):
+    """The value of the type of a code at an address, as a float64."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        def read(kind: FmiType) -> Any:
+            pointer = builder.inttoptr(values[0], _type_in_memory(kind).as_pointer())
+            return _to_double(builder, kind, builder.load(pointer))
+
+        return _choosing(builder, values[1], read)
+
+    return types.float64(_LONG, _LONG), implement
+
+
+@intrinsic
+def put_value(typingctx, address, code, value):
+    """Write a float64 that fits at an address, as a value of the type of a code; returns the type's bytes."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        def write(kind: FmiType) -> Any:
+            number = _from_double(builder, kind, values[2])
+            builder.store(number, builder.inttoptr(values[0], number.type.as_pointer()))
+            return ir.Constant(ir.IntType(64), ctypes.sizeof(kind.c_type))
+
+        return _choosing(builder, values[1], write)
+
+    return _LONG(_LONG, _LONG, types.float64), implement

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ...fmi.types import BOOLEAN_CODES, LARGEST_WHOLE, WIDE_CODES
 from . import tables as L
 from .call import (  # fmt: skip # names
     call_2,
@@ -21,16 +22,18 @@ from .call import (  # fmt: skip # names
     do_step_3,
     number,
     peek,
-    poke,
     put_number,
+    put_value,
     put_word,
+    size_of,
     transfer,
     transfer_3,
+    value_at,
     word,
 )
 
 LARGEST = 1.7976931348623157e308
-WIDEST = 2.0**53  # beyond it a double does not hold every whole number
+WIDEST = float(LARGEST_WHOLE)
 LOOK = 32  # steps at most between two looks at the clock
 
 inlined = njit(forceinline=True, error_model="numpy")
@@ -40,86 +43,17 @@ inlined = njit(forceinline=True, error_model="numpy")
 
 
 @inlined
-def write(at, kind, value):
-    """Put a value that fits into a buffer; returns the address behind it."""
-    if kind == L.F64:
-        poke(at, value)
-        return at + 8
-    if kind == L.F32:
-        poke(at, np.float32(value))
-        return at + 4
-    if kind == L.I8:
-        poke(at, np.int8(value))
-        return at + 1
-    if kind == L.U8:
-        poke(at, np.uint8(value))
-        return at + 1
-    if kind == L.I16:
-        poke(at, np.int16(value))
-        return at + 2
-    if kind == L.U16:
-        poke(at, np.uint16(value))
-        return at + 2
-    if kind == L.I32:
-        poke(at, np.int32(value))
-        return at + 4
-    if kind == L.U32:
-        poke(at, np.uint32(value))
-        return at + 4
-    if kind == L.I64:
-        poke(at, np.int64(value))
-        return at + 8
-    if kind == L.U64:
-        poke(at, np.uint64(value))
-        return at + 8
-    truth = np.int32(value != 0.0)
-    if kind == L.B8:
-        poke(at, np.int8(truth))
-        return at + 1
-    poke(at, truth)
-    return at + 4
-
-
-@inlined
-def read(at, kind):
-    """A value from a buffer as a double, and the address behind it."""
-    if kind == L.F64:
-        return peek(at, np.float64), at + 8
-    if kind == L.F32:
-        return np.float64(peek(at, np.float32)), at + 4
-    if kind == L.I8:
-        return np.float64(peek(at, np.int8)), at + 1
-    if kind == L.U8:
-        return np.float64(peek(at, np.uint8)), at + 1
-    if kind == L.I16:
-        return np.float64(peek(at, np.int16)), at + 2
-    if kind == L.U16:
-        return np.float64(peek(at, np.uint16)), at + 2
-    if kind == L.I32:
-        return np.float64(peek(at, np.int32)), at + 4
-    if kind == L.U32:
-        return np.float64(peek(at, np.uint32)), at + 4
-    if kind == L.I64:
-        return np.float64(peek(at, np.int64)), at + 8
-    if kind == L.U64:
-        return np.float64(peek(at, np.uint64)), at + 8
-    if kind == L.B8:
-        return np.float64(peek(at, np.int8) != 0), at + 1
-    return np.float64(peek(at, np.int32) != 0), at + 4
-
-
-@inlined
 def fill(t, m, c, kind):
     """The buffer of call c from the memory; the place of a value that does not fit, else -1."""
     at = word(c, L.VALUES)
     item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
     for j in range(word(c, L.COUNT)):
         value = number(m, word(item, L.SLOT))
-        if kind < L.B8:
+        if kind not in BOOLEAN_CODES:
             value = number(item, L.SIGN) * value
             if not number(item, L.LOW) <= value <= number(item, L.HIGH):
                 return j
-        at = write(at, kind, value)
+        at += put_value(at, kind, value)
         item += 8 * L.ITEM
     return -1
 
@@ -129,14 +63,13 @@ def take(t, m, c, kind):
     """The memory from the buffer of call c; the place of a value that no double holds, else -1."""
     at = word(c, L.VALUES)
     item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
-    whole = np.int64(WIDEST)
+    whole, size, wide = np.int64(WIDEST), size_of(kind), kind in WIDE_CODES
     for j in range(word(c, L.COUNT)):
-        value, behind = read(at, kind)
-        wide = kind == L.I64 or kind == L.U64
+        value = value_at(at, kind)
         # 2**53 + 1 is rounded to 2**53
         if wide and (abs(value) > WIDEST or (abs(value) == WIDEST and abs(peek(at, np.int64)) > whole)):
             return j
-        at = behind
+        at += size
         put_number(m, word(item, L.SLOT), number(item, L.SIGN) * value)
         item += 8 * L.ITEM
     return -1

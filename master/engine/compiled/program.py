@@ -16,7 +16,7 @@ from ...fmi.fmi1 import Fmi1Unit
 from ...fmi.fmi2 import Fmi2Unit
 from ...fmi.fmi3 import Fmi3Unit
 from ...fmi.instance import Instance
-from ...fmi.transfer import Copy, Transfer, range_of
+from ...fmi.transfer import Copy, Transfer
 from ..engine import Engine, Sender, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
@@ -28,11 +28,6 @@ Judge = Callable[[int, int], None]
 """Raises the error of an operation, given what the kernel returned and the detail."""
 
 _DIRECT = (Fmi1Unit, Fmi2Unit, Fmi3Unit)
-_FORMATS: dict[Any, int] = {
-    ctypes.c_double: L.F64, ctypes.c_float: L.F32, ctypes.c_int8: L.I8, ctypes.c_uint8: L.U8,
-    ctypes.c_int16: L.I16, ctypes.c_uint16: L.U16, ctypes.c_int32: L.I32, ctypes.c_uint32: L.U32,
-    ctypes.c_int64: L.I64, ctypes.c_uint64: L.U64,
-}  # fmt: skip # a table
 _MODES = {"nearest": L.NEAREST, "half_even": L.HALF_EVEN, "truncate": L.TRUNCATE}
 _NO_LOG = -1
 
@@ -234,7 +229,7 @@ class Program:
                 L.FIRST_ITEM: self._count("items"),
             }
         )
-        low, high = _double_range(transfer.c_type)
+        low, high = transfer.type.doubles
         self._rows["items"] += [
             {L.SLOT: item.slot, L.SIGN: item.sign, L.LOW: low, L.HIGH: high} for item in transfer.items
         ]
@@ -364,18 +359,7 @@ def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> 
 def _format(transfer: Transfer) -> int:
     if not transfer.items:
         return L.IN_PLACE
-    if transfer.boolean:
-        kind = L.B8 if ctypes.sizeof(transfer.c_type) == 1 else L.B32
-    else:
-        kind = _FORMATS[transfer.c_type]
-    return kind + (L.GETS if transfer.gets else 0)
-
-
-def _double_range(c_type: Any) -> tuple[float, float]:
-    """The least and the largest double that a type holds."""
-    low, high = range_of(c_type)
-    largest = float(high)
-    return float(low), float(np.nextafter(largest, 0.0)) if largest > high else largest
+    return transfer.type.code + (L.GETS if transfer.gets else 0)
 
 
 def address(function: Any) -> int:

@@ -45,10 +45,10 @@ FUNCTION, COMPONENT, WARNINGS = range(3)
 REFERENCES, COUNT, VALUES, TWICE, FORMAT, FIRST_ITEM = range(3, 9)
 CALL_WIDTH = 9
 """Columns of CALLS: addresses of the value references and the buffer, their count (TWICE: passed again behind
-the values, as FMI 3.0 has it), and the buffer's format with the row of ITEMS for its first value."""
+the values, as FMI 3.0 has it), and the buffer's format with the row of ITEMS for its first value. A format is
+the code of an FMI type (see `fmi.types`)."""
 IN_PLACE = 0  # no format: the values are a part of the memory
 GETS = 100  # added to the format where values are read
-F64, F32, I8, U8, I16, U16, I32, U32, I64, U64, B8, B32 = range(1, 13)
 
 SIGN, LOW, HIGH = range(1, 4)
 ITEM = 4
