@@ -1,22 +1,55 @@
-"""A wheel holds evcosim.* and its own metadata, all data files, and nothing at the top level beside them."""
+"""A wheel holds the files of the packages, byte for byte, and its own metadata: none missing, nothing else.
+
+    python3 .ci/check_wheel.py dist/evcosim-0.2.0-py3-none-any.whl    # exit code 1 and what is wrong
+
+It needs the standard library alone, so that it runs before anything is installed.
+"""
+
+from __future__ import annotations
 
 import pathlib
 import sys
+import tomllib
 import zipfile
 
-root = pathlib.Path(__file__).parent.parent
-names = zipfile.ZipFile(sys.argv[1]).namelist()
-tops = {name.split("/")[0] for name in names}
-strangers = sorted(top for top in tops if top != "evcosim" and not top.endswith(".dist-info"))
-if strangers:
-    sys.exit(f"the wheel has top-level entries that do not belong there: {strangers}")
-wanted = [
-    f"evcosim/{path.relative_to(root).as_posix()}"
-    for folder in ("models", "fmus", "cosim", "master")
-    for path in (root / folder).rglob("*")
-    if path.is_file() and "__pycache__" not in path.parts
-]
-missing = sorted(set(wanted) - set(names))
-if missing:
-    sys.exit(f"the wheel lacks {missing}")
-print(f"wheel: {len(names)} files, only evcosim/ and metadata at the top level, none missing")
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+_FOLDERS = {"api": "", "models": "models/", "fmus": "fmus/", "cosim": "cosim/", "master": "master/"}
+_METADATA = {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt", "licenses/LICENSE"}
+
+
+def wanted(root: pathlib.Path = ROOT) -> dict[str, pathlib.Path]:
+    """The files of the packages by their names in the wheel."""
+    return {
+        f"evcosim/{inside}{path.relative_to(root / folder).as_posix()}": path
+        for folder, inside in _FOLDERS.items()
+        for path in (root / folder).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def problems(wheel: pathlib.Path, root: pathlib.Path = ROOT) -> list[str]:
+    """What is wrong with a wheel, a line each; [] if nothing is."""
+    version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    files = wanted(root)
+    metadata = {f"evcosim-{version}.dist-info/{name}" for name in _METADATA}
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        expected = files.keys() | metadata
+        found = [f"it lacks {name}" for name in sorted(expected - names)]
+        found += [f"it has {name}, which no package has" for name in sorted(names - expected)]
+        differ = [
+            name for name in sorted(files.keys() & names) if archive.read(name) != files[name].read_bytes()
+        ]
+    return found + [f"{name} is not the one of the package" for name in differ]
+
+
+def main() -> None:
+    """Check the wheel that the command line names."""
+    wheel = pathlib.Path(sys.argv[1])
+    if found := problems(wheel):
+        sys.exit("\n".join([f"{wheel}:", *found]))
+    print(f"{wheel.name}: the {len(wanted())} files of the packages and metadata, nothing else")
+
+
+if __name__ == "__main__":
+    main()

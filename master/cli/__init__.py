@@ -7,6 +7,7 @@
     interrupts  Ctrl-C while units are stepping
     outputs     the folder of a run
     summary     what a run says at its end
+    completion  what the Tab key offers
 
 Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C; 141 the
 reader of the output has gone. Verb modules import what is heavy inside their functions, so that
@@ -20,9 +21,13 @@ from collections.abc import Sequence
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (default: that of the process) and return the exit code."""
+    import os
     import sys
 
+    from . import completion
     from .app import command
     from .failures import guarded
 
-    return guarded(command(), list(sys.argv[1:] if arguments is None else arguments))
+    if arguments is None and (instruction := os.environ.get(completion.VARIABLE)):
+        return completion.completed(command(), instruction)
+    return guarded(command(), completion.with_shell(sys.argv[1:] if arguments is None else arguments))

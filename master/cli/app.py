@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from . import completion
 from .budget import budget
 from .build import build
 from .check import check
@@ -25,7 +26,7 @@ def command() -> Any:
     # plain help: rich's boxes would cost a third of the time that --help may take
     app = typer.Typer(
         name="evcosim",
-        add_completion=False,
+        add_completion=False,  # its options cannot name a shell; ours stand below
         rich_markup_mode=None,
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -65,6 +66,26 @@ def _global_options(
     debug: Annotated[
         bool, typer.Option("--debug", help="Show the traceback of an error (or set EVCOSIM_DEBUG=1).")
     ] = False,
+    install_completion: Annotated[
+        str | None,
+        typer.Option(
+            "--install-completion",
+            metavar="[SHELL]",
+            callback=completion.install,
+            is_eager=True,
+            help="Let the Tab key complete names, in this shell or the named one.",
+        ),
+    ] = None,
+    show_completion: Annotated[
+        str | None,
+        typer.Option(
+            "--show-completion",
+            metavar="[SHELL]",
+            callback=completion.show,
+            is_eager=True,
+            help="Print the script that does it.",
+        ),
+    ] = None,
 ) -> None:
     """A co-simulation bench for electric-vehicle control: FMUs on a CAN bus.
 

@@ -7,10 +7,17 @@ from typing import Annotated
 
 import typer
 
+from . import completion
+
 
 def build(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME]...", help="Built-in FMUs; default: all of them.")
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME]...",
+            help="Built-in FMUs; default: all of them.",
+            autocompletion=completion.fmus,
+        ),
     ] = None,
     output: Annotated[
         Path | None,

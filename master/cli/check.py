@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from . import completion
 from .options import ScenarioOption, StrictOption
 
 if TYPE_CHECKING:
@@ -23,7 +24,15 @@ if TYPE_CHECKING:
 
 def check(
     file: Annotated[str, typer.Argument(metavar="FILE", help="An FMU, or a swap file that maps one.")],
-    place: Annotated[str, typer.Option("--as", metavar="SYSTEM.UNIT", help="Whose place it would take.")],
+    place: Annotated[
+        str,
+        typer.Option(
+            "--as",
+            metavar="SYSTEM.UNIT",
+            help="Whose place it would take.",
+            autocompletion=completion.places,
+        ),
+    ],
     scenario: ScenarioOption = None,
     trial: Annotated[
         str | None,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from . import completion
 from .options import AlgorithmOption, FmusOption, IdealOption, QuietOption
 
 if TYPE_CHECKING:
@@ -21,11 +22,22 @@ DATA = "identification.json"
 
 def identify(
     target: Annotated[
-        str, typer.Argument(metavar="TARGET", help="A system, or an FMU (built-in name, file).")
+        str,
+        typer.Argument(
+            metavar="TARGET",
+            help="A system, or an FMU (built-in name, file).",
+            autocompletion=completion.systems_and_fmus,
+        ),
     ],
     scenario: Annotated[
         str | None,
-        typer.Option("--scenario", "-s", metavar="S", help="Default: 'identification' where there is one."),
+        typer.Option(
+            "--scenario",
+            "-s",
+            metavar="S",
+            help="Default: 'identification' where there is one.",
+            autocompletion=completion.scenarios,
+        ),
     ] = None,
     input: Annotated[
         str | None,

@@ -7,12 +7,18 @@ from typing import Annotated
 
 import typer
 
+from . import completion
 from .options import StrictOption
 
 
 def info(
     what: Annotated[
-        str, typer.Argument(metavar="FILE|NAME", help="An FMU or a system: a file, or a built-in name.")
+        str,
+        typer.Argument(
+            metavar="FILE|NAME",
+            help="An FMU or a system: a file, or a built-in name.",
+            autocompletion=completion.systems_and_fmus,
+        ),
     ],
     causality: Annotated[
         list[str] | None,

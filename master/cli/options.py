@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from . import completion
+
 
 class Algorithm(enum.StrEnum):
     """The master algorithms."""
@@ -15,10 +17,23 @@ class Algorithm(enum.StrEnum):
     jacobi = "jacobi"
 
 
-SystemArgument = Annotated[str, typer.Argument(metavar="SYSTEM", help="A built-in system, or a TOML file.")]
+SystemArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="SYSTEM",
+        help="A built-in system, or a TOML file.",
+        autocompletion=completion.systems,
+    ),
+]
 ScenarioOption = Annotated[
     str | None,
-    typer.Option("--scenario", "-s", metavar="S", help="Name or TOML file; default: the system's own."),
+    typer.Option(
+        "--scenario",
+        "-s",
+        metavar="S",
+        help="Name or TOML file; default: the system's own.",
+        autocompletion=completion.scenarios,
+    ),
 ]
 
 

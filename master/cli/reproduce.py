@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from . import completion
 from .options import WorkersOption
 
 if TYPE_CHECKING:
@@ -18,7 +19,9 @@ def reproduce(
     papers: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="PAPER", help="By the name of its system, as 'evcosim list' shows; default: all."
+            metavar="PAPER",
+            help="By the name of its system, as 'evcosim list' shows; default: all.",
+            autocompletion=completion.systems,
         ),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="Where the pages go.")] = Path(

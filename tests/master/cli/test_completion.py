@@ -1,0 +1,107 @@
+"""Completion by the Tab key: the scripts, and the names that are offered for a line."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from evcosim.cosim.system.scenario import scenario_names
+from evcosim.cosim.system.system import load_system, system_names
+from evcosim.master.builtin import builtin_names
+from evcosim.master.cli import completion
+
+
+@pytest.fixture
+def offered(process, monkeypatch):
+    """The names that the bash script gets for a line whose last word is incomplete."""
+
+    def run(line):
+        words = line.split(" ")
+        monkeypatch.setenv("_EVCOSIM_COMPLETE", "complete_bash")
+        monkeypatch.setenv("COMP_WORDS", line)
+        monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
+        out, err = process().communicate()
+        assert err == ""
+        return out.split()
+
+    return run
+
+
+def test_names_for_a_line(offered):
+    assert offered("evcosim run sc") == ["scooter"]
+    assert offered("evcosim re") == ["reproduce"]
+    assert offered("evcosim run scooter --scenario f") == ["fig8", "fig9"]
+    assert offered("evcosim info Sl") == ["SlipController"]
+    assert offered("evcosim check my.fmu --as scooter.v") == ["scooter.vehicle"]
+    assert offered("evcosim run my.toml --fmu ") == []  # then the shell offers files
+
+
+def test_names_are_those_of_the_files():
+    assert completion.systems() == system_names()
+    assert completion.fmus() == sorted(builtin_names())
+    systems = {name: load_system(name) for name in system_names()}
+    assert completion.places() == [f"{name}.{unit}" for name, s in systems.items() for unit in s.file.units]
+
+    class Line:
+        """The part of a click context that is looked at."""
+
+        params: dict[str, str]
+        args: list[str]
+
+    line = Line()
+    for name, system in systems.items():
+        line.params, line.args = {"system": name}, []
+        assert completion.scenarios(line) == scenario_names(system)
+        line.params, line.args = {}, [name]
+        assert completion.scenarios(line) == scenario_names(system)
+    line.params, line.args = {}, []
+    every = {scenario for system in systems.values() for scenario in scenario_names(system)}
+    assert completion.scenarios(line) == sorted(every)
+
+
+def test_the_script_of_a_shell(evcosim):
+    for shell, words in (("bash", "complete -o default"), ("zsh", "#compdef evcosim"), ("fish", "complete")):
+        answer = evcosim("--show-completion", shell)
+        assert (answer.code, answer.err) == (0, "")
+        assert words in answer.out and "_EVCOSIM_COMPLETE=complete_" in answer.out
+
+
+def test_the_shell_is_detected_where_none_is_named(evcosim, monkeypatch):
+    monkeypatch.setattr(completion, "_detected", lambda: "zsh")
+    assert "#compdef evcosim" in evcosim("--show-completion").out
+    monkeypatch.setattr(completion, "_detected", lambda: "")
+    answer = evcosim("--show-completion")
+    assert answer.code == 2
+    assert "the shell is not known; name one of them: bash, zsh, fish" in answer.err
+
+
+def test_an_unknown_shell(evcosim):
+    answer = evcosim("--install-completion", "tcsh")
+    assert answer.code == 2
+    assert "'tcsh' is no shell that can be set up; name one of them: bash, zsh, fish" in answer.err
+
+
+def test_installing_it(evcosim, monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    answer = evcosim("--install-completion", "bash")
+    script = tmp_path / ".bash_completions" / "evcosim.sh"
+    assert (answer.code, answer.err) == (0, "")
+    assert str(script) in answer.out
+    assert "_evcosim_completion" in script.read_text()
+    assert str(script) in (tmp_path / ".bashrc").read_text()
+
+
+def test_the_key_is_answered_at_once():
+    """Nothing is loaded that a run needs, and no shell is looked for; pydantic is, by typer itself."""
+    code = "import sys; from evcosim.master.cli import main; main(); print(*sys.modules, file=sys.stderr)"
+    environment = {"_EVCOSIM_COMPLETE": "complete_bash", "COMP_WORDS": "evcosim run sc", "COMP_CWORD": "2"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ | environment
+    )
+    assert done.stdout.split() == ["scooter"]
+    heavy = {"numpy", "scipy", "fmpy", "rich", "cantools", "shellingham.posix"}
+    assert not heavy & set(done.stderr.split())

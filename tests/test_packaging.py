@@ -1,0 +1,118 @@
+"""What an installation consists of: packages, dependencies, version, and the check of the wheel."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import re
+import sys
+import tomllib
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+FOLDERS = ("api", "models", "fmus", "cosim", "master")
+DISTRIBUTIONS = {"can": "python-can"}  # whose name is not that of the package; the others' names are equal
+CHOSEN_BY_ANOTHER = {"llvmlite": "numba"}  # each numba works with one llvmlite, and brings it
+
+
+def package_of(folder: Path) -> str:
+    """The package that stands in a folder of the project."""
+    return ".".join(("evcosim", *(part for part in folder.relative_to(ROOT).parts if part != "api")))
+
+
+def test_every_package_is_listed_with_its_folder():
+    folders = [file.parent for top in FOLDERS for file in sorted((ROOT / top).rglob("__init__.py"))]
+    listed = PROJECT["tool"]["setuptools"]
+    assert sorted(listed["packages"]) == sorted(map(package_of, folders))
+    assert listed["package-dir"] == {package_of(f): f.relative_to(ROOT).as_posix() for f in folders}
+
+
+def third_party(tree: ast.Module) -> Iterator[str]:
+    """The packages, neither Python's nor ours, that a module imports anywhere."""
+    for node in ast.walk(tree):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            names = [node.module or ""]
+        yield from (top for name in names if (top := name.partition(".")[0]) not in sys.stdlib_module_names)
+
+
+def test_dependencies_are_what_is_imported():
+    imported = {
+        name
+        for folder in FOLDERS
+        for file in (ROOT / folder).rglob("*.py")
+        for name in third_party(ast.parse(file.read_text(encoding="utf-8")))
+    }
+    needed = {DISTRIBUTIONS.get(name, name) for name in imported} - CHOSEN_BY_ANOTHER.keys()
+    declared = {re.split(r"[<>=!~\[; ]", text)[0] for text in PROJECT["project"]["dependencies"]}
+    # the runtime of a built FMU is copied from pythonfmu's files, which are found without an import
+    assert declared == needed | {"pythonfmu"}
+
+
+def test_the_version_is_the_same_everywhere():
+    version = PROJECT["project"]["version"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(r"^version: (.*)$", citation, re.MULTILINE)[1] == version
+    assert re.search(r"^## \[(\d.*)\] - \d{4}-\d\d-\d\d$", changelog, re.MULTILINE)[1] == version
+
+
+# ---- .ci/check_wheel.py
+
+
+@pytest.fixture(scope="module")
+def check_wheel() -> Any:
+    spec = importlib.util.spec_from_file_location("check_wheel", ROOT / ".ci" / "check_wheel.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def contents(check_wheel: Any) -> dict[str, bytes]:
+    """What a wheel of this project holds."""
+    files = {name: path.read_bytes() for name, path in check_wheel.wanted().items()}
+    version = PROJECT["project"]["version"]
+    names = ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt", "licenses/LICENSE")
+    return files | {f"evcosim-{version}.dist-info/{name}": b"" for name in names}
+
+
+def test_a_whole_wheel_passes(check_wheel, tmp_path):
+    assert {"evcosim/__init__.py", "evcosim/py.typed", "evcosim/cosim/data/can/ev.dbc"} <= contents(
+        check_wheel
+    ).keys()
+    assert found_in(check_wheel, tmp_path, contents(check_wheel)) == []
+
+
+def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes]) -> list[str]:
+    """What the check says of a wheel of these files."""
+    wheel = folder / "evcosim.whl"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return check_wheel.problems(wheel)
+
+
+@pytest.mark.parametrize(
+    "name", ["evcosim/cosim/left_over.py", "evcosim/old/__init__.py", "models/scooter.py", "tests/test_x.py"]
+)
+def test_a_wheel_with_more_fails(check_wheel, tmp_path, name):
+    found = found_in(check_wheel, tmp_path, contents(check_wheel) | {name: b""})
+    assert found == [f"it has {name}, which no package has"]
+
+
+@pytest.mark.parametrize("name", ["evcosim/__main__.py", "evcosim/cosim/data/systems/scooter.toml"])
+def test_a_wheel_with_less_or_another_file_fails(check_wheel, tmp_path, name):
+    whole = contents(check_wheel)
+    without = {key: data for key, data in whole.items() if key != name}
+    assert found_in(check_wheel, tmp_path, without) == [f"it lacks {name}"]
+    older = whole | {name: b"# an earlier version\n"}
+    assert found_in(check_wheel, tmp_path, older) == [f"{name} is not the one of the package"]
