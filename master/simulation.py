@@ -12,9 +12,6 @@ with Simulation("scooter") as sim:
 
 from __future__ import annotations
 
-import importlib.metadata
-import platform
-import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -33,7 +30,6 @@ from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Scenario
 from ..cosim.system.selection import figure_spec, metric_specs
 from ..cosim.system.system import Isolation, System
-from ..cosim.system.toml import DATA
 from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
@@ -42,6 +38,7 @@ from .fmi.fmu import Fmu
 from .fmi.loading import load_unit
 from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
+from .manifest import manifest, saturations
 from .prepare import prepare
 from .unit import Unit
 
@@ -74,7 +71,7 @@ class Simulation:
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
         self.plan: Plan = prepared.plan
-        self._fmus = prepared.fmus
+        self._prepared, self._fmus = prepared, prepared.fmus
         self._interfaces = {unit.name: unit.interface for unit in self.plan.units}
         if log_frames:
             _check_frames(self.system)
@@ -257,51 +254,12 @@ class Simulation:
         return write_can_log(path, logs, experiment.step_size, experiment.start_time)
 
     def manifest(self) -> dict[str, Any]:
-        """What made these results: versions, FMU digests, parameters, settings and counts (JSON-able)."""
-        plan, experiment = self.plan, self.plan.experiment
-        return {
-            "evcosim": importlib.metadata.version("evcosim"),
-            "versions": {p: importlib.metadata.version(p) for p in ("fmpy", "pythonfmu", "numpy")}
-            | {"python": platform.python_version(), "platform": sys.platform},
-            "system": plan.system,
-            "scenario": plan.scenario,
-            "files": _own_files(self.system, self.scenario),
-            "experiment": experiment.model_dump()
-            | {"algorithm": plan.algorithm, "engine": self._engine.name},
-            "ideal": plan.ideal,
-            "order": [unit.name for unit in plan.units],
-            "units": {
-                unit.name: {
-                    "fmu": unit.fmu,
-                    "file": self._fmus[unit.name].path.name,
-                    "sha256": self._fmus[unit.name].digest,
-                    "parameters": unit.parameters,
-                    "period": unit.every * experiment.step_size,
-                    "substeps": unit.substeps,
-                    "interface": self._fmus[unit.name].interface_type,
-                    "isolation": self.isolation[unit.name],
-                    "map": self.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
-                }
-                for unit in plan.units
-            },
-            "buses": {name: bus.model_dump() for name, bus in self.system.file.buses.items()},
-            "steps": self._engine.k,
-            "saturations": self.saturations(),
-            "warnings": self.warnings,
-            "loop_seconds": round(self.loop_seconds, 6),
-        }
+        """Return what made these results: versions, FMU digests, parameters, settings, counts (JSON-able)."""
+        return manifest(self._prepared, self._engine, self.isolation, self.warnings, self.loop_seconds)
 
     def saturations(self) -> dict[str, dict[str, float]]:
-        """For each bus signal that was saturated: how often, and when [s] first."""
-        found = {}
-        for sender in self._engine.senders:
-            for signal, saturation in sender.channel.saturations.items():
-                if saturation.count:
-                    found[f"{sender.plan.bus}.{sender.plan.message.name}.{signal}"] = {
-                        "count": saturation.count,
-                        "first_time": self._engine.time_at(saturation.first_step),
-                    }
-        return found
+        """Return `count` and `first_time` [s] of each bus signal that was saturated."""
+        return saturations(self._engine)
 
     # ---- the end
 
@@ -361,16 +319,6 @@ def simulate(
         error.results = simulation.results
         raise
     return simulation.results
-
-
-def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
-    """The paths of the user's own files: the built-in ones are named well enough by their names."""
-    paths = {"system": system.path, "scenario": scenario.path}
-    return {
-        kind: str(path.resolve())
-        for kind, path in paths.items()
-        if path is not None and DATA.resolve() not in path.resolve().parents
-    }
 
 
 def _check_frames(system: System) -> None:

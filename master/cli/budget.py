@@ -8,29 +8,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import (
-    AlgorithmOption,
-    FmusOption,
-    ScenarioOption,
-    SettingsOption,
-    StopTimeOption,
-    SystemArgument,
-    WorkersOption,
-)
+from .options import ScenarioOption, SystemArgument, WorkersOption, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.analysis.bus_budget import Budget
+    from ...cosim.system.run_options import RunOptions
 
 _PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
 
 
+@takes_run_options("ideal")
 def budget(
     system: SystemArgument,
     scenario: ScenarioOption = None,
-    settings: SettingsOption = None,
-    fmus: FmusOption = None,
-    algorithm: AlgorithmOption = None,
-    stop_time: StopTimeOption = None,
+    *,
+    options: RunOptions,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>-budget."),
@@ -45,22 +37,17 @@ def budget(
     """
     from ...cosim.analysis.bus_budget import as_data
     from ..studies.bus_budget import budget as measured
-    from .arguments import as_typed, parse_files, parse_settings
     from .console import print_json, progress_bar
     from .outputs import prepared
 
-    parameters, others = parse_settings(settings or []), parse_files("--fmu", fmus or [], "my/Vehicle.fmu")
     folder = prepared(output or _default_folder(system, scenario))
-    with as_typed(settings or []), progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
+    with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measured(
             system,
             scenario,
-            parameters=parameters,
-            fmus=others,
-            algorithm=algorithm.value if algorithm else None,
-            stop_time=stop_time,
             workers=workers,
             progress=lambda done, total, _: show(done / total),
+            **options,
         )
     files = _write(folder, found)
     if as_json:

@@ -10,81 +10,92 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import completion
-from .options import AlgorithmOption, FmusOption, IdealOption, QuietOption
+from .options import QuietOption, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.analysis.first_order import Estimate
     from ...cosim.system.identification_spec import IdentificationSpec
+    from ...cosim.system.run_options import RunOptions
     from ..studies.identification import Identification
 
 DATA = "identification.json"
 
+TargetArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="TARGET",
+        help="A system, or an FMU (built-in name, file).",
+        autocompletion=completion.systems_and_fmus,
+    ),
+]
+ScenarioOption = Annotated[
+    str | None,
+    typer.Option(
+        "--scenario",
+        "-s",
+        metavar="S",
+        help="Default: 'identification' where there is one.",
+        autocompletion=completion.scenarios,
+    ),
+]
+InputOption = Annotated[
+    str | None, typer.Option(metavar="NAME", help="The input to sweep: unit.variable; of an FMU variable.")
+]
+OutputOption = Annotated[
+    str | None, typer.Option(metavar="NAME", help="What answers: any recorded Real variable.")
+]
+UnitOption = Annotated[
+    str | None, typer.Option(metavar="U", help="Unit of measure of the output, as km/h; default: its own.")
+]
+AtOption = Annotated[
+    list[float] | None, typer.Option(metavar="Y", help="Working point of the output; can be given again.")
+]
+AtInputOption = Annotated[
+    list[float] | None, typer.Option(metavar="U", help="Working point of the input; can be given again.")
+]
+AmplitudeOption = Annotated[
+    float | None, typer.Option(metavar="A", help="Amplitude of the sweep, in the input's unit.")
+]
+SweepOption = Annotated[
+    str | None, typer.Option(metavar="F0,F1", help="Lowest and highest frequency [Hz]; 0.008,0.6.")
+]
+DurationOption = Annotated[float | None, typer.Option(metavar="T", help="Duration of the sweep [s]; 900.")]
+RepeatsOption = Annotated[int | None, typer.Option(metavar="N", help="Sweep so many times; 1.")]
+BandOption = Annotated[
+    str | None, typer.Option(metavar="F0,F1", help="Fit in this band [Hz]; 1.5 F0 to F1/2 of the sweep.")
+]
+ParametersOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="[UNIT.]PARAMETER=VALUE", help="Set a parameter; can be given again."),
+]
+StepSizeOption = Annotated[
+    float | None, typer.Option(metavar="T", help="Step of an FMU alone [s]; default: its own.")
+]
+FolderOption = Annotated[
+    Path | None,
+    typer.Option("--output-folder", "-o", metavar="DIR", help="Default: results/<target>-identification."),
+]
 
+
+@takes_run_options("settings", "stop_time")
 def identify(
-    target: Annotated[
-        str,
-        typer.Argument(
-            metavar="TARGET",
-            help="A system, or an FMU (built-in name, file).",
-            autocompletion=completion.systems_and_fmus,
-        ),
-    ],
-    scenario: Annotated[
-        str | None,
-        typer.Option(
-            "--scenario",
-            "-s",
-            metavar="S",
-            help="Default: 'identification' where there is one.",
-            autocompletion=completion.scenarios,
-        ),
-    ] = None,
-    input: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="The input to sweep: unit.variable; of an FMU variable."),
-    ] = None,
-    output: Annotated[
-        str | None, typer.Option(metavar="NAME", help="What answers: any recorded Real variable.")
-    ] = None,
-    unit: Annotated[
-        str | None,
-        typer.Option(metavar="U", help="Unit of measure of the output, as km/h; default: its own."),
-    ] = None,
-    at: Annotated[
-        list[float] | None, typer.Option(metavar="Y", help="Working point of the output; can be given again.")
-    ] = None,
-    at_input: Annotated[
-        list[float] | None, typer.Option(metavar="U", help="Working point of the input; can be given again.")
-    ] = None,
-    amplitude: Annotated[
-        float | None, typer.Option(metavar="A", help="Amplitude of the sweep, in the input's unit.")
-    ] = None,
-    sweep: Annotated[
-        str | None, typer.Option(metavar="F0,F1", help="Lowest and highest frequency [Hz]; 0.008,0.6.")
-    ] = None,
-    duration: Annotated[
-        float | None, typer.Option(metavar="T", help="Duration of the sweep [s]; 900.")
-    ] = None,
-    repeats: Annotated[int | None, typer.Option(metavar="N", help="Sweep so many times; 1.")] = None,
-    band: Annotated[
-        str | None, typer.Option(metavar="F0,F1", help="Fit in this band [Hz]; 1.5 F0 to F1/2 of the sweep.")
-    ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="[UNIT.]PARAMETER=VALUE", help="Set a parameter; can be given again."),
-    ] = None,
-    fmus: FmusOption = None,
-    ideal: IdealOption = False,
-    algorithm: AlgorithmOption = None,
-    step_size: Annotated[
-        float | None, typer.Option(metavar="T", help="Step of an FMU alone [s]; default: its own.")
-    ] = None,
-    folder: Annotated[
-        Path | None,
-        typer.Option(
-            "--output-folder", "-o", metavar="DIR", help="Default: results/<target>-identification."
-        ),
-    ] = None,
+    target: TargetArgument,
+    scenario: ScenarioOption = None,
+    input: InputOption = None,
+    output: OutputOption = None,
+    unit: UnitOption = None,
+    at: AtOption = None,
+    at_input: AtInputOption = None,
+    amplitude: AmplitudeOption = None,
+    sweep: SweepOption = None,
+    duration: DurationOption = None,
+    repeats: RepeatsOption = None,
+    band: BandOption = None,
+    settings: ParametersOption = None,
+    *,
+    options: RunOptions,
+    step_size: StepSizeOption = None,
+    folder: FolderOption = None,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figures.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
     quiet: QuietOption = False,
@@ -92,8 +103,7 @@ def identify(
     """Identify gain and pole from an input to an output."""
     from ...cosim.analysis.sweep import sweep_of
     from ...cosim.errors import ConfigError
-    from ..studies import identification as library
-    from .arguments import parse_files
+    from ..studies.identification_target import is_fmu
     from .outputs import prepared
 
     given: dict[str, Any] = {
@@ -103,16 +113,11 @@ def identify(
     }  # fmt: skip # related options side by side
     spec = _spec(target, scenario, {key: value for key, value in given.items() if value not in (None, [])})
     sweep_of(spec)
-    if ideal and library.is_fmu(target):
+    if options.get("ideal") and is_fmu(target):
         raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
-    options: dict[str, Any] = {
-        "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
-        "ideal": ideal,
-        "algorithm": algorithm.value if algorithm else None,
-        "step_size": step_size,
-    }
     where = prepared(folder or Path("results") / f"{Path(target).stem}-identification")
-    found = _measure(target, spec, scenario, settings or [], options, not (as_json or quiet))
+    bar = not (as_json or quiet)
+    found = _measure(target, spec, scenario, settings or [], options, step_size, bar)
     files = _write(where, found, not no_plot)
     _tell(found, where, files, as_json, quiet)
     return 0
@@ -137,7 +142,7 @@ def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> Identific
     from ...cosim.errors import ConfigError
     from ...cosim.system.identification_spec import IdentificationSpec
     from ...cosim.system.toml import validate
-    from ..studies.identification import spec_of
+    from ..studies.identification_target import spec_of
 
     base = spec_of(target, scenario)
     known = base.model_dump() if base is not None else {}
@@ -163,36 +168,40 @@ def _measure(
     spec: IdentificationSpec,
     scenario: str | None,
     settings: Sequence[str],
-    options: dict[str, Any],
+    options: RunOptions,
+    step_size: float | None,
     bar: bool,
 ) -> list[Identification]:
-    from ..studies import identification as library
+    """Identify the target at each working point of the spec, with a bar over all of them."""
+    from ..studies.identification import each_working_point, identify
+    from ..studies.identification_target import UNIT, is_fmu
     from .arguments import as_typed, parse_settings
     from .console import progress_bar
     from .interrupts import Interrupts
 
-    prefix = f"{library.UNIT}." if library.is_fmu(target) else ""
+    prefix = f"{UNIT}." if is_fmu(target) else ""
     typed = [prefix + setting for setting in settings]
     parameters = {name.removeprefix(prefix): value for name, value in parse_settings(typed).items()}
-    points = library.each_working_point(spec)
+    options = {**options, "parameters": parameters}
+    points = each_working_point(spec)
+    found = []
     with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
-        found = []
         for done, point in enumerate(points):
 
-            def progress(what: str, share: float, done: int = done) -> None:
-                show(done + _SHARES.get(what, (0.0, 0.1))[0] + _SHARES.get(what, (0.0, 0.1))[1] * share)
+            def progress(phase: str, share: float, done: int = done) -> None:
+                begin, length = _SHARES.get(phase, (0.0, 0.1))
+                show(done + begin + length * share)
                 interrupts.check()
 
             with as_typed(typed):
                 found.append(
-                    library.identify(
-                        target, point, scenario, parameters=parameters, progress=progress, **options
-                    )
+                    identify(target, point, scenario, step_size=step_size, progress=progress, **options)
                 )
     return found
 
 
-_SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}  # of the time that one working point takes
+_SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}
+"""Begin and length of a phase, as shares of the time that one working point takes; others stand before."""
 
 
 def _write(folder: Path, found: list[Identification], figures: bool) -> list[str]:

@@ -1,13 +1,25 @@
-"""The options that several verbs share, each declared once."""
+"""The options that several verbs share, each declared once, and the translation of those of a run.
+
+A new option of a run is declared in `cosim.system.run_options` and in `_run_options` here: every verb that
+`takes_run_options` has it.
+"""
 
 from __future__ import annotations
 
 import enum
-from typing import Annotated
+import functools
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
 from . import completion
+
+if TYPE_CHECKING:
+    from ...cosim.system.run_options import RunOptions
+
+T = TypeVar("T")
 
 
 class Algorithm(enum.StrEnum):
@@ -20,9 +32,7 @@ class Algorithm(enum.StrEnum):
 SystemArgument = Annotated[
     str,
     typer.Argument(
-        metavar="SYSTEM",
-        help="A built-in system, or a TOML file.",
-        autocompletion=completion.systems,
+        metavar="SYSTEM", help="A built-in system, or a TOML file.", autocompletion=completion.systems
     ),
 ]
 ScenarioOption = Annotated[
@@ -38,14 +48,14 @@ ScenarioOption = Annotated[
 
 
 class Engine(enum.StrEnum):
-    """What does the steps."""
+    """The engines."""
 
     compiled = "compiled"
     python = "python"
 
 
 class Isolation(enum.StrEnum):
-    """Where units run."""
+    """The kinds of processes that units run in."""
 
     process = "process"
     none = "none"
@@ -85,3 +95,58 @@ StrictOption = Annotated[
     bool, typer.Option("--strict", help="Refuse an FMU whose description has defects that could be mended.")
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")]
+
+
+def _run_options(
+    settings: SettingsOption = None,
+    fmus: FmusOption = None,
+    swaps: SwapsOption = None,
+    ideal: IdealOption = False,
+    algorithm: AlgorithmOption = None,
+    isolation: IsolationOption = None,
+    engine: EngineOption = None,
+    stop_time: StopTimeOption = None,
+    strict: StrictOption = False,
+) -> RunOptions:
+    """Return the options of a run as the library takes them. Raises ConfigError."""
+    from .arguments import parse_files, parse_settings
+
+    return {
+        "parameters": parse_settings(settings or []),
+        "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
+        "swaps": parse_files("--swap", swaps or [], "my/swap.toml"),
+        "ideal": ideal,
+        "algorithm": algorithm.value if algorithm else None,
+        "isolation": isolation.value if isolation else None,
+        "engine": engine.value if engine else None,
+        "stop_time": stop_time,
+        "strict": strict,
+    }
+
+
+def takes_run_options(*without: str) -> Callable[[Callable[..., T]], Callable[..., T]]:
+    """Declare the options of a run on a verb, which receives them together as its argument `options`.
+
+    They stand in the place of that argument, all but those named in `without`. An error about a parameter
+    names the `--set` option that was typed.
+    """
+    known = inspect.signature(_run_options, locals={"RunOptions": Any}, eval_str=True).parameters
+    declared = [parameter for name, parameter in known.items() if name not in without]
+
+    def declare(verb: Callable[..., T]) -> Callable[..., T]:
+        @functools.wraps(verb)
+        def called(**arguments: Any) -> T:
+            from .arguments import as_typed
+
+            given = {parameter.name: arguments.pop(parameter.name) for parameter in declared}
+            with as_typed(given.get("settings") or []):
+                return verb(**arguments, options=_run_options(**given))
+
+        own = inspect.signature(verb, locals={"RunOptions": Any}, eval_str=True).parameters.values()
+        parameters = [p for each in own for p in (declared if each.name == "options" else [each])]
+        # typer declares what the signature says, and looks types up in the annotations
+        called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined] # it may be set
+        called.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+        return called
+
+    return declare

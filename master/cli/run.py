@@ -8,43 +8,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import (
-    Algorithm,
-    AlgorithmOption,
-    Engine,
-    EngineOption,
-    FmusOption,
-    IdealOption,
-    Isolation,
-    IsolationOption,
-    QuietOption,
-    ScenarioOption,
-    SettingsOption,
-    StopTimeOption,
-    StrictOption,
-    SwapsOption,
-    SystemArgument,
-)
+from .options import QuietOption, ScenarioOption, SystemArgument, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.results.results import Results
+    from ...cosim.system.run_options import RunOptions
     from ..simulation import Simulation
     from .console import Show
     from .interrupts import Interrupts
 
 
+@takes_run_options()
 def run(
     system: SystemArgument,
     scenario: ScenarioOption = None,
-    settings: SettingsOption = None,
-    fmus: FmusOption = None,
-    swaps: SwapsOption = None,
-    ideal: IdealOption = False,
-    algorithm: AlgorithmOption = None,
-    isolation: IsolationOption = None,
-    engine: EngineOption = None,
-    stop_time: StopTimeOption = None,
-    strict: StrictOption = False,
+    *,
+    options: RunOptions,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>."),
@@ -58,42 +37,18 @@ def run(
     quiet: QuietOption = False,
 ) -> int:
     """Run a system; write results.csv, run.json, a figure."""
-    order = Order(
-        system=system,
-        scenario=scenario,
-        settings=settings or [],
-        fmus=fmus or [],
-        swaps=swaps or [],
-        ideal=ideal,
-        algorithm=algorithm,
-        isolation=isolation,
-        engine=engine,
-        stop_time=stop_time,
-        strict=strict,
-        output=output,
-        can_log=can_log,
-        figure=not no_plot,
-        profile=profile,
-        bar=not (as_json or quiet),
-    )
+    bar = not (as_json or quiet)
+    order = Order(system, scenario, options, output, can_log, not no_plot, profile, bar)
     return _carry_out(order, as_json, quiet)
 
 
 @dataclasses.dataclass(frozen=True)
 class Order:
-    """What was asked for."""
+    """A run that was asked for: its inputs, its output folder (None: the default), its files, and the bar."""
 
     system: str
     scenario: str | None
-    settings: list[str]
-    fmus: list[str]
-    swaps: list[str]
-    ideal: bool
-    algorithm: Algorithm | None
-    isolation: Isolation | None
-    engine: Engine | None
-    stop_time: float | None
-    strict: bool
+    options: RunOptions
     output: Path | None
     can_log: bool
     figure: bool
@@ -135,19 +90,22 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
 
 
 def _run(order: Order) -> Outcome:
-    """Prepare everything, then step: what goes wrong in the steps is an outcome, before them it is raised."""
+    """Prepare everything, then step.
+
+    An error in the steps, or Ctrl-C, becomes part of the outcome; one before the first step is raised.
+    """
     from ...cosim.errors import ConfigError, RunError
-    from .arguments import as_typed, parse_files, parse_settings
+    from ..simulation import Simulation
     from .interrupts import Interrupts
     from .outputs import prepared_for_results
 
-    parameters, fmus = parse_settings(order.settings), parse_files("--fmu", order.fmus, "my/Vehicle.fmu")
-    if order.can_log and order.ideal:
+    if order.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
     with Interrupts() as interrupts:
-        with as_typed(order.settings):
-            simulation = _load(order, parameters, fmus)
+        simulation = Simulation(
+            order.system, order.scenario, log_frames=order.can_log, profile=order.profile, **order.options
+        )
         try:
             with simulation:
                 interrupts.check()
@@ -158,27 +116,6 @@ def _run(order: Order) -> Outcome:
                 raise  # before the first step there is nothing to keep
             error = failure
     return Outcome(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
-
-
-def _load(order: Order, parameters: dict[str, Any], fmus: dict[str, str]) -> Simulation:
-    from ..simulation import Simulation
-    from .arguments import parse_files
-
-    return Simulation(
-        order.system,
-        order.scenario,
-        parameters=parameters,
-        fmus=fmus,
-        swaps=parse_files("--swap", order.swaps, "my/swap.toml"),
-        ideal=order.ideal,
-        algorithm=order.algorithm.value if order.algorithm else None,
-        stop_time=order.stop_time,
-        log_frames=order.can_log,
-        isolation=order.isolation.value if order.isolation else None,
-        engine=order.engine.value if order.engine else None,
-        strict=order.strict,
-        profile=order.profile,
-    )
 
 
 def _default_folder(simulation: Simulation) -> Path:

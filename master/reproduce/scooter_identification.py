@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.system.identification_spec import IdentificationSpec
-from ..studies.identification import Identification, PhaseProgress, identify
+from ..studies.identification import Identification, identify
+from ..studies.identification_run import PhaseProgress
 from .scooter_numbers import steady_throttle
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ import pytest
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system.identification_spec import IdentificationSpec
 from evcosim.master.reproduce import scooter_identification as scooter
-from evcosim.master.studies.identification import each_working_point, identify, one_unit_system, spec_of
+from evcosim.master.studies.identification import each_working_point, identify
+from evcosim.master.studies.identification_target import one_unit_system, spec_of
 
 SHORT = {"sweep": (0.02, 0.6), "duration": 150.0}
 ROLLING = {"initial_speed": 30.0 / 3.6}

@@ -1,0 +1,86 @@
+"""The manifest of a run: a JSON-able record of what made its results, written as run.json."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..cosim.plan.unit_plan import UnitPlan
+from ..cosim.system.scenario import Scenario
+from ..cosim.system.system import Isolation, System
+from ..cosim.system.toml import DATA
+from .engine.engine import Engine
+from .prepare import Prepared
+
+
+def manifest(
+    prepared: Prepared,
+    engine: Engine,
+    isolation: Mapping[str, Isolation],
+    warnings: Sequence[str],
+    loop_seconds: float,
+) -> dict[str, Any]:
+    """Return versions, FMU digests, parameters, settings and counts of a run.
+
+    `isolation` is how each unit runs, by name; `loop_seconds` [s] is the time spent in steps.
+    """
+    plan, system = prepared.plan, prepared.system
+    experiment = plan.experiment
+    return {
+        "evcosim": importlib.metadata.version("evcosim"),
+        "versions": {p: importlib.metadata.version(p) for p in ("fmpy", "pythonfmu", "numpy")}
+        | {"python": platform.python_version(), "platform": sys.platform},
+        "system": plan.system,
+        "scenario": plan.scenario,
+        "files": _own_files(system, prepared.scenario),
+        "experiment": experiment.model_dump() | {"algorithm": plan.algorithm, "engine": engine.name},
+        "ideal": plan.ideal,
+        "order": [unit.name for unit in plan.units],
+        "units": {unit.name: _unit(unit, prepared, isolation[unit.name]) for unit in plan.units},
+        "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
+        "steps": engine.k,
+        "saturations": saturations(engine),
+        "warnings": list(warnings),
+        "loop_seconds": round(loop_seconds, 6),
+    }
+
+
+def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str, Any]:
+    fmu = prepared.fmus[unit.name]
+    return {
+        "fmu": unit.fmu,
+        "file": fmu.path.name,
+        "sha256": fmu.digest,
+        "parameters": unit.parameters,
+        "period": unit.every * prepared.plan.experiment.step_size,
+        "substeps": unit.substeps,
+        "interface": fmu.interface_type,
+        "isolation": isolation,
+        "map": prepared.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
+    }
+
+
+def saturations(engine: Engine) -> dict[str, dict[str, float]]:
+    """Return `count` and `first_time` [s] of each bus signal that was saturated, by bus.message.signal."""
+    found = {}
+    for sender in engine.senders:
+        for signal, saturation in sender.channel.saturations.items():
+            if saturation.count:
+                found[f"{sender.plan.bus}.{sender.plan.message.name}.{signal}"] = {
+                    "count": saturation.count,
+                    "first_time": engine.time_at(saturation.first_step),
+                }
+    return found
+
+
+def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
+    """Return the paths of the user's own files; the names of built-in ones say enough."""
+    paths = {"system": system.path, "scenario": scenario.path}
+    return {
+        kind: str(path.resolve())
+        for kind, path in paths.items()
+        if path is not None and DATA.resolve() not in path.resolve().parents
+    }

@@ -1,0 +1,74 @@
+"""The target of an identification: a system with its scenario, or an FMU alone as a system of one unit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...cosim.errors import ConfigError, nearest
+from ...cosim.system.identification_spec import IdentificationSpec
+from ...cosim.system.scenario import load_scenario, scenario_names
+from ...cosim.system.system import (
+    Experiment,
+    System,
+    SystemFile,
+    UnitEntry,
+    load_system,
+    system_names,
+)
+from ..builtin import builtin_names, fmu_file
+from ..fmi.fmu import read_fmu
+
+SCENARIO = "identification"
+"""The scenario that a system is identified in if it has one of this name."""
+
+UNIT = "fmu"
+"""The name of the unit in the system of an FMU alone."""
+
+
+def is_fmu(target: str) -> bool:
+    """Return True if `target` names an FMU, False if it names a system.
+
+    Raises ConfigError with the nearest name if it names neither.
+    """
+    if target in builtin_names() or target.endswith(".fmu"):
+        return True
+    known = system_names()
+    if target in known or target.endswith(".toml") or "/" in target or "\\" in target:
+        return False
+    names = [*known, *builtin_names()]
+    raise ConfigError(
+        f"there is no system or FMU '{target}'{nearest(target, names)}; systems: {', '.join(known)}; "
+        f"FMUs: {', '.join(builtin_names())}"
+    )
+
+
+def one_unit_system(target: str, step_size: float | None = None) -> System:
+    """Return a system of one FMU (a built-in name or a path) as the unit `fmu`.
+
+    `step_size` [s]: default that of the FMU's DefaultExperiment, else 0.01.
+    """
+    path = fmu_file(target)
+    experiment = getattr(read_fmu(path).description, "defaultExperiment", None)
+    declared = getattr(experiment, "stepSize", None)
+    step = step_size or (float(declared) if declared else 0.01)
+    name = path.stem if target.endswith(".fmu") else target
+    file = SystemFile(
+        name=name if name.isidentifier() else UNIT,
+        experiment=Experiment(step_size=step),
+        units={UNIT: UnitEntry(fmu=str(path.resolve()))},
+    )
+    return System(Path(target), file)
+
+
+def default_scenario(system: System, scenario: str | Path | None) -> str | Path | None:
+    """Return the given scenario, else `identification` if the system has it, else None: its default."""
+    return SCENARIO if scenario is None and SCENARIO in scenario_names(system) else scenario
+
+
+def spec_of(target: str, scenario: str | Path | None = None) -> IdentificationSpec | None:
+    """Return the table `[identification]` of the scenario that `target` is identified in, if any."""
+    if is_fmu(target):
+        return None
+    system = load_system(target)
+    chosen = default_scenario(system, scenario)
+    return load_scenario(system, None if chosen is None else str(chosen)).file.identification
