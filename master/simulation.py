@@ -21,13 +21,14 @@ from typing import Any, Unpack
 from ..cosim.can.frames import BusLog, write_can_log
 from ..cosim.errors import ConfigError, RunError, counted, nearest
 from ..cosim.interface import Value
+from ..cosim.plan.events import check_event
 from ..cosim.plan.plan import Plan
-from ..cosim.plan.resolve import check_effect, checked
+from ..cosim.plan.resolve import checked
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
 from ..cosim.system.run_options import RunOptions
-from ..cosim.system.scenario import Scenario
+from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario
 from ..cosim.system.selection import figure_spec, metric_specs
 from ..cosim.system.system import Isolation, System
 from .engine.initialization import initialize
@@ -172,19 +173,20 @@ class Simulation:
 
     def override(self, name: str, value: float) -> None:
         """From now on the input `name` receives `value`, whatever drives it."""
-        self._effect(name, "override", value)
+        self._do(Override.model_construct(time=self.time, action="override", variable=name, value=value))
 
     def bias(self, name: str, value: float) -> None:
         """From now on the input `name` receives `value` more than what drives it."""
-        self._effect(name, "bias", value)
+        self._do(Bias.model_construct(time=self.time, action="bias", variable=name, value=value))
 
     def reset(self, name: str) -> None:
         """End the override or bias of the input `name`."""
-        self._effect(name, "reset", None)
+        self._do(Reset.model_construct(time=self.time, action="reset", variable=name))
 
-    def _effect(self, name: str, action: str, value: float | None) -> None:
-        check_effect(name, action, value, self._interfaces, self.plan.inputs, action)
-        self._engine.effect(name, action, value)
+    def _do(self, event: Event) -> None:
+        """Check and do an event that no file has: the messages name the call instead of the keys."""
+        check_event(event, self._interfaces, self.plan.inputs, event.action)
+        self._engine.effect(event)
 
     def _split(self, name: str) -> tuple[str, str]:
         unit, _, variable = name.partition(".")

@@ -17,7 +17,7 @@ from ..can.channel import SignalRoute
 from ..can.dbc import Message
 from ..can.quantization import BusSettings
 from ..results.results import ResultVariable
-from ..system.scenario import EventEntry
+from ..system.scenario import Event
 from ..system.stimuli import TimeFunction
 from ..system.system import Algorithm, Experiment
 from ..units import Affine
@@ -84,7 +84,7 @@ class Plan:
     links: tuple[Link, ...]
     messages: tuple[MessagePlan, ...]
     drives: tuple[Drive, ...]
-    events: tuple[tuple[int, EventEntry], ...]
+    events: tuple[tuple[int, Event], ...]
     inputs: dict[str, InputPlan]
     columns: tuple[ResultVariable, ...]
     column_slots: tuple[int, ...]

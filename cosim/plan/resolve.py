@@ -10,11 +10,12 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
 from ..system.run_options import RunOptions
-from ..system.scenario import EventEntry, Scenario
+from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..units import Affine, conversion, defined
 from .connections import Network, connect
+from .events import scheduled
 from .plan import Drive, InputPlan, Plan
 from .slots import Slots, allot
 from .steps import steps_in
@@ -84,7 +85,7 @@ def resolve(
         links=tuple(network.links),
         messages=tuple(network.messages),
         drives=drives,
-        events=_events(scenario, interfaces, network.inputs, experiment),
+        events=scheduled(scenario, interfaces, network.inputs, experiment),
         inputs=network.inputs,
         columns=tuple(result_variable(unit, v) for unit, v in columns),
         column_slots=tuple(slots.valid[unit, v.name] for unit, v in columns),
@@ -251,52 +252,6 @@ def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Net
         for v in interface.of_causality("input"):
             if v.type != "String" and f"{unit}.{v.name}" not in network.inputs:
                 network.add_mailbox(unit, v.name, slots, "")
-
-
-def _events(
-    scenario: Scenario,
-    interfaces: Mapping[str, UnitInterface],
-    inputs: Mapping[str, InputPlan],
-    experiment: Experiment,
-) -> tuple[tuple[int, EventEntry], ...]:
-    events = []
-    for number, entry in enumerate(scenario.file.events, 1):
-        place = f"{scenario.path}: event {number}"
-        check_effect(entry.variable, entry.action, entry.value, interfaces, inputs, place)
-        step = math.ceil((entry.time - experiment.start_time) / experiment.step_size - 1e-6)
-        events.append((max(step, 0), entry))
-    return tuple(sorted(events, key=lambda event: event[0]))  # stable: events of one time stay in order
-
-
-def check_effect(
-    name: str,
-    action: str,
-    value: float | None,
-    interfaces: Mapping[str, UnitInterface],
-    inputs: Mapping[str, InputPlan],
-    place: str,
-) -> None:
-    """Raise ConfigError unless an override or bias by `value`, or a reset, can act on what `name` receives.
-
-    A value beyond the input's minimum or maximum is allowed: faults are what these are for.
-    """
-    if name not in inputs:
-        raise ConfigError(
-            f"{place}: there is no input '{name}'{nearest(name, inputs)}; "
-            f"{action} acts on what a unit receives"
-        )
-    unit, _, variable = name.partition(".")
-    kind = interfaces[unit].variables[variable].type
-    if value is None:
-        return
-    if not math.isfinite(value):
-        raise ConfigError(f"{place}: {action} of {name} needs a finite number, not {value}")
-    if kind == "Boolean" and (action == "bias" or value not in (0, 1)):
-        raise ConfigError(
-            f"{place}: {name} is a Boolean; it can be overridden by 0 or 1, not {action} {value}"
-        )
-    if kind != "Real" and value != int(value):
-        raise ConfigError(f"{place}: {name} is an {kind}; {action} needs a whole number, not {value}")
 
 
 def _initial(

@@ -122,7 +122,7 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
     driven = driven.model_copy(
         update={
             "stimuli": [s for s in driven.stimuli if s.to not in absent],
-            "events": [e for e in driven.events if e.variable not in absent],
+            "events": [e for e in driven.events if absent.isdisjoint(e.needs)],
             "parameters": _known(driven.parameters, absent, left_out),
             "start": _known(driven.start, absent, left_out),
             "metrics": _metrics(driven.metrics, absent, left_out),

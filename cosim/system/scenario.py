@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -68,22 +68,51 @@ class StimulusEntry(FiniteModel):
         return self
 
 
-class EventEntry(FiniteModel):
-    """At `time` [s]: `override` what an input receives, add a `bias` to it, or `reset` both.
-
-    It takes effect at the first communication point at or after `time`. `value` is in the input's unit.
-    """
+class _EventRecord(FiniteModel):
+    """What all events have: each takes effect at the first communication point at or after `time` [s]."""
 
     time: float = Field(ge=0.0)
-    action: Literal["override", "bias", "reset"]
-    variable: VariableName
-    value: float | None = None
 
-    @model_validator(mode="after")
-    def _value_where_needed(self) -> EventEntry:
-        if (self.value is None) != (self.action == "reset"):
-            raise ValueError("override and bias need a value, reset has none")
-        return self
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The variables without which the event has nothing to act on."""
+        return ()
+
+
+class _InputEvent(_EventRecord):
+    """An event that acts on what the input `variable` receives."""
+
+    variable: VariableName
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The input."""
+        return (self.variable,)
+
+
+class Override(_InputEvent):
+    """From then on the input receives `value`, in its own unit, whatever drives it."""
+
+    action: Literal["override"]
+    value: float
+
+
+class Bias(_InputEvent):
+    """From then on the input receives `value`, in its own unit, more than what drives it."""
+
+    action: Literal["bias"]
+    value: float
+
+
+class Reset(_InputEvent):
+    """From then on the input receives what drives it: the end of an override or a bias."""
+
+    action: Literal["reset"]
+
+
+Event = Annotated[Override | Bias | Reset, Field(discriminator="action")]
+"""An event, by its `action`. Code that acts on one ends its `match` with `assert_never`: mypy then names each
+place that a new action must be added to."""
 
 
 class ScenarioExperiment(FiniteModel):
@@ -104,7 +133,7 @@ class ScenarioFile(FileModel):
     parameters: dict[str, dict[str, Value]] = {}
     start: dict[str, dict[str, Value]] = {}
     stimuli: list[StimulusEntry] = Field(default=[], alias="stimulus")
-    events: list[EventEntry] = Field(default=[], alias="event")
+    events: list[Event] = Field(default=[], alias="event")
     record: list[str] | None = None
     figure: FigureSpec | None = None
     metrics: list[MetricSpec] = []

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 
 from ..errors import ConfigError, nearest
 
@@ -48,20 +49,64 @@ def validate(data: Any, model: type[_Model], place: str) -> _Model:
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        keys = sorted(_keys(model))
-        lines = [_explain(problem, keys) for problem in error.errors(include_url=False)]
+        keys, tagged_by = sorted(_keys(model)), set(_discriminators(model))
+        lines = [_explain(problem, keys, tagged_by, data) for problem in error.errors(include_url=False)]
         raise ConfigError("\n".join(f"{place}: {line}" for line in lines)) from error
 
 
-def _explain(problem: Any, keys: list[str]) -> str:
-    path = _dotted(problem["loc"]) or "the file"
+def _explain(problem: Any, keys: list[str], tagged_by: set[str], data: Any) -> str:
+    place, tag = _spelled(problem["loc"], tagged_by, data)
+    if problem["type"].startswith("union_tag"):
+        return _explain_tag(problem, place)
+    path = _dotted(place) or "the file"
     if problem["type"] == "extra_forbidden":
-        return f"{path}: unknown key{nearest(str(problem['loc'][-1]), keys)}"
+        name = str(place[-1])
+        return f"{path}: unknown key{tag}{nearest(name, keys) if name not in keys else ''}"
     if problem["type"] == "missing":
-        return f"{path}: this key is needed"
-    message = problem["msg"].removeprefix("Value error, ")
-    shown = repr(problem["input"])
-    return f"{path}: {message}, not {shown if len(shown) <= 80 else shown[:77] + '...'}"
+        return f"{path}: this key is needed{tag}"
+    return f"{path}: {problem['msg'].removeprefix('Value error, ')}, not {_shown(problem['input'])}"
+
+
+def _explain_tag(problem: Any, place: list[str | int]) -> str:
+    """Return what is wrong with the key, as `action`, that says which table of a union stands at `place`."""
+    key, table = problem["ctx"]["discriminator"].strip("'"), problem["input"]
+    path = _dotted([*place, key])
+    if problem["type"] == "union_tag_invalid":
+        known = " or ".join(problem["ctx"]["expected_tags"].rsplit(", ", 1))
+        return f"{path}: Input should be {known}, not {_shown(table[key])}"
+    typo = next((name for name in table if nearest(name, [key])), None)
+    if typo is not None:
+        return f"{_dotted([*place, typo])}: unknown key{nearest(typo, [key])}"
+    return f"{path}: this key is needed"
+
+
+def _spelled(path: Iterable[str | int], tagged_by: set[str], data: Any) -> tuple[list[str | int], str]:
+    """Return the path without the tags that pydantic puts in where a union's member was chosen by a key.
+
+    The second is that key and its tag as part of a sentence, or nothing.
+    """
+    place: list[str | int] = []
+    tag, chosen = "", False
+    for part in path:
+        key = next((k for k in tagged_by if isinstance(data, dict) and data.get(k) == part), None)
+        if key is not None and not chosen:
+            tag, chosen = f' with {key} = "{part}"', True
+            continue
+        place.append(part)
+        chosen, data = False, _inside(data, part)
+    return place, tag
+
+
+def _inside(data: Any, part: str | int) -> Any:
+    """The entry `part` of a table or a list; None where there is none."""
+    if isinstance(data, list) and isinstance(part, int):
+        return data[part]
+    return data.get(part) if isinstance(data, dict) else None
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def _dotted(path: Iterable[str | int]) -> str:
@@ -83,6 +128,24 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
         yield annotation
     for argument in get_args(annotation):
         yield from _models_in(argument)
+
+
+def _discriminators(model: type[BaseModel]) -> Iterator[str]:
+    """The keys, as `action`, by which unions anywhere in a file of this model choose a member."""
+    for field in model.model_fields.values():
+        for info in (field, *_infos_in(field.annotation)):
+            if isinstance(info.discriminator, str):
+                yield info.discriminator
+        for inner in _models_in(field.annotation):
+            if inner is not model:
+                yield from _discriminators(inner)
+
+
+def _infos_in(annotation: Any) -> Iterator[FieldInfo]:
+    if isinstance(annotation, FieldInfo):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _infos_in(argument)
 
 
 def names_in(folder: Path) -> list[str]:

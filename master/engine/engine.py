@@ -6,11 +6,12 @@ same results, bit for bit.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, cast
+from typing import Any, assert_never, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from ...cosim.errors import RunError
 from ...cosim.plan.plan import MessagePlan, Plan
 from ...cosim.plan.unit_plan import Route, UnitPlan
 from ...cosim.row_store import RowStore, Table
+from ...cosim.system.scenario import Bias, Event, Override, Reset
 from ..unit import Unit, floats
 from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
@@ -40,6 +42,14 @@ def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
     scope: dict[str, Any] = {"memory": memory}
     exec("def take(k, time, m=memory):\n" + "\n".join(lines), scope)
     return cast(Act, scope["take"])
+
+
+@dataclasses.dataclass(frozen=True)
+class Effect:
+    """The effect of an event on an input: `value` takes the place of what it receives, or is added to it."""
+
+    replaces: bool
+    value: float
 
 
 class Turn:
@@ -63,7 +73,7 @@ class Turn:
             for f in [b.latest if b.kind == "continuous" else b.slot]
         ]
         self.has_feedthrough = any(b.feedthrough for b in outputs)
-        self.effects: dict[int, tuple[Literal["override", "bias"], float]] = {}
+        self.effects: dict[int, Effect] = {}  # by input slot
 
     def begin(self, k: int, time: float) -> None:
         """Apply what events do to the inputs, give them to the unit, and begin its step."""
@@ -87,8 +97,8 @@ class Turn:
 
     def apply_effects(self) -> None:
         """Override and bias inputs."""
-        for slot, (action, value) in self.effects.items():
-            self.memory[slot] = value if action == "override" else self.memory[slot] + value
+        for slot, effect in self.effects.items():
+            self.memory[slot] = effect.value if effect.replaces else self.memory[slot] + effect.value
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
@@ -257,20 +267,31 @@ class Engine:
         """The events whose time has come."""
         while self._events and self._events[0][0] <= self.k:
             _, event = self._events.pop(0)
-            self.effect(event.variable, event.action, event.value)
+            self.effect(event)
 
     def _until_event(self) -> int:
         """How many steps there are before the next event."""
         return self._events[0][0] - self.k if self._events else sys.maxsize
 
-    def effect(self, name: str, action: str, value: float | None = None) -> None:
-        """Override or bias what an input receives from now on, or reset it (see `resolve.check_effect`)."""
+    def effect(self, event: Event) -> None:
+        """Let an event act from now on, whatever its time is; `plan.events.check_event` has accepted it."""
+        match event:
+            case Override():
+                self._affect(event.variable, Effect(replaces=True, value=event.value))
+            case Bias():
+                self._affect(event.variable, Effect(replaces=False, value=event.value))
+            case Reset():
+                self._affect(event.variable, None)
+            case _:
+                assert_never(event)
+
+    def _affect(self, name: str, effect: Effect | None) -> None:
         slot = self.plan.inputs[name].slot
         effects = self._by_slot[slot].effects
-        if value is None:
+        if effect is None:
             effects.pop(slot, None)
         else:
-            effects[slot] = ("override" if action == "override" else "bias", value)
+            effects[slot] = effect
 
     def recorded(self) -> Table:
         """The rows so far, a column for each of the plan's; unless the last step broke off, one more for now.

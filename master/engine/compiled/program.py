@@ -99,10 +99,10 @@ class Program:
                 busy[op] = False
                 continue
             self.ops[op, L.B] = len(turn.effects)
-            for i, (slot, (action, value)) in enumerate(turn.effects.items(), row):
+            for i, (slot, effect) in enumerate(turn.effects.items(), row):
                 _fill(
                     self.effect_table, i,
-                    {L.SLOT: slot, L.OVERRIDES: int(action == "override"), L.VALUE_OF: float(value)},
+                    {L.SLOT: slot, L.OVERRIDES: int(effect.replaces), L.VALUE_OF: float(effect.value)},
                 )  # fmt: skip # a row
         places = np.flatnonzero(busy)
         return self.ops[places], places.tolist()

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import math
-import re
-
 import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.system.scenario import ScenarioFile, load_scenario
 from evcosim.cosim.system.system import SystemFile, load_system
 from evcosim.cosim.system.toml import read_toml, validate
 from evcosim.cosim.units import Affine, UnitOfMeasure
@@ -224,22 +220,6 @@ def test_a_wrong_system_file_names_file_key_and_value(tmp_path, text, said):
     assert "mine.toml" in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("data", "said"),
-    [
-        ({"stimulus": [{"to": "a.b", "constant": 1.0}, {"to": "a.b", "sine": {"amplitude": math.nan, "period": 1}}]},
-         "stimulus 2.sine.amplitude: Input should be a finite number, not nan"),
-        ({"stimulus": [{"to": "a.b", "ramp": {"slope": math.inf}}]}, "stimulus 1.ramp.slope: Input should be a finite"),
-        ({"event": [{"time": 1.0, "action": "bias", "variable": "a.b", "value": math.inf}]},
-         "event 1.value: Input should be a finite number, not inf"),
-        ({"experiment": {"step_size": math.inf}}, "experiment.step_size: Input should be a finite number"),
-    ],
-)  # fmt: skip
-def test_numbers_of_a_scenario_are_finite(data, said):
-    with pytest.raises(ConfigError, match=re.escape(said)):
-        validate(data, ScenarioFile, "s.toml")
-
-
 def test_a_direct_connection_has_no_value_before_the_first_message():
     unit = {"fmu": "F"}
     data = {"name": "a", "units": {"u": unit, "w": unit}}
@@ -270,12 +250,3 @@ def test_unknown_names_say_what_there_is(tmp_path):
         load_system("scoter")
     with pytest.raises(ConfigError, match="there is no such system file"):
         load_system(str(tmp_path / "none.toml"))
-    with pytest.raises(ConfigError, match=r"unknown scenario of system 'scooter' 'fig7' \(did you mean 'fig"):
-        load_scenario(load_system("scooter"), "fig7")
-
-
-@pytest.mark.parametrize("event", [{"action": "override"}, {"action": "reset", "value": 1.0}])
-def test_events_have_a_value_where_they_need_one(event):
-    data = {"event": [{"time": 0.0, "variable": "a.b"} | event]}
-    with pytest.raises(ConfigError, match="override and bias need a value, reset has none"):
-        validate(data, ScenarioFile, "s.toml")

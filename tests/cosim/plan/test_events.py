@@ -1,0 +1,99 @@
+"""Events: at which step each happens, and which ones are refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.interface import UnitInterface, VariableInfo
+from evcosim.cosim.plan.events import check_event, scheduled
+from evcosim.cosim.plan.plan import InputPlan
+from evcosim.cosim.system.scenario import Bias, Override, Reset, Scenario, ScenarioFile
+from evcosim.cosim.system.system import Experiment
+
+INPUTS = {
+    f"display.{name}": InputPlan(i, None, "") for i, name in enumerate(("level", "count", "state", "flag"))
+}
+TYPES = {"level": "Real", "count": "Integer", "state": "Enumeration", "flag": "Boolean"}
+VARIABLES = {name: VariableInfo(name, kind, "input", max=9.0) for name, kind in TYPES.items()}
+INTERFACES = {"display": UnitInterface("display.fmu", VARIABLES)}
+
+
+def at_steps(*times: float, **experiment: Any) -> list[int]:
+    """The steps at which resets at these times happen, in the order in which they happen."""
+    events = [{"time": t, "action": "reset", "variable": "display.level"} for t in times]
+    scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
+    return [step for step, _ in scheduled(scenario, INTERFACES, INPUTS, Experiment(**experiment))]
+
+
+def test_an_event_happens_at_the_first_point_at_or_after_its_time():
+    assert at_steps(0.0, 0.01, 0.02, 0.025, 0.03) == [0, 1, 2, 3, 3]
+    assert at_steps(*(k * 0.01 for k in range(1000))) == list(
+        range(1000)
+    )  # whatever the doubles' last bits say
+
+
+def test_what_lies_before_the_start_happens_at_the_start():
+    assert at_steps(0.0, 1.0, 1.02, start_time=1.0) == [0, 0, 2]
+
+
+def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():
+    table = [(0.02, 1.0), (0.01, 2.0), (0.02, 3.0), (0.011, 4.0)]
+    events = [{"time": t, "action": "override", "variable": "display.level", "value": v} for t, v in table]
+    scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
+    found = scheduled(scenario, INTERFACES, INPUTS, Experiment())
+    assert [(step, event.value) for step, event in found] == [(1, 2.0), (2, 1.0), (2, 3.0), (2, 4.0)]
+
+
+def test_an_event_of_a_file_is_named_by_its_number():
+    events = [
+        {"time": 0.0, "action": "reset", "variable": "display.level"},
+        {"time": 0.0, "action": "override", "variable": "display.state", "value": 1.5},
+    ]
+    scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
+    with pytest.raises(ConfigError, match=r"^s.toml: event 2: display.state is an Enumeration; .* not 1.5$"):
+        scheduled(scenario, INTERFACES, INPUTS, Experiment())
+
+
+def override(name: str, value: float) -> Override:
+    return Override.model_construct(time=0.0, action="override", variable=name, value=value)
+
+
+def bias(name: str, value: float) -> Bias:
+    return Bias.model_construct(time=0.0, action="bias", variable=name, value=value)
+
+
+@pytest.mark.parametrize(
+    ("event", "said"),
+    [
+        (override("display.levle", 1.0), "there is no input 'display.levle' (did you mean 'display.level'?); override acts on what a unit receives"),
+        (Reset.model_construct(time=0.0, action="reset", variable="x.y"), "there is no input 'x.y'; reset acts on what a unit receives"),
+        (override("display.level", float("nan")), "override of display.level needs a finite number, not nan"),
+        (bias("display.level", float("inf")), "bias of display.level needs a finite number, not inf"),
+        (override("display.flag", 2.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not override 2.0"),
+        (bias("display.flag", 1.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not bias 1.0"),
+        (override("display.state", 1.5), "display.state is an Enumeration; override needs a whole number, not 1.5"),
+        (bias("display.count", 0.5), "display.count is an Integer; bias needs a whole number, not 0.5"),
+    ],
+)  # fmt: skip # one case a line
+def test_an_event_that_cannot_act_is_refused(event, said):
+    with pytest.raises(ConfigError) as caught:
+        check_event(event, INTERFACES, INPUTS, "here")
+    assert str(caught.value) == f"here: {said}"
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        override("display.level", 1e6),  # beyond its maximum: faults are what events are for
+        bias("display.level", -1e6),
+        override("display.flag", 1),
+        override("display.count", 3.0),
+        Reset.model_construct(time=0.0, action="reset", variable="display.flag"),
+    ],
+)  # fmt: skip
+def test_an_event_that_can_act_is_taken(event):
+    check_event(event, INTERFACES, INPUTS, "here")
