@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .cosim.analysis.bus_budget import Budget
+    from .cosim.can.bus_settings import BusVariation
     from .cosim.errors import ConfigError, RunError
     from .cosim.results.metrics import Metric
     from .cosim.results.results import Results, ResultVariable
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from .cosim.system.run_options import RunOptions
     from .cosim.system.scenario import Scenario, load_scenario
     from .cosim.system.system import System, load_system
-    from .cosim.system.variation import BusVariation
     from .master.simulation import Simulation, simulate
     from .master.studies.bus_budget import budget
     from .master.studies.identification import Identification, identify
@@ -63,7 +63,7 @@ __all__ = [
 # name -> its module; what stands above for type checkers, and a test compares the two
 _MODULES = {
     "Budget": "cosim.analysis.bus_budget",
-    "BusVariation": "cosim.system.variation",
+    "BusVariation": "cosim.can.bus_settings",
     "ConfigError": "cosim.errors",
     "Identification": "master.studies.identification",
     "IdentificationSpec": "cosim.system.identification_spec",

@@ -1,8 +1,8 @@
 """How much a system's buses may cost it: its own metric over delay, resolution and cycle, each by itself.
 
-A point is one run with a variation of all buses (`variation.BusVariation`); the nominal point, the system as
-its file says, is one of each series. A point is broken when the metric is beyond the limit, or when there is
-no metric: the run failed, or diverged to what is no number.
+A point is one run with a variation of all buses (`bus_settings.BusVariation`); the nominal point, the system
+as its file says, is one of each series. A point is broken when the metric is beyond the limit, or when there
+is no metric: the run failed, or diverged to what is no number.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import math
 from collections.abc import Sequence
 from typing import Any, Literal
 
+from ..can.bus_settings import BusVariation
 from ..results.metrics import Metric
-from ..system.variation import BusVariation
 
 
 @dataclasses.dataclass(frozen=True)

@@ -22,20 +22,10 @@ from numpy.typing import NDArray
 
 from ..errors import ConfigError
 from ..units import Affine
+from .bus_settings import BusSettings
 from .dbc import Message, Signal
-from .quantization import BusSettings, ChannelError, SignalOperation, decode, operation, quantize, reference
+from .quantization import SignalOperation, decode, operation, quantize, reference
 from .transmissions import RawLog, raw_store
-
-__all__ = [
-    "BusSettings",
-    "ChannelError",
-    "MessageChannel",
-    "Saturation",
-    "SignalOperation",
-    "SignalRoute",
-    "operation",
-    "reference",
-]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -161,10 +151,9 @@ def _check(message: Message, routes: Sequence[SignalRoute]) -> None:
 
 def _out_of_range(op: SignalOperation, counter: list[int]) -> Callable[[float, int], float]:
     """The slow path: raw value for a value outside [low, high], counted in `counter`."""
-    settings = BusSettings(op.rounding, op.overflow)
 
     def out(x: float, k: int) -> float:
-        raw = reference(op.signal, settings, x)[0]
+        raw = reference(op.signal, op.settings, x)[0]
         if not counter[0]:
             counter[1] = k
         counter[0] += 1
@@ -174,7 +163,7 @@ def _out_of_range(op: SignalOperation, counter: list[int]) -> Callable[[float, i
 
 
 def _exact_raw(op: SignalOperation) -> Callable[[float], float]:
-    return lambda x: quantize(op.signal, op.rounding, x)
+    return lambda x: quantize(op.signal, op.settings.rounding, x)
 
 
 def _exact_value(op: SignalOperation) -> Callable[[float], float]:
@@ -206,8 +195,9 @@ def _source(routes: Sequence[SignalRoute], operations: Sequence[SignalOperation]
 
 def _send(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
     """From the sender's slot to the raw value r<i>."""
+    use = op.settings
     return [
-        f"# {_one_line(op.signal.name)} [{_one_line(op.signal.unit)}]: {op.rounding}, {op.overflow}",
+        f"# {_one_line(op.signal.name)} [{_one_line(op.signal.unit)}]: {use.rounding}, {use.overflow}",
         f"x = {route.to_bus.expression(f'm[{route.source}]')}",
         f"if {op.low!r} <= x <= {op.high!r}:",
         *(f"    {line}" for line in _quantize_lines(i, op)),
@@ -229,11 +219,11 @@ def _quantize_lines(i: int, op: SignalOperation) -> list[str]:
         return [f"single_{i}[0] = {q}", f"r{i} = single_{i}[0]"]
     if op.kind == "float64":
         return [f"r{i} = {q}"]
-    if op.rounding == "half_even":
+    if op.settings.rounding == "half_even":
         # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
         return [f"r{i} = {q} + 6755399441055744.0 - 6755399441055744.0"]
     # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
-    half = "0.49999999999999994" if op.rounding == "nearest" else "0.0"
+    half = "0.49999999999999994" if op.settings.rounding == "nearest" else "0.0"
     if _never_negative(op):
         return [f"r{i} = ({q} + {half}) // 1.0"]
     up, down = f"(q + {half}) // 1.0", f"0.0 - ({half} - q) // 1.0"  # 0.0 - 0.0 is no -0.0

@@ -8,8 +8,25 @@ In the unit of the DBC signal, a value x becomes
     r = n clipped to the raw range (a float signal: then rounded to its 32 or 64 bits)     (4)
     y = scale * r + offset                                                                 (5)
 
-`reference` says this one line at a time; it is what the generated code is tested against. For values in
-range and rounding "half_even" it is what encode and decode of cantools give, bit for bit.
+Public codecs disagree on (3) and on values out of range, so both are settings of a bus. `rounding`, in (3):
+
+    nearest     to the nearest integer, a half away from zero (2.5 -> 3, -2.5 -> -3)
+    half_even   to the nearest integer, a half to the even one (2.5 -> 2), as cantools
+    truncate    toward zero (2.9 -> 2, -2.9 -> -2), as C code that casts, for example cantools'. A value that
+                has crossed such a bus may lose one more raw step on the next one
+
+`overflow`, a value outside [minimum, maximum] or the raw range:
+
+    saturate    (1) and (4) send the nearest limit; +-Inf too
+    wrap        as C code without a range check: (1) is left out, and (4) keeps the low bits of the integer
+                (120 % in 8 bits of 0.4 % arrives as 17.6 %). A float becomes +-Inf. +-Inf has no low bits and
+                is a ChannelError in an integer signal
+    error       it is a ChannelError; +-Inf too
+
+NaN is a ChannelError always.
+
+`reference` computes this one line at a time; the generated code is tested against it. For values in range and
+rounding "half_even" it is what encode and decode of cantools give, bit for bit.
 
 `operation` folds a signal and the settings of its bus into a SignalOperation. Since (1) to (4) are monotone,
 all values that nothing saturates lie in one interval [low, high], so an engine compares twice, then computes
@@ -27,10 +44,9 @@ from collections.abc import Callable
 from typing import Literal
 
 from ..errors import ConfigError, RunError
+from .bus_settings import BusSettings, Rounding
 from .dbc import Signal
 
-Rounding = Literal["nearest", "half_even", "truncate"]
-Overflow = Literal["saturate", "wrap", "error"]
 Kind = Literal["integer", "exact", "float32", "float64"]
 
 _EXACT = 2.0**50  # up to here every rounding of the generated code is exact in doubles, with a margin
@@ -42,34 +58,6 @@ class ChannelError(RunError):
     def __init__(self, signal: str, value: float, rule: str) -> None:
         super().__init__(f"{signal}: {rule}")
         self.signal, self.value, self.rule = signal, value, rule
-
-
-@dataclasses.dataclass(frozen=True)
-class BusSettings:
-    """How the senders of a bus turn values into raw values; public codecs disagree.
-
-    `rounding`, step (3):
-        nearest     to the nearest integer, a half away from zero (2.5 -> 3, -2.5 -> -3)
-        half_even   to the nearest integer, a half to the even one (2.5 -> 2), as cantools
-        truncate    toward zero (2.9 -> 2, -2.9 -> -2), as C code that casts, for example cantools'. Note that
-                    a value that has crossed such a bus may lose one more raw step on the next one
-    `overflow`, what happens to a value outside [minimum, maximum] or the raw range:
-        saturate    steps (1) and (4): it is sent as the nearest limit; +-Inf too
-        wrap        as C code without a range check: step (1) is left out, and step (4) keeps the low bits of
-                    the integer (120 % in 8 bits of 0.4 % arrives as 17.6 %). A float becomes +-Inf.
-                    +-Inf has no low bits and is a ChannelError in an integer signal
-        error       it is a ChannelError; +-Inf too
-    NaN is a ChannelError always.
-    """
-
-    rounding: Rounding = "nearest"
-    overflow: Overflow = "saturate"
-
-    def __post_init__(self) -> None:
-        for name, known in (("rounding", Rounding), ("overflow", Overflow)):
-            value, allowed = getattr(self, name), known.__args__  # type: ignore[attr-defined] # of a Literal
-            if value not in allowed:
-                raise ConfigError(f"{name} = {value!r}: must be one of {', '.join(map(repr, allowed))}")
 
 
 def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int | float, float]:
@@ -165,8 +153,7 @@ class SignalOperation:
 
     signal: Signal
     kind: Kind
-    rounding: Rounding
-    overflow: Overflow
+    settings: BusSettings
     scale: float
     offset: float
     low: float
@@ -191,8 +178,7 @@ def operation(signal: Signal, settings: BusSettings) -> SignalOperation:
     return SignalOperation(
         signal=signal,
         kind=_kind(signal),
-        rounding=settings.rounding,
-        overflow=settings.overflow,
+        settings=settings,
         scale=float(signal.scale),
         offset=float(signal.offset),
         low=low,

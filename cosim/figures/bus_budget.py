@@ -7,7 +7,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from ..analysis.bus_budget import Budget, Point, Series
-from ..system.variation import BusVariation
+from ..can.bus_settings import BusVariation
 from .draw import COLORS, canvas, pretty
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 
 from ..can.channel import SignalRoute
 from ..can.dbc import Database, Message, Signal, check_signal, load_dbc, schedule
+from ..can.resolution import with_resolution
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.system import Algorithm, Connection, Experiment, System
 from ..system.toml import data_file
-from ..system.variation import with_resolution
 from ..units import Affine, UnitOfMeasure, conversion, defined
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
@@ -222,9 +222,9 @@ def _message(
     order: list[str],
 ) -> MessagePlan:
     message = work.databases[bus].require(name)
-    entry, step_size = work.system.file.buses[bus], experiment.step_size
+    settings, step_size = work.system.file.buses[bus], experiment.step_size
     every, first = schedule(message, step_size, str(work.system.path))
-    delay = steps_in(entry.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
+    delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
     arrivals: list[tuple[int, int]] = []
     if delay:
         routes = [_staged(work.slots, route, arrivals) for route in routes]
@@ -242,10 +242,10 @@ def _message(
         message=dataclasses.replace(
             message, signals=message.signals | {route.signal.name: route.signal for route in routes}
         ),
-        settings=entry.settings,
+        settings=settings,
         routes=tuple(routes),
         senders=dict(senders),
-        every=every * entry.cycle,
+        every=every * settings.cycle,
         first=first,
         after=after,
         delay=delay,

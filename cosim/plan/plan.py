@@ -13,9 +13,9 @@ from __future__ import annotations
 import dataclasses
 import functools
 
+from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.dbc import Message
-from ..can.quantization import BusSettings
 from ..results.results import ResultVariable
 from ..system.scenario import Event
 from ..system.stimuli import TimeFunction

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TypedDict
 
+from ..can.bus_settings import BusVariation
 from ..errors import nearest
 from ..interface import Value
 from .system import Algorithm, EngineName, Isolation
-from .variation import BusVariation
 
 
 class RunOptions(TypedDict, total=False):

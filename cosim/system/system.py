@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from ..can.quantization import BusSettings
+from ..can.bus_settings import BusSettings
 from ..interface import InterfaceType, Value
 from .figure_spec import FigureSpec
 from .metric_spec import MetricSpec
@@ -38,15 +37,6 @@ def _signal(name: str) -> str:
     return name
 
 
-def checked_resolution(value: Any) -> float | Literal["ideal"]:
-    """The factor by which signals are coarser than their DBC says. Raises ValueError."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if value != "ideal" and not (number and 1.0 <= value < math.inf):
-        raise ValueError('a resolution is a factor from 1 on, or "ideal"')
-    return "ideal" if value == "ideal" else float(value)
-
-
-Resolution = float | Literal["ideal"]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 VariableName = Annotated[str, AfterValidator(_variable)]
 SignalName = Annotated[str, AfterValidator(_signal)]
@@ -126,25 +116,15 @@ class UnitEntry(FileModel):
     absent: list[str] = []
 
 
-class BusEntry(FileModel):
-    """A CAN bus: its database, how its codecs behave (see `channel`), and what differs from the database.
-
-    `delay` [s] from sampling to the receivers' mailboxes; `resolution`, the factor by which signals are
-    coarser (see `variation.with_resolution`); `cycle`, the factor by which messages are sent less often.
-    """
+class _BusFile(FileModel):
+    """The key of a bus that is no setting; a base of its own, so that it comes first."""
 
     dbc: str
-    bitrate: int = Field(default=500_000, gt=0)
-    rounding: Literal["nearest", "half_even", "truncate"] = "nearest"
-    overflow: Literal["saturate", "wrap", "error"] = "saturate"
-    delay: float = Field(default=0.0, ge=0.0, allow_inf_nan=False)
-    resolution: Annotated[Resolution, PlainValidator(checked_resolution)] = 1.0
-    cycle: int = Field(default=1, ge=1)
+    """The bus' CAN database (DBC), beside the system file or built in."""
 
-    @property
-    def settings(self) -> BusSettings:
-        """The codec's settings."""
-        return BusSettings(rounding=self.rounding, overflow=self.overflow)
+
+class BusEntry(BusSettings, _BusFile):
+    """A CAN bus: its database and its settings."""
 
 
 class Connection(FiniteModel):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Unpack
 
 from ...cosim.analysis.bus_budget import Budget, Point, series
+from ...cosim.can.bus_settings import BusVariation
 from ...cosim.errors import ConfigError, nearest
 from ...cosim.results.metrics import Metric, evaluate
 from ...cosim.system.metric_spec import MetricSpec
@@ -15,7 +16,6 @@ from ...cosim.system.run_options import RunOptions
 from ...cosim.system.scenario import Scenario
 from ...cosim.system.selection import metric_specs
 from ...cosim.system.system import BudgetEntry, System
-from ...cosim.system.variation import BusVariation
 from ..prepare import Prepared, prepare
 from ..simulation import simulate
 from .parallel import Outcome, Task, TaskProgress, run_all

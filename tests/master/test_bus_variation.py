@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import random
 from pathlib import Path
 
@@ -10,13 +9,12 @@ import numpy as np
 import pytest
 
 from evcosim import Simulation, simulate
-from evcosim.cosim.can.dbc import Signal, load_dbc
-from evcosim.cosim.can.quantization import BusSettings, reference
+from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.system.system import BusEntry, System, SystemFile, load_system
+from evcosim.cosim.system.system import System, SystemFile, load_system
 from evcosim.cosim.system.toml import validate
-from evcosim.cosim.system.variation import BusVariation, varied, with_resolution
+from evcosim.cosim.system.variation import varied
 from support.mocks import MockUnit, column, plan_of, real, started
 
 STEPS = 60
@@ -181,28 +179,6 @@ def test_ideal_samples_holds_and_saturates_but_does_not_quantize(dbc):
     assert np.array_equal(received({"dbc": dbc(cycle=30), "resolution": "ideal"}), held)
 
 
-def test_limits_of_a_signal_stay(dbc):
-    value, bare = (load_dbc(dbc()).messages["Values"].signals[name] for name in ("Value", "Bare"))
-    for signal, resolution, ends in (
-        (value, "ideal", (-20.0, 20.0)),
-        (bare, "ideal", (0.0, 63.75)),  # no limits in the DBC: those of its bits
-        (bare, 2, (0.0, 127.5)),  # as in a DBC with twice the scale
-        (dataclasses.replace(bare, maximum=10.1), "ideal", (0.0, 10.1)),
-        (dataclasses.replace(bare, scale=-0.25, not_available=255), "ideal", (-63.5, 0.0)),
-    ):
-        changed = with_resolution(signal, resolution)
-        assert tuple(reference(changed, BusSettings(), x)[1] for x in (-1e3, 1e3)) == ends
-
-
-def test_whole_scales_stay_integers():
-    signal = Signal("Large", 0, 63, scale=3)
-    assert with_resolution(signal, 2.0).scale == 6
-    assert isinstance(with_resolution(signal, 2.0).scale, int)
-    assert with_resolution(signal, 1.5).scale == 4.5
-    single = Signal("Single", 0, 32, is_float=True, scale=1.0)
-    assert with_resolution(single, 4.0) == single
-
-
 # ---- cycle
 
 
@@ -225,14 +201,6 @@ def test_all_three_together(dbc):
 # ---- the option
 
 
-def test_the_option_comes_on_top_of_the_file():
-    entry = BusEntry(dbc="x.dbc", delay=0.01, resolution=2, cycle=3)
-    more = BusVariation(delay_steps=2, resolution=4, cycle=2).of(entry, 0.01)
-    assert (more.delay, more.resolution, more.cycle) == (pytest.approx(0.03), 8.0, 6)
-    assert BusVariation(resolution="ideal").of(entry, 0.01).resolution == "ideal"
-    assert BusVariation().of(entry, 0.01) == entry
-
-
 def test_a_run_with_the_option(tmp_path):
     plain, same = simulate("scooter", stop_time=3.0), simulate("scooter", stop_time=3.0, bus=BusVariation())
     assert np.array_equal(plain.data, same.data)
@@ -245,23 +213,6 @@ def test_a_run_with_the_option(tmp_path):
 
 
 # ---- errors
-
-
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        ({"delay_steps": -1}, "delay_steps = -1: it is 0 or more steps"),
-        ({"delay_steps": 0.5}, "delay_steps = 0.5"),
-        ({"cycle": 0}, "cycle = 0: it is a whole number from 1 on"),
-        ({"cycle": True}, "cycle = True"),
-        ({"resolution": 0.5}, 'resolution = 0.5: a resolution is a factor from 1 on, or "ideal"'),
-        ({"resolution": float("inf")}, "resolution = inf"),
-        ({"resolution": "idael"}, "resolution = 'idael'"),
-    ],
-)
-def test_wrong_options(values, text):
-    with pytest.raises(ConfigError, match=text):
-        BusVariation(**values)
 
 
 @pytest.mark.parametrize(

@@ -339,7 +339,7 @@ def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> 
     floats = {"float32": L.FLOAT32, "float64": L.FLOAT64}
     row: dict[int, int | float] = {
         L.FROM: route.source,
-        L.MODE: floats.get(operation.kind, _MODES[operation.rounding]),
+        L.MODE: floats.get(operation.kind, _MODES[operation.settings.rounding]),
         L.SATURATES: int(operation.raw_below is not None),
         L.TO: first_sink,
         L.RECEIVERS: len(route.sinks),

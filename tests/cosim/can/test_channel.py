@@ -15,9 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.can import transmissions as rawlog
+from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, Saturation, SignalRoute
 from evcosim.cosim.can.dbc import Message, Signal
-from evcosim.cosim.can.quantization import BusSettings, ChannelError, operation, reference
+from evcosim.cosim.can.quantization import ChannelError, operation, reference
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.units import Affine
 
@@ -28,8 +29,8 @@ FREE = Signal("Free", 32, 8, signed=True)
 
 settings = st.builds(
     BusSettings,
-    st.sampled_from(["nearest", "half_even", "truncate"]),
-    st.sampled_from(["saturate", "wrap", "error"]),
+    rounding=st.sampled_from(["nearest", "half_even", "truncate"]),
+    overflow=st.sampled_from(["saturate", "wrap", "error"]),
 )
 
 
@@ -102,7 +103,7 @@ def test_roundings(rounding: str, table: dict[float, int]) -> None:
 
 
 def test_c_code_that_truncates_and_wraps_sends_a_throttle_of_120_as_17_6() -> None:
-    assert through(THROTTLE, 120.0, BusSettings("truncate", "wrap")) == pytest.approx(17.6)
+    assert through(THROTTLE, 120.0, BusSettings(rounding="truncate", overflow="wrap")) == pytest.approx(17.6)
 
 
 def test_error_names_signal_value_and_limits() -> None:
@@ -124,15 +125,6 @@ def test_nan_is_an_error_under_all_settings(use: BusSettings, signal: Signal) ->
 def test_infinity_has_no_raw_value_to_wrap_to(overflow: str) -> None:
     with pytest.raises(ChannelError, match="the value inf"):
         through(THROTTLE, math.inf, BusSettings(overflow=overflow))  # type: ignore[arg-type] # parametrized
-
-
-def test_unknown_settings_are_refused() -> None:
-    with pytest.raises(
-        ConfigError, match="rounding = 'up': must be one of 'nearest', 'half_even', 'truncate'"
-    ):
-        BusSettings(rounding="up")  # type: ignore[arg-type] # the point of the test
-    with pytest.raises(ConfigError, match="overflow = 'clip'"):
-        BusSettings(overflow="clip")  # type: ignore[arg-type] # the point of the test
 
 
 def test_a_value_is_never_sent_as_the_not_available_code() -> None:
@@ -305,7 +297,7 @@ def round_exactly(q: float, rounding: str) -> int:
 @given(st.floats(-1e18, 1e18), st.sampled_from(["nearest", "half_even", "truncate"]))
 def test_the_definition_rounds_as_exact_fractions_do(q: float, rounding: str) -> None:
     wide = Signal("S", 0, 64, signed=True)
-    raw, _ = reference(wide, BusSettings(rounding), q)  # type: ignore[arg-type] # sampled text
+    raw, _ = reference(wide, BusSettings(rounding=rounding), q)  # type: ignore[arg-type] # sampled text
     assert raw == round_exactly(q, rounding)
 
 
@@ -381,13 +373,15 @@ def test_the_interval_of_unsaturated_values_ends_exactly(signal: Signal, use: Bu
     for x in (op.low, op.high):
         inside.transmit(memory_of(x), 0)
         if use.overflow != "wrap":
-            reference(signal, BusSettings(use.rounding, "error"), x)  # agrees: raises nothing
+            reference(
+                signal, BusSettings(rounding=use.rounding, overflow="error"), x
+            )  # agrees: raises nothing
     assert inside.saturations == {}
     if use.overflow == "saturate":
         for x in (math.nextafter(op.low, -math.inf), math.nextafter(op.high, math.inf)):
             outside.transmit(memory_of(x), 0)
             with pytest.raises(ChannelError):
-                reference(signal, BusSettings(use.rounding, "error"), x)
+                reference(signal, BusSettings(rounding=use.rounding, overflow="error"), x)
         assert outside.saturations["S"].count == 2
 
 

@@ -21,9 +21,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.can import dbc
+from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.dbc import Message, Signal, load_dbc
-from evcosim.cosim.can.quantization import BusSettings, ChannelError
+from evcosim.cosim.can.quantization import ChannelError
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units import Affine
 
@@ -37,7 +38,7 @@ class Line:
 
     def __init__(self, message: Message, name: str, rounding: str, overflow: str = "saturate") -> None:
         route = SignalRoute(message.signals[name], 0, Affine(), ((1, Affine()),))
-        use = BusSettings(rounding, overflow)  # type: ignore[arg-type] # plain text in parameters
+        use = BusSettings(rounding=rounding, overflow=overflow)  # type: ignore[arg-type] # plain text in parameters
         self.channel = MessageChannel(message, [route], use, log_raw=True)
         self.memory = memoryview(bytearray(16)).cast("d")
 

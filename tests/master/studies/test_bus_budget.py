@@ -14,13 +14,13 @@ import pytest
 
 from evcosim import simulate
 from evcosim.cosim.analysis.bus_budget import Budget, Series, as_data, as_markdown, series
+from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures.bus_budget import draw_budget
 from evcosim.cosim.figures.draw import save
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.selection import metric_specs
 from evcosim.cosim.system.system import load_system, system_names
-from evcosim.cosim.system.variation import BusVariation
 from evcosim.fmus.build import build_model
 from evcosim.master.studies.bus_budget import budget
 from support import bus_models

@@ -1,0 +1,100 @@
+"""The settings of a bus: one record, from a system file or a variation through the plan to the channel.
+
+A new setting is a key of BusSettings; what acts on it finds it in `MessagePlan.settings`. If a run may vary
+it for all buses, BusVariation has it too.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
+
+from ..errors import ConfigError
+
+Rounding = Literal["nearest", "half_even", "truncate"]
+Overflow = Literal["saturate", "wrap", "error"]
+Resolution = float | Literal["ideal"]
+
+
+def checked_resolution(value: Any) -> Resolution:
+    """Return the factor by which signals are coarser than their DBC says, or "ideal". Raises ValueError."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if value != "ideal" and not (number and 1.0 <= value < math.inf):
+        raise ValueError('a resolution is a factor from 1 on, or "ideal"')
+    return "ideal" if value == "ideal" else float(value)
+
+
+_RESOLUTION_SCHEMA = {"anyOf": [{"type": "number", "minimum": 1}, {"const": "ideal"}]}
+
+
+class BusSettings(BaseModel):
+    """Settings of a CAN bus: how its senders turn values into raw values, and how it differs from its DBC."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    bitrate: int = Field(default=500_000, gt=0)
+    """Bits a second."""
+
+    rounding: Rounding = "nearest"
+    """Rounding to a raw value: to the nearest, a half away from zero (nearest) or to the even one (half_even,
+    as cantools), or toward zero (truncate, as C code that casts)."""
+
+    overflow: Overflow = "saturate"
+    """A value out of range is sent as the nearest limit (saturate), by its low bits as C code without a range
+    check does (wrap), or is an error (error)."""
+
+    delay: float = Field(default=0.0, ge=0.0, allow_inf_nan=False)
+    """Time from sampling to the receivers' mailboxes in s: a multiple of the communication step."""
+
+    resolution: Annotated[
+        Resolution, PlainValidator(checked_resolution), WithJsonSchema(_RESOLUTION_SCHEMA)
+    ] = 1.0
+    """Factor from 1 on by which signals are coarser than the DBC says, or "ideal": not quantized at all."""
+
+    cycle: int = Field(default=1, ge=1)
+    """Factor by which messages are sent less often than the DBC says."""
+
+
+_Settings = TypeVar("_Settings", bound=BusSettings)
+
+
+@dataclasses.dataclass(frozen=True)
+class BusVariation:
+    """What is changed of all buses of a system, on top of what its file says of each.
+
+    `delay_steps` communication steps are added to the delay; `resolution` multiplies the factor by which
+    signals are coarser than their DBC says, "ideal" leaves quantization out; `cycle` multiplies the cycle
+    time of every message. Raises ConfigError for a number that is none of these.
+    """
+
+    delay_steps: int = 0
+    resolution: Resolution = 1.0
+    cycle: int = 1
+
+    def __post_init__(self) -> None:
+        if not (_whole(self.delay_steps) and self.delay_steps >= 0):
+            raise ConfigError(f"bus variation: delay_steps = {self.delay_steps!r}: it is 0 or more steps")
+        if not (_whole(self.cycle) and self.cycle >= 1):
+            raise ConfigError(f"bus variation: cycle = {self.cycle!r}: it is a whole number from 1 on")
+        try:
+            checked_resolution(self.resolution)
+        except ValueError as error:
+            raise ConfigError(f"bus variation: resolution = {self.resolution!r}: {error}") from error
+
+    def of(self, settings: _Settings, step_size: float) -> _Settings:
+        """Return the settings with this variation on top; `step_size` in s."""
+        ideal = "ideal" in (settings.resolution, self.resolution)
+        return settings.model_copy(
+            update={
+                "delay": settings.delay + self.delay_steps * step_size,
+                "resolution": "ideal" if ideal else float(settings.resolution) * float(self.resolution),
+                "cycle": settings.cycle * self.cycle,
+            }
+        )
+
+
+def _whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
