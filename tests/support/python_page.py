@@ -1,0 +1,167 @@
+"""docs/python.md: its reference blocks from the signatures and docstrings of the public names.
+
+    .venv/bin/python tests/support/python_page.py            # exit code 1 if a block is out of date
+    .venv/bin/python tests/support/python_page.py --write    # the blocks anew
+
+A block stands between `<!-- reference: NAME ... -->` and `<!-- end -->`; the prose and the examples around it
+are written by hand.
+"""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import inspect
+import re
+import sys
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import evcosim
+
+PAGE = Path(__file__).parents[2] / "docs" / "python.md"
+_BLOCK = re.compile(r"(<!-- reference: ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+_WIDTH = 100  # characters of a signature in one line
+
+
+def rewritten(page: str) -> str:
+    """Return the page with each block as the code says it."""
+    return _BLOCK.sub(lambda found: f"{found[1]}\n{reference(found[2].split())}\n{found[3]}", page)
+
+
+def described(page: str) -> list[str]:
+    """Return the names that have a reference on the page."""
+    return [name for found in _BLOCK.finditer(page) for name in found[2].split()]
+
+
+def reference(names: list[str]) -> str:
+    """Return the references of some names of `evcosim`, in this order."""
+    return "\n".join(_entry(name, getattr(evcosim, name)) for name in names)
+
+
+def _entry(name: str, item: Any) -> str:
+    """Heading, signature, docstring and, of a class, its keys (where each is described) and members."""
+    parts = [f"#### `{name}`"]
+    keys = list(_keys(item)) if _is_record(item) else []
+    described = any(row[-1] for row in keys)
+    if not (described or _is_error(item)):
+        parts.append(f"```python\n{_signature(name, item)}\n```")
+    parts.append(inspect.cleandoc(item.__doc__ or ""))
+    if described:
+        parts.append(_table(("key", "type and default", ""), keys))
+    if inspect.isclass(item) and (members := list(_members(item))):
+        parts.append(_table(("member", ""), members))
+    return "\n\n".join(parts) + "\n"
+
+
+def _is_record(item: Any) -> bool:
+    """Whether a class is its keys: a TypedDict, a dataclass, or what a file says (pydantic)."""
+    return any(hasattr(item, key) for key in ("__optional_keys__", "model_fields")) or (
+        dataclasses.is_dataclass(item)
+    )
+
+
+def _is_error(item: Any) -> bool:
+    return inspect.isclass(item) and issubclass(item, Exception)
+
+
+def _table(headers: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    escaped = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+    first, *others = (f"| {' | '.join(cells)} |".replace("|  |", "| |") for cells in (headers, *escaped))
+    return "\n".join([first, "|---" * len(headers) + "|", *others])
+
+
+# ---- signatures
+
+
+def _signature(name: str, item: Any) -> str:
+    """A call with the types of its arguments, one a line where a line does not hold them."""
+    signature = inspect.signature(item)
+    text = f"{name}{_as_text(signature)}"
+    if len(text) <= _WIDTH:
+        return text
+    lines = []
+    for parameter in signature.parameters.values():
+        if parameter.kind is parameter.KEYWORD_ONLY and "*" not in lines:
+            lines.append("*")
+        lines.append(_unquoted(str(parameter)))
+    ending = text.rpartition(")")[2]
+    return "\n".join([f"{name}(", *(f"    {line}," for line in lines), f"){ending}"])
+
+
+def _as_text(signature: inspect.Signature) -> str:
+    """A signature without `self`; annotations, which are strings in the code, without quotes."""
+    shown = [parameter for parameter in signature.parameters.values() if parameter.name != "self"]
+    return _unquoted(str(signature.replace(parameters=shown))).removesuffix(" -> None")
+
+
+def _unquoted(text: str) -> str:
+    return re.sub(r"(?<=: |> )'([^']*)'", r"\1", text)
+
+
+# ---- what stands in a class
+
+
+def _keys(item: Any) -> Iterator[tuple[str, ...]]:
+    """Name, type with default, and meaning of each key of a record."""
+    body = _source(item).body
+    for i, statement in enumerate(body):
+        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+            default = f" = {ast.unparse(statement.value)}" if statement.value is not None else ""
+            yield (
+                f"`{statement.target.id}`",
+                f"`{ast.unparse(statement.annotation)}{default}`",
+                _docstring(body[i + 1 : i + 2]),
+            )
+
+
+def _source(item: Any) -> ast.ClassDef:
+    found = ast.parse(textwrap.dedent(inspect.getsource(item))).body[0]
+    assert isinstance(found, ast.ClassDef)
+    return found
+
+
+def _docstring(following: list[ast.stmt]) -> str:
+    """The text below a key; "" where the next statement is none."""
+    for statement in following:
+        if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
+            return " ".join(str(statement.value.value).split())
+    return ""
+
+
+def _members(item: Any) -> Iterator[tuple[str, ...]]:
+    """Signature and first paragraph of public properties and methods, in their order in the class."""
+    for name, member in vars(item).items():
+        if isinstance(member, property):
+            yield f"`{name}: {_returned(member.fget)}`", _first_paragraph(member)
+        elif isinstance(member, classmethod):
+            signature = _as_text(inspect.signature(getattr(item, name)))
+            yield f"`{item.__name__}.{name}{signature}`", _first_paragraph(member.__func__)
+        elif inspect.isfunction(member) and (not name.startswith("_") or name == "__getitem__"):
+            text = _as_text(inspect.signature(member))
+            call = f"[{text[1:].replace(')', ']', 1)}" if name == "__getitem__" else f"{name}{text}"
+            yield f"`{call}`", _first_paragraph(member)
+
+
+def _returned(function: Any) -> str:
+    return str(inspect.signature(function).return_annotation)
+
+
+def _first_paragraph(item: Any) -> str:
+    return " ".join(inspect.cleandoc(item.__doc__ or "").split("\n\n")[0].split())
+
+
+def main() -> None:
+    """Compare the page with the code, or write it."""
+    old = PAGE.read_text(encoding="utf-8")
+    new = rewritten(old)
+    if sys.argv[1:] == ["--write"]:
+        PAGE.write_text(new, encoding="utf-8")
+    elif new != old:
+        sys.exit(f"{PAGE.name} is not what the code says: python tests/support/python_page.py --write")
+
+
+if __name__ == "__main__":
+    main()

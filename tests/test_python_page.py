@@ -1,0 +1,55 @@
+"""docs/python.md: its reference is what the code says, and its examples print what it shows."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import evcosim
+from support import python_page
+
+TEXT = python_page.PAGE.read_text(encoding="utf-8")
+LINES = r"((?:(?!```).*\n)*)"
+EXAMPLES = re.findall(rf"^```python\n{LINES}```\n\n```text\n{LINES}```\n", TEXT, re.MULTILINE)
+
+
+def test_the_reference_is_what_the_code_says():
+    assert python_page.rewritten(TEXT) == TEXT, "python tests/support/python_page.py --write writes it"
+
+
+def test_every_public_name_has_a_reference():
+    assert sorted(python_page.described(TEXT)) == [n for n in evcosim.__all__ if n != "__version__"]
+
+
+def alone(code: str) -> bool:
+    """Whether an example starts processes, which import it: it is a script of its own."""
+    return "__main__" in code
+
+
+def test_the_examples_print_what_is_shown(tmp_path, monkeypatch):
+    """In one interpreter, from top to bottom: later ones use what earlier ones made."""
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {"__name__": "page"}
+    together = [example for example in EXAMPLES if not alone(example[0])]
+    assert len(together) >= 6
+    for code, shown in together:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(code, "python.md", "exec"), names)
+        assert printed.getvalue() == shown
+    assert {path.name for path in Path("run").iterdir()} == {"results.csv", "run.json", "figure.png"}
+
+
+def test_the_scripts_print_what_is_shown(tmp_path):
+    scripts = [example for example in EXAMPLES if alone(example[0])]
+    assert len(scripts) == 2
+    for code, shown in scripts:
+        script = tmp_path / "script.py"
+        script.write_text(code, encoding="utf-8")
+        done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True)
+        assert (done.stdout, done.returncode) == (shown, 0), done.stderr
