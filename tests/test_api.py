@@ -118,7 +118,7 @@ TYPES = [
 
 
 def test_a_users_mypy_knows_the_types(tmp_path):
-    """The links in .typing show mypy the folders as the package that an installation has (.ci/run: a wheel)."""
+    """The links in .typing stand for an installation; .ci/run does it with that of the wheel."""
     if importlib.util.find_spec("mypy") is None:
         give_up("mypy is not installed")
     (tmp_path / "user.py").write_text(SCRIPT)
