@@ -1,4 +1,4 @@
-"""From what a system file calls an FMU to its file: built-in names come from `evcosim.fmus`.
+"""The files of FMUs by the names that system files give them; built-in ones come from `evcosim.fmus`.
 
 This is the one module of the master that knows the package of FMUs.
 """
@@ -11,28 +11,28 @@ from ..cosim.errors import ConfigError, nearest
 
 
 def builtin_names() -> tuple[str, ...]:
-    """The names of the FMUs that evcosim builds itself."""
+    """Return the names of the FMUs that evcosim builds itself."""
     from ..fmus import build
 
     return build.names()
 
 
 def cache_folder() -> Path:
-    """Where evcosim keeps what it builds; the folder need not exist."""
+    """Return the folder of built FMUs and of the compiled engine; it need not exist."""
     from ..fmus import cache
 
     return cache.folder()
 
 
 def builtin_text(name: str) -> str:
-    """What a built-in FMU is, in one line."""
+    """Return one line about a built-in FMU."""
     from ..fmus import catalog
 
     return catalog.text(name)
 
 
 def is_builtin(name: str, path: Path) -> bool:
-    """Whether the FMU of this model name in a file is the one that evcosim builds, or a copy of it.
+    """Return True if the FMU in a file, of this model name, is the one that evcosim builds or a copy of it.
 
     Equal sources give equal bytes, so that no other file can pass for it.
     """
@@ -47,7 +47,7 @@ def is_builtin(name: str, path: Path) -> bool:
 def build_fmu(name: str, folder: Path | None = None) -> Path:
     """Build a built-in FMU into a folder (default: the cache) and return its file.
 
-    Raises ConfigError where the folder cannot be written.
+    Raises ConfigError if the folder cannot be written.
     """
     from ..fmus import build
 
@@ -61,15 +61,14 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
 
 
 def fmu_file(name: str, beside: Path | None = None) -> Path:
-    """The file of an FMU: a built-in name (built now if the cache does not have it), or a path.
+    """Return the file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 
     A relative path is looked up beside the system file `beside` that names it, then from the working folder.
-    Raises ConfigError with the nearest name where there is none.
+    Raises ConfigError with the nearest name if there is no such file.
     """
     from ..fmus import build
 
     place = "" if beside is None else f"{beside}: "
-
     if name in build.names():
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:

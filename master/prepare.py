@@ -1,4 +1,4 @@
-"""From the arguments of a run to all that is known before an FMU is instantiated."""
+"""Preparing a run: from its arguments to checked system, scenario, FMUs and plan, without any instance."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .fmi.fmu import Fmu, check_runnable, read_fmu
 
 @dataclasses.dataclass(frozen=True)
 class Prepared:
-    """What is known of a run before any FMU is instantiated; whatever can be wrong so far was found."""
+    """A run that is ready to be loaded: everything that can be checked without an instance was checked."""
 
     system: System
     scenario: Scenario
@@ -42,24 +42,17 @@ def prepare(
     runnable: bool = True,
     **options: Unpack[RunOptions],
 ) -> Prepared:
-    """Read and check all that a run needs; the arguments are those of `Simulation`.
+    """Read and check everything that a run needs; the arguments are those of `Simulation`.
 
-    Without `runnable` an FMU that cannot run on this machine is taken too, as what is only shown may be.
-    Raises ConfigError naming place, rule and values; TypeError for an option that there is not.
+    Without `runnable` an FMU that cannot run on this machine is accepted too, to be shown only.
+    Raises ConfigError naming place, rule and values; TypeError for an unknown option.
     """
     check_names(options)
-    bus, ideal, swaps = options.get("bus"), options.get("ideal", False), options.get("swaps") or {}
-    read = system if isinstance(system, System) else load_system(str(system))
-    if isinstance(scenario, Scenario):
-        driven = scenario
-    else:
-        driven = load_scenario(read, None if scenario is None else str(scenario))
-    if bus is not None:
-        if ideal:
-            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
-        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
-    read = swapped(read, swaps)
-    read, driven, left_out = without_absent(read, driven)
+    swaps = options.get("swaps") or {}
+    # the files: system and scenario, with varied buses and swapped units, without absent variables
+    read, driven = _files(system, scenario, options)
+    read, driven, left_out = without_absent(swapped(read, swaps), driven)
+    # the FMUs, and the interfaces that they present to the system
     loaded = _read_fmus(read, driven, options.get("fmus") or {}, options.get("strict", False), runnable)
     interfaces = {
         unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
@@ -70,6 +63,7 @@ def prepare(
     for unit, path in swaps.items():
         if unit in interfaces:
             _check_complete(read, driven, unit, interfaces[unit], path)
+    # the plan, and the figures and metrics that name its columns
     plan = _advised(read, lambda: resolve(read, driven, interfaces, options), swaps)
     plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
     check_specs(read, driven, plan.columns)
@@ -77,7 +71,25 @@ def prepare(
     return Prepared(read, driven, loaded, plan)
 
 
+def _files(
+    system: str | Path | System, scenario: str | Path | Scenario | None, options: RunOptions
+) -> tuple[System, Scenario]:
+    """Read system and scenario, unless they were made in memory, and vary the buses as `bus` says."""
+    read = system if isinstance(system, System) else load_system(str(system))
+    if isinstance(scenario, Scenario):
+        driven = scenario
+    else:
+        driven = load_scenario(read, None if scenario is None else str(scenario))
+    bus = options.get("bus")
+    if bus is not None:
+        if options.get("ideal", False):
+            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
+        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
+    return read, driven
+
+
 def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
+    """Raise ConfigError for a variable that the system file declares absent and the FMU has."""
     for name in system.file.units[unit].absent:
         if name in interface.variables:
             raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
@@ -86,19 +98,20 @@ def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
 def _check_complete(
     system: System, scenario: Scenario, unit: str, interface: UnitInterface, path: str | Path
 ) -> None:
-    """Raise ConfigError that tells all that a swapped unit lacks."""
+    """Raise ConfigError that names every variable that a swapped unit lacks."""
     if missing := lacking(system, scenario, unit, interface):
         lines = "\n".join(f"unit '{unit}' has no variable {name}" for name in missing)
         raise ConfigError(f"{path}: {lines}\nmap them, or declare them absent; {_advice(system, unit, path)}")
 
 
 def _advice(system: System, unit: str, path: str | Path) -> str:
+    """Return the command that checks a swap file against the place of the unit."""
     name = system.path if DATA.resolve() not in system.path.resolve().parents else system.file.name
     return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
 
 
 def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
-    """The plan; an error of a run with swapped units says what shows all that is missing."""
+    """Return the plan; add to an error, if units are swapped, the command that shows everything missing."""
     try:
         return resolved()
     except ConfigError as error:
@@ -111,6 +124,7 @@ def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, s
 def _read_fmus(
     system: System, scenario: Scenario, fmus: Mapping[str, str | Path], strict: bool, runnable: bool
 ) -> dict[str, Fmu]:
+    """Read the FMUs of the units that take part, those of `fmus` in place of the system's."""
     entries = participating(system, scenario)
     for unit in fmus:
         if unit not in entries:

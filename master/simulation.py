@@ -53,8 +53,8 @@ class Simulation:
     """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
 
     `system` and `scenario` are built-in names, paths of TOML files, or made in memory; `log_frames` keeps the
-    frames for `write_can_log`; `profile` measures what takes time in the steps. The other keyword arguments
-    are those of RunOptions.
+    frames for `write_can_log`; `profile` measures the time of each part of a step. The other keyword
+    arguments are those of RunOptions.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -104,7 +104,7 @@ class Simulation:
 
     @property
     def units(self) -> Mapping[str, Unit]:
-        """The loaded units by name; none after the end."""
+        """The loaded units by name; empty after the end."""
         return self._units
 
     @property
@@ -114,26 +114,26 @@ class Simulation:
 
     @property
     def finished(self) -> bool:
-        """Whether the stop time is reached; stepping on beyond it is allowed."""
+        """True once the stop time is reached; stepping on beyond it is allowed."""
         return self._engine.k >= self.plan.steps
 
     @property
     def steps_left(self) -> int:
-        """How many communication steps there are to the stop time."""
+        """The number of communication steps left to the stop time."""
         return max(0, self.plan.steps - self._engine.k)
 
     def step(self, steps: int = 1) -> None:
         """Do `steps` communication steps.
 
-        Raises RunError with unit, time and reason; the results up to then are kept.
+        Raises RunError naming unit, time and reason; the results up to then are kept.
         """
         self._advance(steps, None)
 
     def run(self, progress: RunProgress | None = None) -> None:
         """Step to the stop time. Raises as `step` does."""
         stop = self.plan.experiment.stop_time
-        tell = None if progress is None else lambda k: progress(self._engine.time_at(k), stop)
-        self._advance(self.steps_left, tell)
+        report = None if progress is None else lambda k: progress(self._engine.time_at(k), stop)
+        self._advance(self.steps_left, report)
 
     def _advance(self, steps: int, progress: Callable[[int], None] | None) -> None:
         if not self._engine.whole:
@@ -145,7 +145,10 @@ class Simulation:
             self.loop_seconds += time.perf_counter() - begin
 
     def __getitem__(self, name: str) -> float:
-        """The value of any variable "unit.variable" at the current communication point, in its own unit."""
+        """Return the value of a variable "unit.variable" at the current communication point, in its own unit.
+
+        Raises ConfigError for an unknown name and for a String.
+        """
         slot = self.plan.slots.get(name)
         if slot is not None:
             return float(self._engine.memory[slot])
@@ -158,7 +161,7 @@ class Simulation:
     def set(self, name: str, value: Value) -> None:
         """Set an input that nothing drives; it keeps the value until it is set again.
 
-        Raises ConfigError for any other variable, a value of the wrong type or out of range.
+        Raises ConfigError for any other variable, and for a value of the wrong type or out of range.
         """
         unit, variable = self._split(name)
         plan = self.plan.inputs.get(name)
@@ -172,15 +175,15 @@ class Simulation:
         self._engine.memory[plan.mailbox] = float(number)
 
     def override(self, name: str, value: float) -> None:
-        """From now on the input `name` receives `value`, whatever drives it."""
+        """Let the input `name` receive `value` from now on, whatever drives it. Raises ConfigError."""
         self._do(Override.model_construct(time=self.time, action="override", variable=name, value=value))
 
     def bias(self, name: str, value: float) -> None:
-        """From now on the input `name` receives `value` more than what drives it."""
+        """Let the input `name` receive `value` more than what drives it, from now on. Raises ConfigError."""
         self._do(Bias.model_construct(time=self.time, action="bias", variable=name, value=value))
 
     def reset(self, name: str) -> None:
-        """End the override or bias of the input `name`."""
+        """End the override or bias of the input `name`. Raises ConfigError if there is no such input."""
         self._do(Reset.model_construct(time=self.time, action="reset", variable=name))
 
     def _do(self, event: Event) -> None:
@@ -199,9 +202,10 @@ class Simulation:
 
     @property
     def profile(self) -> list[dict[str, Any]]:
-        """What took how long in the steps so far: name, what, s, us a step, share; [] if that was not asked.
+        """The parts of the steps so far, each with name, what, seconds, microseconds_per_step and share.
 
-        Looking at the clock takes time itself, some 0.03 us for each entry and step.
+        [] unless the simulation was made with `profile`. Reading the clock takes time itself, some 0.03 us
+        for each part and step.
         """
         if self._engine.profile is None:
             return []
@@ -211,8 +215,8 @@ class Simulation:
 
     @property
     def warnings(self) -> list[str]:
-        """What is not as it should be, one sentence each: missing units of measure, warnings of units,
-        outputs beyond their limits."""
+        """A sentence for everything suspicious: notices of the engine, defects of FMUs, missing units of
+        measure, warnings of units, outputs beyond their limits."""
         from_units = [
             f"unit '{name}' gave {counted(n, 'warning')}" for name, n in self._unit_warnings().items() if n
         ]
@@ -228,7 +232,7 @@ class Simulation:
 
     @property
     def results(self) -> Results:
-        """What was recorded up to now, with the manifest of the run."""
+        """The rows recorded up to now, with the manifest of the run."""
         table = self._engine.recorded()
         experiment = self.plan.experiment
         return Results(
@@ -243,11 +247,13 @@ class Simulation:
     def write_can_log(self, path: str | Path) -> int:
         """Write the frames that crossed the buses; the suffix (.log candump, .blf, .asc) names the format.
 
-        Returns their number. Raises ConfigError when the run did not keep them (`log_frames`), for another
-        suffix or where the file cannot be written.
+        Return their number. Raises ConfigError if the run did not keep them (`log_frames`), for another
+        suffix, and if the file cannot be written.
         """
         if not self.log_frames:
-            raise ConfigError("the frames of this run were not kept; ask for log_frames before the run")
+            raise ConfigError(
+                "the frames of this run were not kept; make the simulation with log_frames=True"
+            )
         experiment = self.plan.experiment
         logs = [
             BusLog(bus, [s.channel.log for s in self._engine.senders if s.plan.bus == bus])
@@ -297,7 +303,7 @@ class Simulation:
     def _free(self) -> None:
         for unit in self._units.values():
             unit.free()
-        self._last_warnings = self._unit_warnings()  # an isolated unit tells the last ones when it is freed
+        self._last_warnings = self._unit_warnings()  # an isolated unit reports the last ones when it is freed
         self._units = {}
 
 
@@ -324,6 +330,7 @@ def simulate(
 
 
 def _check_frames(system: System) -> None:
+    """Raise ConfigError for a bus whose values are not quantized."""
     for name, entry in system.file.buses.items():
         if entry.resolution == "ideal":
             raise ConfigError(
@@ -333,7 +340,7 @@ def _check_frames(system: System) -> None:
 
 
 def _defects(unit: str, fmu: Fmu) -> list[str]:
-    """What was tolerated in an FMU's description: the first defects, and how many more there are."""
+    """Return the first tolerated defects of an FMU's description, and the number of the others."""
     shown = [f"unit '{unit}': {fmu.path.name}: {defect}" for defect in fmu.defects[:_SHOWN_DEFECTS]]
     more = len(fmu.defects) - len(shown)
     return [*shown, *([f"unit '{unit}': {fmu.path.name}: {more} more defects"] if more else [])]

@@ -1,4 +1,4 @@
-"""What the algorithms ask of a unit. A loaded FMU is one; tests use units written in Python."""
+"""The interface of a unit in a run. A loaded FMU has it; so have the units of tests, written in Python."""
 
 from __future__ import annotations
 
@@ -13,23 +13,29 @@ from ..cosim.plan.unit_plan import UnitPlan
 
 
 def floats(memory: NDArray[np.float64]) -> memoryview[float]:
-    """The memory as a view whose items are Python floats: three times faster than numpy's one by one."""
+    """Return the memory, shape (size,), as a view whose items are Python floats.
+
+    One by one they are read and written three times faster than those of a numpy array.
+    """
     return memory.data.cast("B").cast("d")
 
 
 class UnitError(RunError):
-    """A unit failed. The message names the unit, what was asked, the status and the unit's own last words."""
+    """A call of a unit failed; the message names unit, call, status, and the unit's last log messages."""
 
 
 class Unit(Protocol):
-    """A unit in a run. The calls come in this order:
+    """A unit in a run: `bind` gives it memory, of which it reads its inputs and where it writes its outputs.
+
+    The calls come in this order:
 
     1. `bind` once, then `set` of parameters and starts, then `enter_initialization(start, stop)`
     2. `set` of inputs and `get` of outputs, any number, then `exit_initialization`
     3. for each of its turns: `set_inputs`, `get_feedthrough`, `start_step`, `finish_step`, `get_outputs`
     4. `terminate`, then `free`; after an error `free` alone
 
-    Every call raises UnitError when the unit reports anything worse than a warning.
+    Every call raises UnitError when the unit reports anything worse than a warning. Classes that implement a
+    unit document only what they add.
     """
 
     name: str
@@ -37,30 +43,31 @@ class Unit(Protocol):
 
     @property
     def warnings(self) -> int:
-        """How often a call ended with a warning or a message of status Warning came."""
+        """The number of calls that ended with a warning and of log messages of status Warning."""
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Keep the run's memory, shape (size,), and the slots of this unit's slot groups in it."""
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """Set the experiment up (times in s) and enter initialization mode."""
+        """Set up the experiment (times in s) and enter initialization mode."""
 
     def exit_initialization(self) -> None:
         """Leave initialization mode: parameters are fixed from now on."""
 
     def get(self, name: str) -> Value:
-        """The value of any variable."""
+        """Return the value of any variable."""
 
     def set(self, name: str, value: Value) -> None:
-        """Set any variable that may be set now."""
+        """Set a variable that may be set now."""
 
     def set_inputs(self) -> None:
-        """Give the unit its inputs from the slots of its input slot groups."""
+        """Set the inputs of the FMU from the slots of its input slot groups."""
 
     def get_feedthrough(self) -> None:
         """Read the outputs that depend on inputs at the same instant into their slots, valid and latest.
 
-        A unit in a process of its own does so with the step that follows: they are there when that is done.
+        A unit in a process of its own reads them with the step that follows, so that they are written when
+        that step is done.
         """
 
     def start_step(self, time: float, step_size: float, count: int) -> None:

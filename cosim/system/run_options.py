@@ -1,4 +1,4 @@
-"""The options of a run: declared once, taken by everything that runs a system."""
+"""The options of a run, declared once for everything that runs a system."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ class RunOptions(TypedDict, total=False):
     """The time [s] at which the run ends (default: the scenario's, else the system's)."""
 
     isolation: Isolation | None
-    """Put every unit into a process of its own ("process") or none ("none"; default: the system's)."""
+    """Run every unit in a process of its own ("process"), or none ("none"; default: the system's)."""
 
     engine: EngineName | None
     """The engine, "compiled" (needs numba) or "python", equal bit for bit (default: the system's)."""
 
     strict: bool
-    """Refuse every FMU whose description has defects (default: False)."""
+    """Refuse every FMU whose description has defects, even if they could be mended (default: False)."""
 
 
 def check_names(options: Iterable[str]) -> None:
-    """Raise TypeError, naming the nearest option, for a name that is none of RunOptions."""
+    """Raise TypeError with the nearest option for a name that is not in RunOptions."""
     known = RunOptions.__optional_keys__
     for name in options:
         if name not in known:

@@ -1,1 +1,1 @@
-"""What does the steps: the schedule, the python engine and the compiled one."""
+"""The engines that do the steps of a run, in Python and compiled, and the schedule that both follow."""

@@ -1,7 +1,7 @@
-"""What the engines share: units and messages in the schedule, chunks of steps, events, and what is recorded.
+"""The base of both engines: units and messages in the schedule, chunks of steps, events, recorded rows.
 
-`algorithm` has the engine in Python, `compiled` the one in machine code. Both follow `schedule` and give the
-same results, bit for bit.
+`python_engine` does the steps in Python, `compiled` in machine code. Both follow `schedule` and give the same
+results, bit for bit.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
 
 Act = Callable[[int, float], None]
-"""What is done in step k, which starts at t_k [s]."""
+"""A function of k and t_k [s] that does an action in step k, which starts at t_k."""
 
 CHUNK_SECONDS = 0.1
-"""A chunk of steps ends after about so long, for the look at progress and Ctrl-C that is between two."""
-_LEAST, _FIRST = 256, 16384  # steps of a chunk that room is made for; of the first one at most
+"""The time [s] after which a chunk of steps ends; progress and Ctrl-C are looked at between two chunks."""
+_LEAST, _FIRST = 256, 16384  # the longest chunk has at least so many steps; the first one at most
 _ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
 
 
 def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
-    """A function that writes all inputs of a unit from their routes: one assignment for each."""
+    """Return a function that writes all inputs of a unit from their routes: one assignment for each."""
     lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
     scope: dict[str, Any] = {"memory": memory}
     exec("def take(k, time, m=memory):\n" + "\n".join(lines), scope)
@@ -46,37 +46,40 @@ def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
 
 @dataclasses.dataclass(frozen=True)
 class Effect:
-    """The effect of an event on an input: `value` takes the place of what it receives, or is added to it."""
+    """The effect of an event on an input: `value` replaces the received one, or is added to it."""
 
     replaces: bool
     value: float
 
 
 class Turn:
-    """One unit in the schedule, with what happens round its step."""
+    """One unit in the schedule: its actions, and the overrides and biases of its inputs by slot.
+
+    `memory` has shape (size,); `step_size` [s] is the communication step, `self.step_size` [s] the FMU's.
+    """
 
     def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], step_size: float) -> None:
         self.unit, self.plan, self.memory = unit, plan, memory
         self.take = compile_routes(plan.routes, memory)
         self.step_size = step_size * plan.every / plan.substeps
         self.substeps = plan.substeps
-        outputs = [b for b in plan.groups if b.kind != "input"]
-        self.continuous = [b for b in outputs if b.kind == "continuous"]
+        outputs = [group for group in plan.groups if group.kind != "input"]
+        self.continuous = [group for group in outputs if group.kind == "continuous"]
         self.published = [
-            (slice(b.slot, b.slot + len(b.variables)), memory[b.latest : b.latest + len(b.variables)])
-            for b in self.continuous
+            (slice(g.slot, g.slot + len(g.variables)), memory[g.latest : g.latest + len(g.variables)])
+            for g in self.continuous
         ]
         self.read = [
-            (memory[f : f + len(b.variables)], b)
-            for b in outputs
-            if b.type == "Real"
-            for f in [b.latest if b.kind == "continuous" else b.slot]
+            (memory[slot : slot + len(g.variables)], g)
+            for g in outputs
+            if g.type == "Real"
+            for slot in [g.latest if g.kind == "continuous" else g.slot]
         ]
-        self.has_feedthrough = any(b.feedthrough for b in outputs)
+        self.has_feedthrough = any(group.feedthrough for group in outputs)
         self.effects: dict[int, Effect] = {}  # by input slot
 
     def begin(self, k: int, time: float) -> None:
-        """Apply what events do to the inputs, give them to the unit, and begin its step."""
+        """Apply overrides and biases to the inputs, set them, and begin the unit's step."""
         if self.effects:
             self.apply_effects()
         self.unit.set_inputs()
@@ -91,19 +94,19 @@ class Turn:
         self.check_finite()
 
     def publish(self, k: int, time: float) -> None:
-        """The continuous outputs after the step become those valid at the next communication point."""
+        """Make the continuous outputs after the step those valid at the next communication point."""
         for valid, latest in self.published:
             self.memory[valid] = latest
 
     def apply_effects(self) -> None:
-        """Override and bias inputs."""
+        """Override and bias the slots of inputs."""
         for slot, effect in self.effects.items():
             self.memory[slot] = effect.value if effect.replaces else self.memory[slot] + effect.value
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
         for values, group in self.read:
-            # NaN and infinity survive the sum: the fastest way to see one; so may a sum of huge values look
+            # the fastest check: NaN and infinity survive the sum, which huge finite values can reach as well
             if not math.isfinite(sum(values)):
                 for v, value in zip(group.variables, values, strict=True):
                     if not math.isfinite(value):
@@ -112,7 +115,7 @@ class Turn:
 
 
 class Sender:
-    """A message in the schedule; `waiting` is where its values wait, if its bus has a delay."""
+    """A message in the schedule: its actions; `waiting` has the slots of values on a bus with a delay."""
 
     def __init__(
         self, plan: MessagePlan, channel: MessageChannel, memory: memoryview[float], waiting: Waiting | None
@@ -120,7 +123,7 @@ class Sender:
         self.plan, self.channel, self.memory, self.waiting = plan, channel, memory, waiting
 
     def send(self, k: int, time: float) -> None:
-        """Sample all signals. Raises RunError naming sender and signal where one cannot be sent."""
+        """Sample all signals. Raises RunError naming sender and signal if a value cannot be sent."""
         try:
             self.channel.transmit(self.memory, k)
         except ChannelError as error:
@@ -131,12 +134,12 @@ class Sender:
                 self.memory[i] = self.memory[slot]
 
     def failed(self, error: ChannelError) -> RunError:
-        """The error of a run for one of the channel."""
+        """Return the error of a run for one of the channel."""
         name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
         return RunError(f"{self.plan.senders.get(error.signal, '')} via {name}: {error.rule}")
 
     def deliver(self, k: int, time: float) -> None:
-        """What was sampled `delay` steps ago reaches the mailboxes."""
+        """Copy the values sampled `delay` steps ago to the mailboxes."""
         assert self.waiting is not None  # only messages with a delay are delivered
         row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
         for i, (_, mailbox) in enumerate(self.plan.arrivals, row):
@@ -144,16 +147,17 @@ class Sender:
 
 
 class Engine:
-    """A plan with its units, and the steps done so far; a subclass says how steps are done (`_run`).
+    """A plan with its units, and the steps done so far; a subclass does the steps of a chunk in `_run`.
 
-    `recorded` gives the rows up to now; those of long runs are in a temporary file (see `cosim.rows`).
+    `k` counts the steps done, `memory` has shape (size,), and `whole` is False from an error on. The recorded
+    rows of a long run are in a temporary file (`cosim.row_store`).
     """
 
     name: str
     notice = ""
-    """What is not as it should be with the engine itself, in a sentence."""
+    """A sentence about a defect of the engine itself; "": it has none."""
     profile: Profile | None = None
-    """Gets what each part takes, if it is set before the start."""
+    """The seconds of each part, if it is set before the start; None: not measured."""
 
     def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
         self.plan = plan
@@ -176,8 +180,13 @@ class Engine:
             for i, m in enumerate(plan.messages)
         ]
         self._events = list(plan.events)
-        self._by_slot = {b.slot + i: t for t, p in zip(self.turns, plan.units, strict=True)
-                         for b in p.groups if b.kind == "input" for i in range(len(b.variables))}  # fmt: skip
+        self._turn_of_input = {
+            group.slot + i: turn
+            for turn in self.turns
+            for group in turn.plan.groups
+            if group.kind == "input"
+            for i in range(len(group.variables))
+        }
 
     @property
     def time(self) -> float:
@@ -185,11 +194,14 @@ class Engine:
         return self.time_at(self.k)
 
     def time_at(self, k: int) -> float:
-        """t_k [s]."""
+        """Return t_k [s]."""
         return self.plan.experiment.start_time + k * self.plan.experiment.step_size
 
     def start(self) -> None:
-        """Read all outputs at the start time. The units have left initialization mode."""
+        """Read all outputs at the start time; the units have left initialization mode.
+
+        Raises RunError for an output that is NaN or infinite.
+        """
         for slot, value in self.plan.initial.items():
             self.memory[slot] = value
         for turn in self.turns:
@@ -200,18 +212,19 @@ class Engine:
     # ---- stepping
 
     def advance(self, steps: int, progress: Callable[[int], None] | None = None) -> None:
-        """Do `steps` steps. What was recorded before an error or Ctrl-C is kept.
+        """Do `steps` steps in chunks, calling `progress` with k after each.
 
-        Raises UnitError or RunError with the unit, the time and the reason.
+        The rows recorded before an error or Ctrl-C are kept. Raises RunError naming unit, time and reason.
         """
         end = self.k + steps
         while self.k < end:
-            self.happen()
-            self._advance_chunk(min(self._chunk, end - self.k, self._until_event()))
+            self._apply_events()
+            self._advance_chunk(min(self._chunk, end - self.k, self._steps_to_event()))
             if progress is not None:
                 progress(self.k)
 
     def _advance_chunk(self, count: int) -> None:
+        """Do at most `count` steps and keep their rows, also those before an error."""
         first, begin = self.k, time.perf_counter()
         drives = self._stimuli(count)
         rows = np.empty((count, len(self.columns)))
@@ -229,7 +242,7 @@ class Engine:
         self._adapt(count, done, time.perf_counter() - begin)
 
     def _stimuli(self, count: int) -> NDArray[np.float64]:
-        """The values of the stimuli at the next `count` communication points, shape (drives, count)."""
+        """Return the stimuli at the next `count` communication points, shape (drives, count)."""
         if not self.plan.drives:
             return np.empty((0, count))
         experiment = self.plan.experiment
@@ -238,22 +251,22 @@ class Engine:
         return np.array([d.map.scale * d.signal(times) + d.map.offset for d in self.plan.drives])
 
     def _adapt(self, count: int, done: int, seconds: float) -> None:
-        """The next chunk's steps: as many as this one's time allowed, or more where it left time."""
+        """Set the steps of the next chunk: as many as this one's time allowed, more if it left time."""
         if done < count:
             self._chunk = max(64, 2 * done)
         elif count == self._chunk and seconds < CHUNK_SECONDS / 8:
             self._chunk = min(8 * count, self._most)
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
-        """Do `count` steps, or as many as CHUNK_SECONDS allow but one, each counted in `k` when it is done.
+        """Do `count` steps, or as many as CHUNK_SECONDS allow but at least one; `k` counts those done.
 
-        `drives` are the values of the stimuli, shape (drives, count); `rows` gets those of the recorded
-        slots, shape (count, recorded). No event happens within.
+        `drives` has the values of the stimuli, shape (drives, count); `rows`, shape (count, columns),
+        receives those of the recorded slots. No event is due within.
         """
         raise NotImplementedError
 
     def act(self, action: Action) -> Act:
-        """What does an action of a message or a unit."""
+        """Return the function that does an action of a message or a unit."""
         if action.kind in ("send", "deliver"):
             sender = self.senders[action.index]
             return sender.send if action.kind == "send" else sender.deliver
@@ -263,18 +276,18 @@ class Engine:
 
     # ---- events and results
 
-    def happen(self) -> None:
-        """The events whose time has come."""
+    def _apply_events(self) -> None:
+        """Apply the events that are due."""
         while self._events and self._events[0][0] <= self.k:
             _, event = self._events.pop(0)
             self.effect(event)
 
-    def _until_event(self) -> int:
-        """How many steps there are before the next event."""
+    def _steps_to_event(self) -> int:
+        """Return the number of steps before the next event."""
         return self._events[0][0] - self.k if self._events else sys.maxsize
 
     def effect(self, event: Event) -> None:
-        """Let an event act from now on, whatever its time is; `plan.events.check_event` has accepted it."""
+        """Let an event act from now on, whatever its time; `plan.events.check_event` has accepted it."""
         match event:
             case Override():
                 self._affect(event.variable, Effect(replaces=True, value=event.value))
@@ -287,14 +300,14 @@ class Engine:
 
     def _affect(self, name: str, effect: Effect | None) -> None:
         slot = self.plan.inputs[name].slot
-        effects = self._by_slot[slot].effects
+        effects = self._turn_of_input[slot].effects
         if effect is None:
             effects.pop(slot, None)
         else:
             effects[slot] = effect
 
     def recorded(self) -> Table:
-        """The rows so far, a column for each of the plan's; unless the last step broke off, one more for now.
+        """Return the rows so far, shape (k, columns), and unless the last step failed one more for now.
 
         In that one the inputs and the discrete outputs are those of the last step.
         """

@@ -3,7 +3,7 @@
 An input or output of a unit is a node; a direct connection leads from an output to an input, and a
 declared initial dependency from an input to an output of the same unit. Without a loop there is an order
 in which every value is final when it is passed on. A loop is an algebraic loop: it is refused by name, or
-iterated until nothing changes by more than a tolerance. What crosses a bus takes no part: before the
+iterated until no value changes by more than a tolerance. Connections over a bus take no part: before the
 first message a receiver sees its initial value.
 """
 
@@ -23,9 +23,9 @@ _Node = tuple[str, str]
 
 
 def ordered_links(plan: Plan) -> tuple[tuple[Link, ...], bool]:
-    """The direct connections in an order in which each source is final when it is passed on, and False.
+    """Return the direct connections, ordered so that each source is final when it is passed on, and False.
 
-    Where there is a loop: in written order, to be iterated, and True; ConfigError naming the loop if the
+    With a loop: in written order, to be iterated, and True. Raises ConfigError naming the loop if the
     experiment refuses loops.
     """
     interfaces = {unit.name: unit.interface for unit in plan.units}
@@ -41,7 +41,7 @@ def ordered_links(plan: Plan) -> tuple[tuple[Link, ...], bool]:
 
 
 def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tuple[list[_Node], list[_Node]]:
-    """(the loop, nothing) or (nothing, the nodes in order)."""
+    """Return (the nodes of a loop, []), or ([], all nodes in order)."""
     links = tuple(links)
     graph: dict[_Node, set[_Node]] = {}
     for link in links:
@@ -61,27 +61,30 @@ def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tu
 def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
     """Bring every unit from instantiated to ready for its first step.
 
-    Raises UnitError when a unit refuses, an output is NaN or infinite, or a loop does not converge.
+    Raises UnitError if a unit refuses a call, an output is NaN or infinite, or a loop does not converge.
     """
     links, looped = ordered_links(plan)
     experiment = plan.experiment
+    # parameters, then initialization mode
     for unit_plan in plan.units:
         unit = units[unit_plan.name]
         for name, value in unit_plan.parameters.items():
             unit.set(name, value)
         unit.enter_initialization(experiment.start_time, experiment.stop_time)
+    # inputs: start values where no output is connected directly, then outputs along the connections
     _set_free_inputs(units, plan)
     if looped:
         _iterate(units, links, experiment.loop_tolerance)
     else:
         for link in links:
             _pass_on(units, link)
+    # parameters are fixed from now on
     for unit in units.values():
         unit.exit_initialization()
 
 
 def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
-    """Inputs that no output reaches directly are initialized with their start value, driven or not."""
+    """Set the inputs that no output reaches directly, driven or not, to their start value."""
     linked = {".".join(link.sink) for link in plan.links}
     for name, receiver in plan.inputs.items():
         if name not in linked:
@@ -95,6 +98,7 @@ def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
 
 
 def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
+    """Copy an output to the input that it is connected to; return the value in the input's unit."""
     unit, name = link.source
     value = float(units[unit].get(name))
     if not math.isfinite(value):
@@ -105,6 +109,7 @@ def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
 
 
 def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float) -> None:
+    """Pass all outputs on until no value changes by more than `tolerance`. Raises UnitError if some do."""
     before = [_pass_on(units, link) for link in links]
     for _ in range(_ITERATIONS):
         now = [_pass_on(units, link) for link in links]

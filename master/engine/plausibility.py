@@ -1,4 +1,4 @@
-"""Outputs that no vehicle can have, though their unit's status was ok all the time."""
+"""Warnings of implausible outputs: beyond their declared range, or diverged, though every status was ok."""
 
 from __future__ import annotations
 
@@ -8,21 +8,24 @@ from ...cosim.interface import VariableInfo
 from ...cosim.plan.plan import Plan
 from ...cosim.row_store import Array, Table
 
-_ROWS = 1 << 14  # at a time
-_SLACK = 1e-9  # of a limit, for what was rounded
+_ROWS = 1 << 14  # read at a time
+_SLACK = 1e-9  # of a limit: rounding may exceed it
 _LARGEST = 1e30
-"""Beyond it, in whatever unit of measure, an output without declared limits is taken to have diverged."""
+"""The magnitude, in any unit of measure, beyond which an output without declared limits has diverged."""
 
 
 class Extremes:
-    """The smallest and the largest value of each column of a table that grows; no row is read twice."""
+    """The smallest and the largest value of each column of a growing table; no final row is read twice."""
 
     def __init__(self, columns: int) -> None:
         self._rows = 0
         self._low, self._high = np.full(columns, np.inf), np.full(columns, -np.inf)
 
     def of(self, table: Table) -> tuple[Array, Array]:
-        """Both, shapes (columns,). The last row may not be final: it is read again with those that follow."""
+        """Return both for a table of the rows so far, shapes (columns,).
+
+        Its last row may not be final, and is read again with those that follow.
+        """
         count = table.shape[0]
         for start in range(self._rows, count - 1, _ROWS):
             self._low, self._high = self._with(table.rows(start, min(start + _ROWS, count - 1)))
@@ -36,10 +39,10 @@ class Extremes:
 
 
 def implausible(extremes: tuple[Array, Array], plan: Plan) -> list[str]:
-    """Recorded outputs that left the range that they declare, or went beyond 1e30: a sentence for each.
+    """Return a sentence for each recorded output that left its declared range or exceeded 1e30.
 
-    A range that does not hold is no error: it is the author's claim, and the run went on with what the unit
-    computed.
+    `extremes` are the smallest and largest values, shapes (columns,). Leaving a range is no error: the range
+    is the author's claim, and the run went on with the computed values.
     """
     interfaces = {unit.name: unit.interface for unit in plan.units}
     found = []

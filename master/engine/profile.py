@@ -1,4 +1,4 @@
-"""Where the time of a run goes: what its actions take, by unit, bus message, stimuli and recording."""
+"""The profile of a run: the time of its actions by unit, bus message, stimuli and recording."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ...cosim.plan.plan import Plan
 from .schedule import Action, Kind
 
 Part = tuple[str, str]
-"""What takes time, and at what."""
+"""The name of a unit, of a message, "stimuli" or "results", and its activity, as in ("vehicle", "step")."""
 
 _WHAT: dict[Kind, str] = {
     "drive": "drive", "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
@@ -18,7 +18,7 @@ _WHAT: dict[Kind, str] = {
 
 
 def part_of(action: Action, plan: Plan, what: str = "") -> Part:
-    """The part that an action belongs to; `what`, where an engine knows it more exactly."""
+    """Return the part that an action belongs to; `what` is its activity, if the engine knows it exactly."""
     if action.kind == "drive":
         name = "stimuli"
     elif action.kind == "record":
@@ -32,19 +32,21 @@ def part_of(action: Action, plan: Plan, what: str = "") -> Part:
 
 
 class Profile:
-    """The seconds of each part, in the order in which they were first met."""
+    """The seconds of each part, in the order of their first action."""
 
     def __init__(self) -> None:
         self.seconds: dict[Part, float] = {}
         self.clock = time.perf_counter
 
     def add(self, part: Part, seconds: float) -> None:
-        """Add to a part."""
+        """Add seconds to a part."""
         self.seconds[part] = self.seconds.get(part, 0.0) + seconds
 
     def rows(self, total: float, steps: int) -> Sequence[tuple[str, str, float, float, float]]:
-        """Name, what, seconds, microseconds a step and share of the total [s] of each part; the last rows are
-        what is between them, and the total."""
+        """Return name, what, seconds, microseconds a step and share of the `total` [s] of each part.
+
+        The last two rows are the time between the parts, and the total.
+        """
         rest = {("master", "between"): max(0.0, total - sum(self.seconds.values())), ("total", ""): total}
         return [
             (name, what, seconds, 1e6 * seconds / max(1, steps), seconds / total if total else 0.0)

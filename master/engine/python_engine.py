@@ -13,48 +13,60 @@ from .schedule import Action
 
 
 class PythonEngine(Engine):
-    """See `Engine`."""
+    """The engine whose actions are Python functions."""
 
     name = "python"
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         first, width = self.k, int(self.columns.max(initial=-1)) + 1
-        wide, memory = np.empty((count, width)), self.memory[:width]
-        stimuli, view = [values.tolist() for values in drives], self.view
-
-        def drive(slot: int, values: list[float]) -> Act:
-            def act(k: int, time: float) -> None:
-                view[slot] = values[k - first]
-
-            return act
-
-        def record(k: int, time: float) -> None:
-            wide[k - first] = memory
-
-        acts = [
-            _when_due(
-                action,
-                record
-                if action.kind == "record"
-                else drive(self.plan.drives[action.index].sink, stimuli[action.index])
-                if action.kind == "drive"
-                else self.act(action),
-            )
-            for action in self.schedule
-        ]
-        if self.profile is not None:
-            acts = [self._timed(*pair) for pair in zip(self.schedule, acts, strict=True)]
+        wide = np.empty((count, width))  # all slots up to the last recorded one: faster than picking them
+        acts = self._acts(first, drives, wide)
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
         try:
             for k in range(first, first + count):
+                # the communication point t_k, from its count
                 now = self.time_at(k)
+                # the actions of the schedule in order, each at the steps at which it is due
                 for act in acts:
                     act(k, now)
+                # the step is done: an error in a later one leaves its row
                 self.k = k + 1
+                # the caller looks at progress, events and Ctrl-C
                 if clock() > end:
                     break
         finally:
             np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])
+
+    def _acts(self, first: int, drives: NDArray[np.float64], wide: NDArray[np.float64]) -> list[Act]:
+        """Return the functions of the schedule's actions for a chunk that begins at step `first`.
+
+        `drives` has shape (drives, count); `wide`, shape (count, slots), receives the rows.
+        """
+        acts = [self._act_in_chunk(action, first, drives, wide) for action in self.schedule]
+        acts = [_when_due(action, act) for action, act in zip(self.schedule, acts, strict=True)]
+        if self.profile is None:
+            return acts
+        return [self._timed(action, act) for action, act in zip(self.schedule, acts, strict=True)]
+
+    def _act_in_chunk(
+        self, action: Action, first: int, drives: NDArray[np.float64], wide: NDArray[np.float64]
+    ) -> Act:
+        if action.kind == "drive":
+            slot, values = self.plan.drives[action.index].sink, drives[action.index].tolist()
+            view = self.view
+
+            def drive(k: int, time: float) -> None:
+                view[slot] = values[k - first]
+
+            return drive
+        if action.kind == "record":
+            memory = self.memory[: wide.shape[1]]
+
+            def record(k: int, time: float) -> None:
+                wide[k - first] = memory
+
+            return record
+        return self.act(action)
 
     def _timed(self, action: Action, act: Act) -> Act:
         profile, part = self.profile, part_of(action, self.plan)
@@ -69,6 +81,7 @@ class PythonEngine(Engine):
 
 
 def _when_due(action: Action, act: Act) -> Act:
+    """Return a function that does the action at the steps at which it is due only."""
     if action.always:
         return act
     every, first = action.every, action.first

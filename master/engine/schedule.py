@@ -1,15 +1,17 @@
-"""What a communication step does, as a list in order: the one description that every engine follows.
+"""The actions of a communication step in order: the one description that every engine follows.
 
-Time is a count: t_k = start + k * step_size. What step k does, under `gauss_seidel`:
+Time is a count: t_k = start + k * step_size. The stages of step k, under `gauss_seidel`:
 
-1. stimuli and the messages that are due and carry outputs valid at t_k are written to the inputs' side;
-2. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
+1. the values of the stimuli at t_k are written to the slots of their inputs;
+2. the messages that are due and carry outputs valid at t_k are sent;
+3. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
    biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
    once; the continuous ones of a unit whose period is longer than a step only from the communication
-   point on at which they are valid. A message with discrete signals is sent right after its sender's turn.
-   On a bus with a delay, what was sent that long ago arrives where a message would be sent;
-3. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k.
+   point on at which they are valid. A message with discrete signals is sent right after its sender's turn;
+4. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k;
+5. the continuous outputs after the step become the valid ones.
 
+On a bus with a delay the values sent that long ago arrive at the place where the message is sent.
 Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
 one communication step to arrive.
 """
@@ -26,19 +28,19 @@ Kind = Literal["drive", "deliver", "send", "take", "begin", "end", "record", "pu
 
 @dataclasses.dataclass(frozen=True)
 class Action:
-    """Something that is done at the steps k with k >= first and (k - first) % every == 0.
+    """An action that is due at the steps k with k >= first and (k - first) % every == 0.
 
-    `index` counts the plan's drives, messages or units:
+    `index` is the place in the plan's drives, messages or units:
 
-        drive     the stimulus' value is written to its slot
-        deliver   what the message sampled `delay` steps ago reaches the mailboxes
-        send      the message is sampled and sent: to the mailboxes, with a delay to where it waits
-        take      the unit's inputs are written from their routes
-        begin     overrides and biases act, the unit receives its inputs, shows what feeds through, and
-                  begins to step
-        end       its step is done, its outputs are read, and none may be NaN or infinite
-        record    the row of the step
-        publish   the unit's continuous outputs after its step become the valid ones
+        drive     write the stimulus' value to its slot
+        deliver   copy the values that the message sampled `delay` steps ago to the mailboxes
+        send      sample the message and write its values to the mailboxes (with a delay: waiting slots too)
+        take      write the unit's inputs from their routes
+        begin     apply overrides and biases, set the unit's inputs, read the outputs with direct feedthrough,
+                  and begin the step
+        end       wait for the step, read the outputs, and refuse NaN and infinity
+        record    record the row of the step
+        publish   make the unit's continuous outputs after its step the valid ones
     """
 
     kind: Kind
@@ -48,31 +50,39 @@ class Action:
 
     @property
     def always(self) -> bool:
-        """Whether it is done at each step."""
+        """True if the action is due at each step."""
         return self.every == 1 and self.first == 0
 
 
 def schedule(plan: Plan) -> tuple[Action, ...]:
-    """The actions of a step, in order."""
+    """Return the actions of a communication step, in order."""
     units = range(len(plan.units))
+    # 1. the stimuli at t_k
     drives = [Action("drive", i) for i in range(len(plan.drives))]
-    body = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
-    # what a unit with a longer period has computed is valid at the end of the period
+    # 2. and 3. messages and units, as the algorithm orders them
+    steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
+    # 4. row k
+    record = Action("record")
+    # 5. the outputs valid at t_k+1; those of a unit with a longer period at the end of its period
     publish = [Action("publish", i, plan.units[i].every, plan.units[i].every - 1) for i in units]
-    return (*drives, *body, Action("record"), *publish)
+    return (*drives, *steps, record, *publish)
 
 
 def _gauss_seidel(plan: Plan) -> list[Action]:
+    # messages of outputs that are valid at t_k
     actions = _messages(plan, None)
     for i in range(len(plan.units)):
+        # the unit with the newest values of those before it
         actions += [_of_unit(plan, kind, i) for kind in ("take", "begin", "end")]
+        # messages of its discrete outputs
         actions += _messages(plan, i)
     return actions
 
 
 def _jacobi(plan: Plan) -> list[Action]:
-    """All begin before any is waited for: units in processes of their own step side by side."""
+    # all messages, of outputs that are valid at t_k or discrete ones of the step before
     actions = [action for i in range(len(plan.messages)) for action in _message(plan, i)]
+    # the inputs of all units; then all begin before any is waited for: isolated ones step side by side
     for kind in ("take", "begin", "end"):
         actions += [_of_unit(plan, kind, i) for i in range(len(plan.units))]
     return actions
@@ -83,6 +93,7 @@ def _of_unit(plan: Plan, kind: Kind, index: int) -> Action:
 
 
 def _messages(plan: Plan, after: int | None) -> list[Action]:
+    """Return the actions of the messages that are sent after the turn of a unit (None: before all)."""
     return [a for i, m in enumerate(plan.messages) if m.after == after for a in _message(plan, i)]
 
 
@@ -96,7 +107,7 @@ def _message(plan: Plan, index: int) -> list[Action]:
 
 @dataclasses.dataclass(frozen=True)
 class Waiting:
-    """Where the values of a message with a delay wait: `rows` rows of `width` slots, used in turn.
+    """The slots in which the values of a message with a delay wait: `rows` rows of `width`, used in turn.
 
     Transmission n (0, 1, ...) waits in row n % rows: it is delivered before the one that takes its place.
     """
@@ -106,13 +117,15 @@ class Waiting:
     width: int
 
     def row(self, transmission: int) -> int:
-        """The first slot of a transmission's values."""
+        """Return the first slot of a transmission's values."""
         return self.slot + transmission % self.rows * self.width
 
 
 def waiting(plan: Plan) -> tuple[dict[int, Waiting], int]:
-    """For each message with a delay, by index, where its values wait behind the plan's own slots; and the
-    size of the memory with them."""
+    """Return the waiting slots of each message with a delay, by index, and the size of the memory with them.
+
+    They stand behind the plan's own slots.
+    """
     found, size = {}, plan.memory_size
     for i, message in enumerate(plan.messages):
         if message.delay:
@@ -122,5 +135,5 @@ def waiting(plan: Plan) -> tuple[dict[int, Waiting], int]:
 
 
 def _under_way(message: MessagePlan) -> int:
-    """How many transmissions can be under way at once."""
+    """Return the number of transmissions that can be under way at once."""
     return -(-message.delay // message.every)

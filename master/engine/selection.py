@@ -1,4 +1,4 @@
-"""Which engine runs a system: compiled where numba is installed, else the one in Python."""
+"""The choice of the engine: compiled if numba is installed, else the one in Python."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .python_engine import PythonEngine
 
 
 def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
-    """The class of an engine (None: the fastest there is), and a notice where it is not the wanted one ("").
+    """Return the class of an engine (None: the fastest), and a notice if it is another than wanted, else "".
 
-    Raises ConfigError for a name that is none.
+    Raises ConfigError for an unknown name.
     """
     if wanted not in (None, *get_args(EngineName)):
         known = get_args(EngineName)
@@ -28,8 +28,10 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
 
 
 def prepared() -> str:
-    """Compile the engine into its cache, also that of a profile, if it is not there; a notice where that
-    cannot be ("")."""
+    """Compile the engine into its cache, also the one that measures a profile, if they are not there.
+
+    Return a notice if that is impossible, else "".
+    """
     try:
         from .compiled.cache import compiled
     except ImportError as error:

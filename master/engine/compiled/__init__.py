@@ -1,1 +1,1 @@
-"""The compiled engine: the schedule as flat tables, and one function of machine code that follows them."""
+"""The compiled engine: the schedule as flat tables, and a kernel of machine code that follows them."""

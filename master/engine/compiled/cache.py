@@ -1,7 +1,7 @@
-"""The compiled kernel from numba's cache, or made now.
+"""The compiled kernel, from numba's cache or compiled now.
 
-The cache lies in the user's folder of built FMUs, not beside the sources, which may stand where nobody can
-write; its name has a digest of all SOURCES of the kernel, since numba looks at one of them alone.
+The cache is in the user's folder of built FMUs, since the folder of the sources may be read-only; its name
+has a digest of all SOURCES of the kernel, of which numba itself compares only one.
 """
 
 # numba has no types
@@ -24,14 +24,14 @@ from ...fmi import types
 from . import call, kernel, tables
 
 SOURCES: tuple[ModuleType, ...] = (kernel, call, tables, types)
-"""The modules of this project that the machine code is made of: `kernel` and what it imports."""
+"""The modules of this project that the machine code is made of: `kernel` and those that it imports."""
 _made: dict[bool, Any] = {}
 
 
 def compiled(timed: bool = False) -> tuple[int, str]:
-    """The address of the kernel, and a notice where it could not be kept ("": it could).
+    """Return the address of the kernel (`timed`: of the one that measures a profile) and a notice.
 
-    Compiling takes some seconds, the cache a tenth of one.
+    The notice is "", unless the kernel could not be kept. Compiling takes some seconds, the cache 0.1 s.
     """
     function = kernel.run_timed if timed else kernel.run
     folder, notice = _folder()
@@ -42,7 +42,7 @@ def compiled(timed: bool = False) -> tuple[int, str]:
 
 
 def _folder() -> tuple[Path, str]:
-    """The folder of the cache, and a notice where nothing can be written there."""
+    """Return the folder of the cache, and a notice if nothing can be written there, else ""."""
     content = b"".join(Path(module.__file__ or "").read_bytes() for module in SOURCES)
     digest = hashlib.sha256(content + numba.__version__.encode()).hexdigest()[:16]
     folder = cache_folder() / f"engine-{digest}"
@@ -58,7 +58,7 @@ def _folder() -> tuple[Path, str]:
 
 @contextlib.contextmanager
 def _cached_in(folder: Path) -> Iterator[None]:
-    """Let numba keep in this folder what it compiles meanwhile."""
+    """Let numba use this folder as its cache within the block."""
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(folder)
     try:

@@ -1,4 +1,4 @@
-"""C functions and C memory by address, for code that numba compiles. Pointers and sizes are int64."""
+"""Calls of C functions and access to C memory by address, for numba. Pointers and sizes are int64."""
 
 # numba types the arguments of an intrinsic by itself, and has no types for what implements one
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
@@ -20,7 +20,7 @@ _TRUE = ir.Constant(_INT, 1)
 
 
 def _calling(kinds: list[Any], true_at: int = 0) -> tuple[Any, Any]:
-    """Signature and code of a call: address, then arguments; the int 1 is put in at `true_at`, if not 0."""
+    """Return signature and code of a call: address, then arguments; int 1 is inserted at `true_at` > 0."""
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         address, *arguments = values
@@ -34,13 +34,13 @@ def _calling(kinds: list[Any], true_at: int = 0) -> tuple[Any, Any]:
 
 @intrinsic
 def transfer(typingctx, function, component, references, count, values):
-    """function(component, references, count, values): get and set of FMI 1.0 and 2.0."""
+    """Call function(component, references, count, values): get and set of FMI 1.0 and 2.0."""
     return _calling([_LONG] * 4)
 
 
 @intrinsic
 def transfer_3(typingctx, function, component, references, count, values):
-    """function(component, references, count, values, count): get and set of FMI 3.0."""
+    """Call function(component, references, count, values, count): get and set of FMI 3.0."""
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         address, *arguments = values
@@ -53,25 +53,25 @@ def transfer_3(typingctx, function, component, references, count, values):
 
 @intrinsic
 def do_step(typingctx, function, component, time, step_size):
-    """function(component, time, step_size, true): FMI 1.0 and 2.0."""
+    """Call function(component, time, step_size, true): the step of FMI 1.0 and 2.0."""
     return _calling([_LONG, types.float64, types.float64], true_at=3)
 
 
 @intrinsic
 def do_step_3(typingctx, function, component, time, step_size, event, ending, early, reached):
-    """function(component, time, step_size, true, event, ending, early, reached): FMI 3.0."""
+    """Call function(component, time, step_size, true, event, ending, early, reached): that of FMI 3.0."""
     return _calling([_LONG, types.float64, types.float64, *[_LONG] * 4], true_at=3)
 
 
 @intrinsic
 def call_2(typingctx, function, a, b):
-    """function(a, b)."""
+    """Call function(a, b)."""
     return _calling([_LONG] * 2)
 
 
 @intrinsic
 def peek(typingctx, address, kind):
-    """The number of a type, np.int8 for one, at an address."""
+    """Return the number at an address, of the given type, np.int8 for one."""
     found = kind.instance_type
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -100,25 +100,25 @@ def _writing(kind: Any) -> tuple[Any, Any]:
 
 @intrinsic
 def word(typingctx, table, place):
-    """The int64 at a place of the table at an address."""
+    """Return the int64 at a place of the table at an address."""
     return _reading(_LONG)
 
 
 @intrinsic
 def number(typingctx, table, place):
-    """The float64 at a place of the table at an address."""
+    """Return the float64 at a place of the table at an address."""
     return _reading(types.float64)
 
 
 @intrinsic
 def put_word(typingctx, table, place, value):
-    """Write an int64."""
+    """Write an int64 to a place of the table at an address."""
     return _writing(_LONG)
 
 
 @intrinsic
 def put_number(typingctx, table, place, value):
-    """Write a float64."""
+    """Write a float64 to a place of the table at an address."""
     return _writing(types.float64)
 
 
@@ -152,7 +152,7 @@ def _type_in_memory(kind: FmiType) -> Any:
 
 
 def _from_double(builder: Any, kind: FmiType, value: Any) -> Any:
-    """A double that fits, as a number of a type; what is not 0 is true."""
+    """Emit the conversion of a double that fits into a type; for a Boolean any nonzero double is true."""
     target = _type_in_memory(kind)
     if kind.kind is BOOLEAN:
         return builder.zext(builder.fcmp_unordered("!=", value, ir.Constant(value.type, 0.0)), target)
@@ -172,7 +172,7 @@ def _to_double(builder: Any, kind: FmiType, value: Any) -> Any:
 
 @intrinsic
 def size_of(typingctx, code):
-    """The bytes of a value of the type of a code."""
+    """Return the bytes of a value of the type of a code."""
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         size = ir.IntType(64)
@@ -183,7 +183,7 @@ def size_of(typingctx, code):
 
 @intrinsic
 def value_at(typingctx, address, code):
-    """The value of the type of a code at an address, as a float64."""
+    """Return the value at an address, of the type of a code, as a float64."""
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         def read(kind: FmiType) -> Any:
@@ -197,7 +197,7 @@ def value_at(typingctx, address, code):
 
 @intrinsic
 def put_value(typingctx, address, code, value):
-    """Write a float64 that fits at an address, as a value of the type of a code; returns the type's bytes."""
+    """Write a float64 that fits to an address, as a value of the type of a code; return the type's bytes."""
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         def write(kind: FmiType) -> Any:

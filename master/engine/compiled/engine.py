@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import sys
 import time
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,10 @@ _HOLDING = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
 
 class CompiledEngine(Engine):
-    """See `Engine`. What the kernel cannot do it asks Python for, which does the act of the Python engine."""
+    """The engine whose steps are done by a kernel of machine code, a chunk in each call.
+
+    For an action that the kernel has no primitive for it calls back, and Python does the python engine's act.
+    """
 
     name = "compiled"
     _program: Program | None = None
@@ -30,34 +33,40 @@ class CompiledEngine(Engine):
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         program = self._program
         assert program is not None  # it was made at the start
-        ops, self._places = program.chunk(self.k, count)
-        state, first = self._state, self.k
+        state, first, addresses = self._state, self.k, self._addresses
+        # the operations that are due in this chunk
+        ops, self._places = program.chunk(first, count)
         state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
         state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
+        # the arrays that are the chunk's own
         log, starts = self._log_buffer(count)
         drives = np.ascontiguousarray(drives)
-        addresses = self._addresses
         addresses[L.OPS], addresses[L.DRIVES] = ops.ctypes.data, drives.ctypes.data
         addresses[L.ROWS_OF_RUN], addresses[L.LOG] = rows.ctypes.data, log.ctypes.data
+        # the steps, in machine code
         self._raised: BaseException | None = None
         try:
             result = self._kernel(addresses.ctypes.data)
-        finally:  # also where Ctrl-C came within
+        finally:  # also when Ctrl-C comes within
             self.k = first + int(state[L.STEPS_DONE])
             self._collect(log, starts)
         if self._raised is not None:
             raise self._raised
         if result != L.DONE:
-            called = int(state[L.CALLED])
-            at = self._places[int(state[L.AT])]
-            judge = program.judges[at] if called < 0 else program.call_judges[called]
-            judge(result, int(state[L.DETAIL]))
-            raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+            self._raise(program, result)
 
-    # ---- what is made once
+    def _raise(self, program: Program, result: int) -> NoReturn:
+        """Repeat the check at which the kernel stopped with the code `result`, and raise its exception."""
+        called = int(self._state[L.CALLED])
+        at = self._places[int(self._state[L.AT])]
+        recheck = program.rechecks[at] if called < 0 else program.call_rechecks[called]
+        recheck(result, int(self._state[L.DETAIL]))
+        raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+
+    # ---- made once
 
     def start(self) -> None:
-        """See `Engine`; the kernel is made here, too."""
+        """Read all outputs at the start time, then make the tables and load the kernel."""
         super().start()
         program = self._program = Program(self)
         self._acts: list[Act | None] = [
@@ -91,6 +100,7 @@ class CompiledEngine(Engine):
         self._kernel = kind(function)
 
     def _set_clock(self) -> None:
+        """Give the kernel the address of the system's clock, its arguments, and the seconds of its ticks."""
         ticks = self._ticks.ctypes.data
         if sys.platform == "win32":
             frequency = ctypes.c_int64()
@@ -105,10 +115,13 @@ class CompiledEngine(Engine):
         self._state[[L.CLOCK_A, L.CLOCK_B]] = arguments
         self._numbers[[L.TICK_0, L.TICK_1]] = seconds
 
-    # ---- what the kernel asks for, and what it leaves
+    # ---- calls from the kernel, and its outcome
 
     def _act_for_kernel(self, what: int, k: int) -> int:
-        """Do action `what`, or tell the raw value of a value out of range; 1 when it raised an error."""
+        """Do action `what` in step k, or (negative) find the raw value of a value out of range.
+
+        Return 1 if an error was raised, else 0.
+        """
         try:
             if what >= 0:
                 act = self._acts[what]
@@ -122,6 +135,7 @@ class CompiledEngine(Engine):
             return 1
 
     def _raw_value(self, row: int, k: int) -> None:
+        """Replace VALUE, which is out of range for the signal in a row, by its raw value. Raises RunError."""
         assert self._program is not None  # the kernel follows it
         sender, i = self._program.signals[row]
         try:
@@ -131,7 +145,7 @@ class CompiledEngine(Engine):
         self._numbers[L.VALUE] = raw
 
     def _log_buffer(self, count: int) -> tuple[NDArray[np.float64], list[int]]:
-        """Room for what the messages of `count` steps are logged with, and where each message's begins."""
+        """Return an array for the frames of `count` steps, and the place at which each message's begin."""
         assert self._program is not None
         starts = [0]
         for sender in self._program.logged:
@@ -141,7 +155,7 @@ class CompiledEngine(Engine):
         return np.empty(max(1, starts[-1])), starts
 
     def _collect(self, log: NDArray[np.float64], starts: list[int]) -> None:
-        """Give what a chunk has left to units, channels and profile."""
+        """Hand warnings, saturations, times and frames of a chunk to units, channels and profile."""
         program = self._program
         assert program is not None
         if self._state[L.NOTED]:
@@ -156,7 +170,7 @@ class CompiledEngine(Engine):
             sender.channel.keep(found[:, 0].astype(np.int64), found[:, 1:])
 
     def _collect_noted(self, program: Program) -> None:
-        """Give warnings and saturations to units and channels."""
+        """Add warnings and saturations to those of units and channels."""
         self._state[L.NOTED] = 0
         for table, instances in ((program.calls, program.called), (program.units, program.stepped)):
             if table[:, L.WARNINGS].any():

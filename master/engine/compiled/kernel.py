@@ -1,9 +1,12 @@
-"""The loop over the steps: one function of machine code, made by numba and kept in its cache.
+"""The loop over the steps: one function of machine code, compiled by numba and kept in its cache.
 
-It follows the tables that `layout` describes. Their operations are the actions of `schedule`, in its order,
-so that what a step does is said there alone; what an operation computes is what the Python engine, the units
-and the channel compute, operation for operation, bit for bit. Where something is not as it should be, the
-kernel stops and tells where, and Python looks at it and says it.
+It follows the tables that `tables` describes. Their operations are the actions of `schedule`, in its order:
+primitives that the kernel executes without returning to Python. Each computes what the Python engine, the
+units and the channel compute, bit for bit. On an error the kernel stops and returns a code and the
+operation's index; Python repeats the check and raises the exception.
+
+In all functions `t` is the address of the tables' addresses, `m` that of the memory; `c` is that of a row of
+CALLS or UNITS, `o` of OPS; `k` is the step.
 """
 
 # numba compiles functions without annotations
@@ -34,7 +37,7 @@ from .call import (  # fmt: skip # names
 
 LARGEST = 1.7976931348623157e308
 WIDEST = float(LARGEST_WHOLE)
-LOOK = 32  # steps at most between two looks at the clock
+LOOK = 32  # steps at most between two readings of the clock
 
 inlined = njit(forceinline=True, error_model="numpy")
 
@@ -44,7 +47,7 @@ inlined = njit(forceinline=True, error_model="numpy")
 
 @inlined
 def fill(t, m, c, kind):
-    """The buffer of call c from the memory; the place of a value that does not fit, else -1."""
+    """Fill the buffer of call c from the memory; return the place of a value that does not fit, else -1."""
     at = word(c, L.VALUES)
     item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
     for j in range(word(c, L.COUNT)):
@@ -60,7 +63,7 @@ def fill(t, m, c, kind):
 
 @inlined
 def take(t, m, c, kind):
-    """The memory from the buffer of call c; the place of a value that no double holds, else -1."""
+    """Copy the buffer of call c to the memory; return the place of a value that no double holds, else -1."""
     at = word(c, L.VALUES)
     item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
     whole, size, wide = np.int64(WIDEST), size_of(kind), kind in WIDE_CODES
@@ -77,7 +80,7 @@ def take(t, m, c, kind):
 
 @inlined
 def stopped(t, row, detail, result):
-    """What the call in a row came to, with what it is told by."""
+    """Note the row of the call at which the kernel stops, and the detail; return `result`."""
     put_word(word(t, L.STATE), L.CALLED, row)
     put_word(word(t, L.STATE), L.DETAIL, detail)
     return result
@@ -85,14 +88,14 @@ def stopped(t, row, detail, result):
 
 @inlined
 def warned(t, c):
-    """Count that the function in row c answered Warning."""
+    """Count that the function in row c returned Warning."""
     put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
     put_word(word(t, L.STATE), L.NOTED, 1)
 
 
 @inlined
 def call(t, m, row):
-    """The C call in a row, with the values before or after it."""
+    """Do the C call in a row, with its values converted before or after it; return DONE or an error."""
     c = word(t, L.CALLS) + 8 * L.CALL_WIDTH * row
     kind = word(c, L.FORMAT)
     if L.IN_PLACE < kind < L.GETS:
@@ -128,7 +131,7 @@ def call(t, m, row):
 
 @inlined
 def step(t, c, begin):
-    """The steps of the unit in row c within its period."""
+    """Do the steps of the unit in row c within its period, from `begin` [s] on; return DONE or an error."""
     size = number(c, L.STEP_SIZE)
     answers = word(c, L.ANSWERS)
     for j in range(word(c, L.STEPS)):
@@ -152,7 +155,7 @@ def step(t, c, begin):
 
 @inlined
 def check(m, first, count):
-    """Whether so many values are finite."""
+    """Return DONE if `count` values from slot `first` on are finite, else NOT_FINITE."""
     for j in range(first, first + count):
         if not abs(number(m, j)) <= LARGEST:
             return L.NOT_FINITE
@@ -164,7 +167,7 @@ def check(m, first, count):
 
 @inlined
 def rounded(q, mode):
-    """A raw value that is in range; that of a float signal is as it is, but for its format."""
+    """Round a raw value in range by the signal's mode; that of a float signal only to its format."""
     if mode == L.NEAREST or mode == L.TRUNCATE:
         # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
         half = 0.49999999999999994 if mode == L.NEAREST else 0.0
@@ -179,7 +182,7 @@ def rounded(q, mode):
 
 @inlined
 def out_of_range(t, i, s, x, k):
-    """The raw value for a value out of range, and whether there is one: Python knows of the error."""
+    """Return the raw value for x, out of range of signal i in row s, and False if Python raised an error."""
     if word(s, L.SATURATES) and x == x:
         if word(s, L.TIMES) == 0:
             put_word(s, L.FIRST_TIME, k)
@@ -194,7 +197,7 @@ def out_of_range(t, i, s, x, k):
 
 @inlined
 def send(t, m, first, count, log, k):
-    """Sample the signals of a message, then write what is received."""
+    """Sample `count` signals from row `first` on, then write the received values; return DONE or RAISED."""
     signals, raws = word(t, L.SIGNALS), word(t, L.RAWS)
     s = signals + 8 * L.SIGNAL * first
     for i in range(first, first + count):
@@ -227,7 +230,7 @@ def send(t, m, first, count, log, k):
 
 @inlined
 def wait(t, m, o, k):
-    """What a message has sent goes where it waits, or from there to the mailboxes."""
+    """Copy the values that a message has sent to its waiting slots, or from there to the mailboxes."""
     w = word(t, L.WAITS) + 8 * L.WAIT * word(o, L.A)
     n = (k - word(o, L.FIRST)) // word(o, L.EVERY) % word(w, L.ROWS)
     row = word(w, L.PLACE) + n * word(w, L.WIDTH)
@@ -245,7 +248,7 @@ def wait(t, m, o, k):
 
 @inlined
 def operate(t, m, o, s, k, time):
-    """The operation in row o, in step k, which is step s of the chunk and starts at `time`."""
+    """Do the operation in row o, in step k, which is step s of the chunk and starts at `time` [s]."""
     kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
     if kind == L.TAKE:
         r = word(t, L.ROUTES) + 8 * L.ROUTE * a
@@ -297,7 +300,7 @@ def operate(t, m, o, s, k, time):
 
 @inlined
 def clock(t):
-    """Seconds from anywhere on."""
+    """Return the reading of the clock [s]."""
     state, seconds = word(t, L.STATE), word(t, L.NUMBERS)
     call_2(word(state, L.CLOCK), word(state, L.CLOCK_A), word(state, L.CLOCK_B))
     return np.float64(word(word(t, L.TICKS), 0)) * number(seconds, L.TICK_0) + np.float64(
@@ -307,19 +310,22 @@ def clock(t):
 
 @inlined
 def follow(t, timed):
-    """Do the steps of a chunk, or as many as its time allows."""
+    """Do the steps of a chunk, or as many as its time allows; `timed`: add up the time of each operation."""
     state, numbers, m = word(t, L.STATE), word(t, L.NUMBERS), word(t, L.MEMORY)
     begin = last = moment = clock(t)
     look, interval = 1, 1
     for s in range(word(state, L.WANTED)):
+        # the clock, at most every LOOK steps: a chunk ends when its time is over
         if s == look:
             now = clock(t)
             if now - begin > number(numbers, L.SECONDS):
                 break
             interval = min(2 * interval, LOOK) if now - last < 0.001 else max(1, interval // 2)
             last, look = now, s + interval
+        # the communication point t_k, from its count
         k = word(state, L.START_STEP) + s
         time = number(numbers, L.START) + k * number(numbers, L.H)
+        # the operations in order, each at the steps at which it is due
         o = word(t, L.OPS)
         if timed:
             moment = clock(t)
@@ -335,15 +341,16 @@ def follow(t, timed):
                     put_word(state, L.AT, i)
                     return result
             o += 8 * L.OPERATION
+        # the step is done: an error in a later one leaves its row
         put_word(state, L.STEPS_DONE, s + 1)
     return L.DONE
 
 
 def run(t):
-    """Follow the tables whose addresses stand at `t`; why it ended (`layout.DONE` and what follows it)."""
+    """Follow the tables whose addresses stand at `t`; return DONE or an error of `tables`."""
     return follow(t, False)
 
 
 def run_timed(t):
-    """The same, adding up what each operation takes, with what the clock itself takes."""
+    """Follow the tables and add up the time of each operation, with that of reading the clock."""
     return follow(t, True)

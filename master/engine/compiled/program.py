@@ -1,4 +1,4 @@
-"""From a plan, its schedule and its units to the tables that the kernel follows (see `layout`)."""
+"""The program of the kernel: the tables that `tables` describes, made from plan, schedule and units."""
 
 from __future__ import annotations
 
@@ -22,10 +22,14 @@ from ..profile import Part, part_of
 from ..schedule import Action
 from . import tables as L
 
-Table = NDArray[np.int64]
-Row = Mapping[int, int | float]
-Judge = Callable[[int, int], None]
-"""Raises the error of an operation, given what the kernel returned and the detail."""
+KernelTable = NDArray[np.int64]
+"""Rows of 8-byte numbers, int64 or the bits of float64, shape (rows, columns)."""
+
+Cells = Mapping[int, int | float]
+"""The numbers of one row by column; the others are 0."""
+
+Recheck = Callable[[int, int], None]
+"""Repeats the check at which the kernel stopped, given its code and detail, and raises the exception."""
 
 _DIRECT = (Fmi1Unit, Fmi2Unit, Fmi3Unit)
 _MODES = {"nearest": L.NEAREST, "half_even": L.HALF_EVEN, "truncate": L.TRUNCATE}
@@ -33,9 +37,9 @@ _NO_LOG = -1
 
 
 def direct(turn: Turn) -> Instance | None:
-    """The instance whose C functions the kernel calls itself; None: Python does the unit's acts.
+    """Return the instance whose C functions the kernel calls itself; None: Python does the unit's actions.
 
-    So it is for what does more than these calls: isolated units, Model Exchange, units in Python.
+    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python.
     """
     unit: object = turn.unit
     return unit if isinstance(unit, Instance) and type(unit) in _DIRECT else None
@@ -44,21 +48,21 @@ def direct(turn: Turn) -> Instance | None:
 class Program:
     """The tables of an engine whose units are initialized.
 
-    `judges` and `actions` say for each operation what its errors are and which action it is a part of,
-    `call_judges` for each row of calls what its errors are.
+    `rechecks` and `actions` have an entry for each operation: the function that raises its errors, and the
+    place of its action in the schedule; `call_rechecks` has a function for each row of CALLS.
     """
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._rows: dict[str, list[Row]] = {
+        self._rows: dict[str, list[Cells]] = {
             name: []
             for name in ("ops", "routes", "calls", "items", "units", "signals", "sinks", "waits", "arrivals")
         }
-        self._apart = engine.profile is not None  # a profile tells apart what is else done at a stretch
-        self.judges: list[Judge] = []
-        self.call_judges: list[Judge] = []
+        self._apart = engine.profile is not None  # a profile measures parts that are else one operation
+        self.rechecks: list[Recheck] = []
+        self.call_rechecks: list[Recheck] = []
         self.actions: list[int] = []
-        self.effects: list[tuple[int, int, Turn]] = []  # operation, its first row, whose effects they are
+        self.effects: list[tuple[int, int, Turn]] = []  # operation, its first row of EFFECTS, and the unit
         self.signals: list[tuple[Sender, int]] = []  # the message of each row, and the signal's place in it
         self.logged: list[Sender] = []
         self.called: list[Instance] = []  # the instance of each row of CALLS
@@ -81,13 +85,13 @@ class Program:
 
     @property
     def holds_python(self) -> bool:
-        """Whether the kernel calls into this interpreter by itself: then it must hold Python's lock."""
+        """True if the kernel calls into this interpreter by itself: then it must hold Python's lock."""
         return any(instance.fmu.holds_python for instance in self.stepped)
 
-    def chunk(self, k: int, count: int) -> tuple[Table, list[int]]:
-        """The operations that are due in steps k to k + count - 1, noting when first, and their places.
+    def chunk(self, k: int, count: int) -> tuple[KernelTable, list[int]]:
+        """Return the operations that are due in steps k to k + count - 1, and their places in all of them.
 
-        The effects of events and of the user are those of now.
+        Their DUE is set to the first step from k on; overrides and biases are the present ones.
         """
         first, every = self.ops[:, L.FIRST], self.ops[:, L.EVERY]
         passed = np.maximum(k - first, 0)
@@ -108,7 +112,7 @@ class Program:
         return self.ops[places], places.tolist()
 
     def parts(self) -> list[Part]:
-        """What each operation is a part of, for a profile."""
+        """Return the part of each operation, for a profile."""
         kinds = self.ops[:, L.KIND].tolist()
         found = []
         for at, kind in zip(self.actions, kinds, strict=True):
@@ -122,7 +126,7 @@ class Program:
     # ---- operations
 
     def _action(self, at: int, action: Action) -> None:
-        """The operations of an action: what the kernel can do by itself, else Python's act."""
+        """Add the operations of an action: primitives if the kernel can do it itself, else Python's act."""
         plan, i = self._engine.plan, action.index
         if action.kind == "drive":
             self._operation(at, action, L.DRIVE, plan.drives[i].sink, i)
@@ -175,16 +179,16 @@ class Program:
         }  # fmt: skip # a row
         row |= {L.EVENT + i: ctypes.addressof(answer) for i, answer in enumerate(step.answers)}
 
-        def judge(result: int, detail: int) -> None:
+        def recheck(result: int, detail: int) -> None:
             instance.judge_step(detail if result == L.BAD_STATUS else 0)
 
         count = self._count("calls") - calls
-        self._operation(at, action, L.STEP, self._count("units"), calls, count, judge=judge)
+        self._operation(at, action, L.STEP, self._count("units"), calls, count, recheck=recheck)
         self._rows["units"].append(row)
         self.stepped.append(instance)
 
     def _end(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
-        def judge(result: int, detail: int) -> None:
+        def recheck(result: int, detail: int) -> None:
             turn.check_finite()
 
         first = self._count("calls")
@@ -193,30 +197,30 @@ class Program:
         checks = [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]
         if checks and self._count("calls") > first:  # with the last call goes the first check
             self._calls(at, action, first, self._count("calls") - 1)
-            self._operation(at, action, L.CALL, self._count("calls") - 1, *checks.pop(0), judge=judge)
+            self._operation(at, action, L.CALL, self._count("calls") - 1, *checks.pop(0), recheck=recheck)
         else:
             self._calls(at, action, first)
         for check in checks:
-            self._operation(at, action, L.CHECK, 0, *check, judge=judge)
+            self._operation(at, action, L.CHECK, 0, *check, recheck=recheck)
 
     def _calls(self, at: int, action: Action, first: int, end: int | None = None) -> int:
-        """An operation for each row of calls from `first` on; the number of rows."""
+        """Add an operation for each row of CALLS from `first` on; return the number of rows."""
         count = self._count("calls")
         for row in range(first, count if end is None else end):
             self._operation(at, action, L.CALL, row)
         return count
 
     def _call(self, instance: Instance, transfer: Transfer) -> None:
-        """Add a row of calls."""
+        """Add a row of CALLS, and the rows of ITEMS for its values."""
 
-        def judge(result: int, detail: int) -> None:
+        def recheck(result: int, detail: int) -> None:
             if result == L.BAD_STATUS:
                 instance.judge_transfer(transfer, detail)
             item = transfer.items[detail]
             value = transfer.values[detail] if transfer.gets else item.sign * self._engine.view[item.slot]
             instance.refuse(transfer, detail, value)
 
-        self.call_judges.append(judge)
+        self.call_rechecks.append(recheck)
         self._rows["calls"].append(
             {
                 L.FUNCTION: address(transfer.pointer),
@@ -256,7 +260,7 @@ class Program:
             self._operation(at, action, L.KEEP, self._wait(action.index))
 
     def _wait(self, message: int) -> int:
-        """The row of WAITS of a message with a delay."""
+        """Return the row of WAITS of a message with a delay; add it at the first call."""
         if message not in self._waiting:
             self._waiting[message] = self._count("waits")
             sender = self._engine.senders[message]
@@ -279,10 +283,10 @@ class Program:
         a: int = 0,
         b: int = 0,
         c: int = 0,
-        judge: Judge | None = None,
+        recheck: Recheck | None = None,
     ) -> int:
-        """Add an operation of action `at`; its row."""
-        row: Row = {L.KIND: kind, L.EVERY: action.every, L.FIRST: action.first, L.A: a, L.B: b, L.C: c}
+        """Add an operation of action `at`, or extend the last one by it; return its row."""
+        row: Cells = {L.KIND: kind, L.EVERY: action.every, L.FIRST: action.first, L.A: a, L.B: b, L.C: c}
         ops = self._rows["ops"]
         longer = _joined(ops[-1], row) if ops and not self._apart else None
         if longer is not None:
@@ -290,15 +294,15 @@ class Program:
         else:
             ops.append(row)
             self.actions.append(at)
-            self.judges.append(judge or _cannot_fail)
+            self.rechecks.append(recheck or _cannot_fail)
         return len(ops) - 1
 
     def _count(self, name: str) -> int:
         return len(self._rows[name])
 
 
-def _joined(before: Row, row: Row) -> Row | None:
-    """Two operations done one after the other as one; None where they cannot be."""
+def _joined(before: Cells, row: Cells) -> Cells | None:
+    """Return two operations that follow each other as one; None if they cannot be joined."""
     if any(before[column] != row[column] for column in (L.KIND, L.EVERY, L.FIRST)):
         return None
     a, b, c = (int(before[column]) for column in (L.A, L.B, L.C))
@@ -313,17 +317,18 @@ def _joined(before: Row, row: Row) -> Row | None:
 
 
 def _cannot_fail(result: int, detail: int) -> None:
-    """For the operations that no value stops."""
+    """Do nothing: no value stops the operation."""
 
 
-def _fill(table: Table, i: int, row: Row) -> None:
+def _fill(table: KernelTable, i: int, row: Cells) -> None:
+    """Write a row of a table: floats as float64, other numbers as int64."""
     numbers = table.view(np.float64)
     for column, value in row.items():
         (numbers if isinstance(value, float) else table)[i, column] = value
 
 
-def _table(rows: Sequence[Row], width: int) -> Table:
-    """Rows as a table; it has a row at least, so that it has an address."""
+def _table(rows: Sequence[Cells], width: int) -> KernelTable:
+    """Return rows as a table, shape (rows, width); it has at least one row, so that it has an address."""
     made = np.zeros((max(1, len(rows)), width), dtype=np.int64)
     for i, row in enumerate(rows):
         _fill(made, i, row)
@@ -331,11 +336,11 @@ def _table(rows: Sequence[Row], width: int) -> Table:
 
 
 def _mapped(affine: Affine) -> dict[int, int | float]:
-    """A map's columns; what adds nothing is -0.0, since 0.0 would make 0.0 of -0.0."""
+    """Return a map's columns; an offset of 0 becomes -0.0, since adding 0.0 would turn -0.0 into 0.0."""
     return {L.SCALE: float(affine.scale), L.ADD: float(affine.offset) or -0.0}
 
 
-def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> Row:
+def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> Cells:
     floats = {"float32": L.FLOAT32, "float64": L.FLOAT64}
     row: dict[int, int | float] = {
         L.FROM: route.source,
@@ -363,5 +368,5 @@ def _format(transfer: Transfer) -> int:
 
 
 def address(function: Any) -> int:
-    """Where a C function stands."""
+    """Return the address of a C function."""
     return ctypes.cast(function, ctypes.c_void_p).value or 0

@@ -1,4 +1,4 @@
-"""The tables that the kernel follows, and what their columns mean.
+"""The tables that the kernel follows, and the meaning of their columns.
 
 A table is an array of 8-byte numbers with a fixed number of columns; a column holds int64 or float64. The
 kernel receives one array of the tables' addresses. A slot is an index of the run's memory.
@@ -11,7 +11,7 @@ ARRIVALS, COLUMNS, ROWS_OF_RUN, DRIVES, LOGS, LOG, TICKS, TIMES_OF_OPS = range(1
 TABLES = 21
 """The tables, in the order of their addresses."""
 
-# ---- operations: the actions of the schedule, taken apart into what the kernel does at a stretch
+# ---- operations: the actions of the schedule as primitives that the kernel executes without Python
 
 KIND, DUE, EVERY, FIRST, A, B, C = range(7)
 OPERATION = 7
@@ -26,66 +26,67 @@ SEND = 5  # B SIGNALS from row A on; C: the message's place in LOGS, or -1
 RECORD = 6  # B COLUMNS
 DRIVE = 7  # slot A gets the value of stimulus B
 EFFECT = 8  # B EFFECTS from row A on
-KEEP = 9  # what the message in row A of WAITS sent waits
-DELIVER = 10  # and arrives
-PYTHON_ACT = 11  # what the Python engine does for action A
+KEEP = 9  # the values that the message in row A of WAITS has sent are copied to its waiting slots
+DELIVER = 10  # and from there to the mailboxes
+PYTHON_ACT = 11  # calls Python, which does action A as the python engine does
 
 SOURCE, SINK, SCALE, ADD = range(4)
 ROUTE = 4
-"""Columns of ROUTES and SINKS: scale * x + add. What shall add nothing is -0.0, which changes no double."""
+"""Columns of ROUTES and SINKS: scale * x + add. An offset of 0 is -0.0, which changes no double."""
 
 SLOT, OVERRIDES, VALUE_OF = range(3)
 EFFECT_WIDTH = 3
-"""Columns of EFFECTS: the value takes the place of what is in the slot, or is added to it."""
+"""Columns of EFFECTS: the value replaces the one in the slot, or is added to it."""
 
 # ---- C calls
 
 FUNCTION, COMPONENT, WARNINGS = range(3)
-"""First columns of CALLS and UNITS: addresses, and how often the call answered Warning."""
+"""First columns of CALLS and UNITS: addresses, and the number of calls that returned Warning."""
 REFERENCES, COUNT, VALUES, TWICE, FORMAT, FIRST_ITEM = range(3, 9)
 CALL_WIDTH = 9
-"""Columns of CALLS: addresses of the value references and the buffer, their count (TWICE: passed again behind
-the values, as FMI 3.0 has it), and the buffer's format with the row of ITEMS for its first value. A format is
-the code of an FMI type (see `fmi.types`)."""
+"""Columns of CALLS: addresses of the value references and the buffer, their count (TWICE: passed again after
+the values, as FMI 3.0 requires), and the buffer's format with the row of ITEMS for its first value. A format
+is the code of an FMI type in `fmi.types`."""
 IN_PLACE = 0  # no format: the values are a part of the memory
 GETS = 100  # added to the format where values are read
 
 SIGN, LOW, HIGH = range(1, 4)
 ITEM = 4
-"""Columns of ITEMS, after SLOT: what a value is multiplied with, and what fits into the buffer."""
+"""Columns of ITEMS, after SLOT: the factor of a value, and the range that fits into the buffer."""
 
 STEPS, STEP_SIZE, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 10)
 UNIT = 10
-"""Columns of UNITS: FMU steps within a period, their size, and whether (ANSWERS) and where there are the four
-answers of FMI 3.0."""
+"""Columns of UNITS: FMU steps within a period, their size [s], the number of output arguments of FMI 3.0 (4,
+else 0), and their addresses."""
 
 # ---- the channel
 
 FROM, MODE, SATURATES, TO, RECEIVERS, TIMES, FIRST_TIME = range(7)
 IN_SCALE, IN_ADD, LEAST, GREATEST, RESOLUTION, OFFSET, OUT_ADD, BELOW, ABOVE = range(7, 16)
 SIGNAL = 16
-"""Columns of SIGNALS: the sender's slot; the rounding; whether a value out of range becomes a raw value BELOW
-or ABOVE; RECEIVERS rows of SINKS from TO on; how often out of range, and the step of the first; the map to
-the bus' unit; the values in range; scale and offset of the raw value, and what decoding adds."""
+"""Columns of SIGNALS: the sender's slot; the rounding; 1 if a value out of range becomes the raw value BELOW
+or ABOVE; RECEIVERS rows of SINKS from TO on; the number of values out of range, and the step of the first;
+the map to the bus' unit; the range of values; scale and offset of the raw value; the offset of decoding."""
 FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE = range(5)
 
 PLACE, ROWS, WIDTH, ARRIVAL = range(4)
 WAIT = 4
-"""Columns of WAITS: where a message's values wait, and its first row in ARRIVALS (slot, mailbox)."""
+"""Columns of WAITS: first slot, rows and width of a message's waiting slots, its first row in ARRIVALS (slot,
+mailbox)."""
 
 # ---- a chunk
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
 CLOCK, CLOCK_A, CLOCK_B, NOTED = range(9, 13)
 STATE_SIZE = 13
-"""Places in STATE: steps wanted and done, the first one, how many OPS there are, for how many steps there are
-values of stimuli; the operation that the kernel stopped at, the row of CALLS within it (-1: none of them),
-and a detail; addresses of the function of Python and of the clock, and the clock's arguments, of which one
-is the address of TICKS; whether there is anything in a column WARNINGS or TIMES."""
+"""Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
+of stimuli; the operation at which the kernel stopped, the row of CALLS within it (-1: none), and a detail;
+addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
+of TICKS; 1 if any column WARNINGS or TIMES is not 0."""
 START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)
 NUMBERS_SIZE = 6
-"""Places in NUMBERS: start time and step size, how long a chunk may take, a value that Python is asked about,
-and how many seconds the two numbers of TICKS are."""
+"""Places in NUMBERS: start time and step size, the longest duration of a chunk, a value that Python converts,
+and the seconds in one unit of each number in TICKS."""
 
 DONE, BAD_STATUS, BAD_END, NO_FIT, NOT_FINITE, RAISED = range(6)
-"""What the kernel returns. DETAIL is the status of a call, or the place of a value that does not fit."""
+"""Return values of the kernel. DETAIL is the status of a call, or the place of a value that does not fit."""
