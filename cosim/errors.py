@@ -3,21 +3,46 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any, Protocol
 
 
 class Recorded(Protocol):
-    """The recorded rows and variables that a failed run keeps: `evcosim.Results`, which stands above this."""
+    """What is recorded of a failed run: n rows of m variables.
 
-    def __len__(self) -> int: ...
+    It is an `evcosim.Results`, which stands above this module, as do the types of arrays and figures.
+    """
 
-    def __iter__(self) -> Iterator[str]: ...
+    @property
+    def time(self) -> Any:
+        """The times [s] of the rows, shape (n,)."""
 
-    def __getitem__(self, name: str) -> Any: ...
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names `unit.variable`, in column order."""
 
-    def to_csv(self, path: str) -> Any:
-        """Write the rows to a CSV file."""
+    def __getitem__(self, name: str) -> Any:
+        """Return the values of a variable, or of "time", shape (n,). Raises ConfigError for another name."""
+
+    def __len__(self) -> int:
+        """Return n."""
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a variable has this name."""
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write the rows into a CSV file. Raises ConfigError where it cannot be written."""
+
+    def write(self, folder: str | os.PathLike[str]) -> Path:
+        """Write results.csv and run.json into a folder. Raises ConfigError where they cannot be written."""
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
+        """Return the figure of the run's system, written to `path` (.png, .svg, .pdf) if one is given."""
 
 
 class ConfigError(ValueError):

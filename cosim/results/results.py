@@ -1,64 +1,41 @@
 """Results of a run: one row for each communication point, one column for each recorded variable.
 
-results.csv has the header `time,unit.variable,...` and '\\n' line ends. A Real is written as the shortest
-decimal that reads back as the same bits; Integer, Boolean (0, 1) and Enumeration as integers. What a CSV
-file cannot hold (units of measure, types, texts, the manifest) is in run.json beside it.
+A folder of results holds results.csv with the rows, and run.json with what a CSV file has no place for: units
+of measure, types, texts, the manifest. A file alone is written and read in the format that its suffix names
+(`formats.suffixes`).
 """
 
 from __future__ import annotations
 
-import csv
-import dataclasses
-import json
-import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ConfigError, nearest
 from ..row_store import Array, Grid, MemoryTable, Table
-from ..writing import replacing
+from ..writing import in_place_of
+from .formats.format import Format
+from .formats.suffixes import CSV, FORMATS, format_of
+from .manifest import read_manifest, write_manifest
+from .variable import ResultVariable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..errors import Recorded
     from ..system.figure_spec import FigureSpec
     from ..system.metric_spec import MetricSpec
     from .metrics import Metric
 
+__all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results", "to_nanoseconds"]
+
 CSV_NAME = "results.csv"
 MANIFEST_NAME = "run.json"
 PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each variable
-_CHUNK = 4096  # rows formatted at a time: 40 columns of text then take about 10 MB
-
-
-@dataclasses.dataclass(frozen=True)
-class ResultVariable:
-    """A recorded variable: its name `unit.variable` and what its FMU declares of it.
-
-    `type` is Real, Integer, Boolean or Enumeration; `unit` a name of a unit of measure ("" for none);
-    `items` the (value, name) pairs of an enumeration.
-    """
-
-    name: str
-    unit: str = ""
-    type: str = "Real"
-    causality: str = "output"
-    variability: str = "continuous"
-    description: str = ""
-    items: tuple[tuple[int, str], ...] = ()
-
-    @property
-    def held(self) -> bool:
-        """Whether it keeps its value from one communication point to the next.
-
-        So do inputs (nobody writes them in between) and all that is sampled or not Real.
-        """
-        return self.type != "Real" or self.causality == "input" or self.variability != "continuous"
 
 
 class Results:
@@ -212,20 +189,22 @@ class Results:
         data = np.column_stack(columns) if columns else np.empty((len(time), 0))
         return Results(time, data, variables, self.manifest)
 
-    def to_csv(self, path: str | os.PathLike[str]) -> Path:
-        """Write the CSV file. Raises ConfigError when it cannot be written; then no file is left."""
-        path = Path(path)
-        with replacing(path) as file:
-            self._write_rows(file)
-        return path
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the rows into a file, in the format that its suffix names: .csv.
 
-    def _write_rows(self, file: BinaryIO) -> None:
-        file.write((",".join(["time", *map(_quoted, self.names)]) + "\n").encode())
-        for start in range(0, len(self), _CHUNK):
-            values = self._table.rows(start, start + _CHUNK)
-            columns = [list(map(repr, self.times(start, start + _CHUNK).tolist()))]
-            columns += [_texts(values[:, j], v.type) for j, v in enumerate(self.variables)]
-            file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
+        Raises ConfigError for another suffix, and where the file cannot be written; then none is left.
+        """
+        path = Path(path)
+        return self._save(path, format_of(path))
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write the rows into a CSV file, whatever its suffix. Raises ConfigError as `save` does."""
+        return self._save(Path(path), CSV)
+
+    def _save(self, path: Path, form: Format) -> Path:
+        with in_place_of(path) as partial:
+            form.write(self, partial)
+        return path
 
     def write(self, folder: str | os.PathLike[str]) -> Path:
         """Write results.csv and run.json into a folder, which is made if needed.
@@ -235,28 +214,26 @@ class Results:
         """
         folder = Path(folder)
         self.to_csv(folder / CSV_NAME)
-        about = {**self.manifest, "variables": [_described(v) for v in self.variables]}
-        text = json.dumps(_jsonable(about), indent=2, allow_nan=False, ensure_ascii=False)
-        with replacing(folder / MANIFEST_NAME) as file:
-            # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
-            file.write((text + "\n").encode(errors="backslashreplace"))
+        write_manifest(folder / MANIFEST_NAME, self.manifest, self.variables)
         return folder
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Results:
-        """Read a results folder, its results.csv, or any CSV file whose first column is the time.
+        """Read a results folder, its results.csv, or a file in a format that its suffix names.
 
-        Without a run.json beside results.csv every variable is a Real without a unit of measure.
-        Raises ConfigError naming file, line, column and value of what is not a number.
+        Any other file is read as CSV: the first column is the time [s], and without a run.json beside
+        results.csv every variable is a Real without a unit of measure. Raises ConfigError naming file, line,
+        column and value of what is not a number.
         """
         path = Path(path)
         if path.is_dir():
             path = path / CSV_NAME
-        names, table = _read_csv(path)
-        manifest = _read_manifest(path.with_name(MANIFEST_NAME)) if path.name == CSV_NAME else {}
-        known = _read_variables(manifest.pop("variables", []), path.with_name(MANIFEST_NAME))
-        variables = [known.get(name, ResultVariable(name)) for name in names]
-        return cls(table[:, 0], table[:, 1:], variables, manifest)
+        held = FORMATS.get(path.suffix.lower(), CSV).read(path)
+        manifest, variables = dict(held.manifest), list(held.variables)
+        if path.name == CSV_NAME:
+            manifest, known = read_manifest(path.with_name(MANIFEST_NAME))
+            variables = [known.get(v.name, v) for v in variables]
+        return cls(held.time, held.data, variables, manifest)
 
     def metrics(self) -> list[Metric]:
         """The numbers that the run's system and scenario name."""
@@ -296,160 +273,7 @@ def to_nanoseconds(time: Array) -> Array:
         return np.where(np.abs(decimal - time) <= 1e-12 + 4 * np.spacing(np.abs(time)), decimal, time)
 
 
-def _texts(values: Array, kind: str) -> list[str]:
-    """The text of each value of a column, formatted once for each stretch of equal values."""
-    bits = values.view(np.int64)  # as bits, -0.0 differs from 0.0 and NaN equals itself
-    starts = np.concatenate(([0], np.flatnonzero(bits[1:] != bits[:-1]) + 1))
-    distinct = values[starts]
-    if kind != "Real" and np.array_equal(distinct, np.rint(distinct)):
-        texts = list(map(str, distinct.astype(np.int64).tolist()))
-    else:
-        texts = list(map(repr, distinct.tolist()))
-    if len(starts) == len(values):
-        return texts
-    lengths = np.diff(starts, append=len(values)).tolist()
-    return [text for text, length in zip(texts, lengths, strict=True) for _ in range(length)]
+if TYPE_CHECKING:
 
-
-def _quoted(name: str) -> str:
-    """A name as CSV writes it: FMI's structured names may hold a comma, as in `x[1,2]`."""
-    if any(c in name for c in ',"\n\r'):
-        return '"' + name.replace('"', '""') + '"'
-    return name
-
-
-def _described(variable: ResultVariable) -> dict[str, Any]:
-    about = dataclasses.asdict(variable)
-    if not variable.items:
-        del about["items"]
-    return about
-
-
-def _jsonable(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _jsonable(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_jsonable(inner) for inner in value]
-    if isinstance(value, np.generic):
-        return _jsonable(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return str(value) if isinstance(value, os.PathLike) else value
-
-
-def _read_manifest(path: Path) -> dict[str, Any]:
-    if not path.is_file():
-        return {}
-    try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise ConfigError(f"{path}: is not a JSON file: {error}") from error
-    if not isinstance(manifest, dict):
-        raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")
-    return manifest
-
-
-def _read_variables(described: Any, place: Path) -> dict[str, ResultVariable]:
-    try:
-        found = [
-            ResultVariable(**{**about, "items": tuple((int(v), str(n)) for v, n in about.get("items", ()))})
-            for about in described
-        ]
-    except (TypeError, ValueError, AttributeError) as error:
-        raise ConfigError(f"{place}: 'variables' does not describe the variables: {error}") from error
-    return {v.name: v for v in found}
-
-
-def _read_csv(path: Path) -> tuple[list[str], Array]:
-    """The names of the columns after the first, and all columns, shape (n, 1 + m)."""
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            names = _header(path, file.readline())
-            table = _numbers(file, len(names))
-            if table is None or not np.isfinite(table).all() or _lines(path) != len(table) + 1:
-                _explain(path, names)
-                raise ConfigError(f"{path}: is not a table of numbers")
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: is not UTF-8 text: {error.reason} at byte {error.start}") from error
-    backward = np.flatnonzero(np.diff(table[:, 0]) < 0.0)
-    if len(backward):
-        k = int(backward[0])
-        raise ConfigError(
-            f"{path}: line {k + 3}, column '{names[0]}': {float(table[k + 1, 0])!r} comes after "
-            f"{float(table[k, 0])!r}; "
-            "time must not decrease"
-        )
-    return names[1:], table
-
-
-def _header(path: Path, line: str) -> list[str]:
-    names = [name.strip() for name in next(csv.reader([line], skipinitialspace=True), [])]
-    if not any(names):
-        raise ConfigError(f"{path}: line 1: a header with the names of the columns is needed")
-    if len(names) == 1 and ";" in line:
-        raise ConfigError(f"{path}: line 1: columns are separated by ',', not by ';': {line.strip()!r}")
-    if all(_number(name) is not None for name in names):
-        raise ConfigError(f"{path}: line 1: a header with names is needed, not numbers: {line.strip()!r}")
-    for j, name in enumerate(names):
-        if not name:
-            raise ConfigError(f"{path}: line 1, column {j + 1}: a name is needed")
-        if name in names[:j] or (name == "time" and j > 0):
-            raise ConfigError(f"{path}: line 1, column {j + 1}: '{name}' is the name of two columns")
-    return names
-
-
-def _numbers(file: TextIO, columns: int) -> Array | None:
-    """The rest of the file as numbers, None where it is something else."""
-    first = file.readline()
-    if not first.strip():
-        return np.empty((0, columns)) if not file.read().strip() else None
-
-    def rest() -> Iterator[str]:
-        yield first
-        yield from file
-
-    try:
-        table = np.loadtxt(rest(), delimiter=",", comments=None, quotechar='"', ndmin=2)
-    except ValueError:
-        return None  # the caller goes through the lines to say which one
-    return table if table.shape[1] == columns else None
-
-
-def _lines(path: Path) -> int:
-    """The number of lines, without empty ones at the end: numpy skips empty lines in between silently."""
-    count = 0
-    tail = b""
-    with path.open("rb") as file:
-        while block := file.read(1 << 20):
-            count += block.count(b"\n")
-            tail = (tail + block)[-4096:]
-    blank = len(tail) - len(tail.rstrip(b"\r\n"))
-    return count - tail[len(tail) - blank :].count(b"\n") + 1
-
-
-def _explain(path: Path, names: list[str]) -> None:
-    """Raise ConfigError for the first value of the file that is no finite number."""
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        reader = csv.reader(file)
-        next(reader)
-        for row in reader:
-            place = f"{path}: line {reader.line_num}"
-            if len(row) != len(names):
-                raise ConfigError(f"{place}: {len(row)} values, the header has {len(names)} columns")
-            for name, text in zip(names, row, strict=True):
-                if not text.strip():
-                    raise ConfigError(f"{place}, column '{name}': a value is missing")
-                if _number(text) is None:
-                    raise ConfigError(f"{place}, column '{name}': {text!r} is not a finite number")
-
-
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) and "_" not in text else None
+    def _is_recorded(results: Results) -> Recorded:
+        return results  # mypy: an error's `results` offers what Recorded says

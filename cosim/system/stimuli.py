@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..csv_numbers import CsvFile
 from ..errors import ConfigError, nearest
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
 from .toml import data_file
@@ -95,48 +95,24 @@ def _interpolate(
 
 
 def read_columns(path: Path, column: str | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Time [s] (the first column) and one named column (default: the second) of a CSV file with a header.
+    """Return the time [s] and one column (default: the second) of a CSV file with a header, shapes (n,).
 
-    Raises ConfigError naming file, line, column and value where a number is missing or is none.
+    The time is the first column. What stands in the others counts for nothing, nor do empty lines. Raises
+    ConfigError naming file, line, column and value where a number is missing or is none, and where there is
+    no such column or no row.
     """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ConfigError(f"{path}: cannot be read: {error}") from error
-    header = [name.strip() for name in rows[0]] if rows else []
-    if len(header) == 1 and ";" in header[0]:
-        raise ConfigError(f"{path}: line 1: columns are separated by ',', not by ';': {header[0]!r}")
-    if len(header) < 2:
-        raise ConfigError(f"{path}: line 1: a header of two or more column names is needed, not {header}")
-    if column is not None and column not in header[1:]:
+    file = CsvFile.with_header(path)
+    names = file.names
+    if len(names) < 2:
         raise ConfigError(
-            f"{path}: there is no column '{column}'{nearest(column, header[1:])}; "
-            f"columns: {', '.join(header[1:])}"
+            f"{path}: line 1: a header of two or more column names is needed, not {list(names)}"
         )
-    wanted = (0, header.index(column, 1) if column is not None else 1)
-    points = [
-        [_number(row, i, header, path, line) for i in wanted]
-        for line, row in enumerate(rows[1:], start=2)
-        if row
-    ]
-    if not points:
+    if column is not None and column not in names[1:]:
+        raise ConfigError(
+            f"{path}: there is no column '{column}'{nearest(column, names[1:])}; "
+            f"columns: {', '.join(names[1:])}"
+        )
+    table = file.numbers((0, names.index(column, 1) if column is not None else 1), empty_lines=True)
+    if not len(table):
         raise ConfigError(f"{path}: there is no row below the header")
-    array = np.array(points)
-    return array[:, 0], array[:, 1]
-
-
-def _number(row: list[str], index: int, header: list[str], path: Path, line: int) -> float:
-    place = f"{path}: line {line}, column '{header[index]}'"
-    if len(row) != len(header):
-        raise ConfigError(f"{path}: line {line} has {len(row)} values, the header has {len(header)}")
-    text = row[index].strip()
-    if not text:
-        raise ConfigError(f"{place}: the value is missing")
-    try:
-        value = float(text)
-    except ValueError as error:
-        raise ConfigError(f"{place}: '{text}' is not a number") from error
-    if not math.isfinite(value) or "_" in text:
-        raise ConfigError(f"{place}: '{text}' is not a finite number")
-    return value
+    return table[:, 0].copy(), table[:, 1].copy()

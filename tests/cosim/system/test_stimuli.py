@@ -61,7 +61,7 @@ def test_linear_is_numpys_where_times_differ(points):
         ("t,v\n0,1\n1,\n", r"line 3, column 'v': the value is missing"),
         ("t,v\n0,1\n1,fast\n", r"line 3, column 'v': 'fast' is not a number"),
         ("t,v\n0,1\n1,nan\n", r"line 3, column 'v': 'nan' is not a finite number"),
-        ("t,v\n0,1\n1\n", r"line 3 has 1 values, the header has 2"),
+        ("t,v\n0,1\n1\n", r"line 3 has 1 value, the header has 2"),
         ("t,v\n1,1\n0,2\n", r"time goes back from 1.0 s to 0.0 s in row 2"),
         ("t,v\n", r"no row below the header"),
         ("t;v\n0;1\n", r"line 1: columns are separated by .,., not by .;.: .t;v."),

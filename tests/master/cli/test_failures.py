@@ -111,7 +111,7 @@ def test_wrong_system_files(evcosim, tmp_path, old, new, texts):
     [
         ("time,throttle\n0,0\n1,\n2,5\n", ["throttle.csv: line 3, column 'throttle'", "missing"]),
         ("time,throttle\n0,0\n1,full\n", ["throttle.csv: line 3, column 'throttle': 'full' is not a number"]),
-        ("time,throttle\n0,0\n1\n", ["throttle.csv: line 3 has 1 values, the header has 2"]),
+        ("time,throttle\n0,0\n1\n", ["throttle.csv: line 3 has 1 value, the header has 2"]),
         ("time,throttle\n1,0\n0,5\n", ["throttle.csv", "time goes back from 1.0 s to 0.0 s"]),
     ],
 )

@@ -1,0 +1,1 @@
+"""Files of results: a module for each format, and the table of them by suffix."""

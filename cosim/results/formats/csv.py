@@ -1,0 +1,85 @@
+"""Results as CSV: the header `time,unit.variable,...`, then a line for each communication point.
+
+Lines end in '\\n'. A Real is written as the shortest decimal that reads back as the same bits; Integer,
+Boolean (0, 1) and Enumeration as integers. Units of measure, types, texts and the manifest have no place in
+it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...csv_numbers import CsvFile
+from ...errors import ConfigError
+from ...row_store import Array
+from ..variable import ResultVariable
+from .format import Contents, Recording
+
+_ROWS = 4096  # formatted at a time: 40 columns of text then take about 10 MB
+
+
+def write(recording: Recording, path: Path) -> None:
+    """Write all rows. Raises OSError where the disk refuses."""
+    kinds = [v.type for v in recording.variables]
+    with path.open("wb") as file:
+        file.write((",".join(["time", *map(_quoted, recording.names)]) + "\n").encode())
+        for time, values in recording.pieces(recording.names, rows=_ROWS):
+            columns = [list(map(repr, time.tolist()))]
+            columns += [_texts(values[:, j], kind) for j, kind in enumerate(kinds)]
+            file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
+
+
+def _texts(values: Array, kind: str) -> list[str]:
+    """Return the texts of a column of values, shape (n,), each stretch of equal ones formatted once."""
+    bits = values.view(np.int64)  # as bits, -0.0 differs from 0.0 and NaN equals itself
+    starts = np.concatenate(([0], np.flatnonzero(bits[1:] != bits[:-1]) + 1))
+    distinct = values[starts]
+    if kind != "Real" and np.array_equal(distinct, np.rint(distinct)):
+        texts = list(map(str, distinct.astype(np.int64).tolist()))
+    else:
+        texts = list(map(repr, distinct.tolist()))
+    if len(starts) == len(values):
+        return texts
+    lengths = np.diff(starts, append=len(values)).tolist()
+    return [text for text, length in zip(texts, lengths, strict=True) for _ in range(length)]
+
+
+def _quoted(name: str) -> str:
+    """Return a name as CSV writes it: FMI's structured names may hold a comma, as in `x[1,2]`."""
+    if any(c in name for c in ',"\n\r'):
+        return '"' + name.replace('"', '""') + '"'
+    return name
+
+
+def read(path: Path) -> Contents:
+    """Read any CSV file of finite numbers whose first column is the time [s].
+
+    Its variables are Reals without a unit of measure. Raises ConfigError naming file, line, column and value
+    of what is missing, is no finite number, or is a time before the one above it.
+    """
+    file = CsvFile.with_header(path)
+    _check_names(file)
+    table = file.numbers()
+    backward = np.flatnonzero(np.diff(table[:, 0]) < 0.0)
+    if len(backward):
+        k = int(backward[0])
+        raise ConfigError(
+            f"{path}: line {file.header_lines + k + 2}, column '{file.names[0]}': {float(table[k + 1, 0])!r} "
+            f"comes after {float(table[k, 0])!r}; time must not decrease"
+        )
+    return Contents(table[:, 0], table[:, 1:], [ResultVariable(name) for name in file.names[1:]])
+
+
+def _check_names(file: CsvFile) -> None:
+    """Raise ConfigError where a column has no name, or the name of another one."""
+    names = file.names
+    if not any(names):
+        raise ConfigError(f"{file.path}: line 1: a header with the names of the columns is needed")
+    for j, name in enumerate(names):
+        place = f"{file.path}: line 1, column {j + 1}"
+        if not name:
+            raise ConfigError(f"{place}: a name is needed")
+        if name in names[:j] or (name == "time" and j > 0):
+            raise ConfigError(f"{place}: '{name}' is the name of two columns")

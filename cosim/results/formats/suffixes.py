@@ -1,0 +1,26 @@
+"""The formats that results are written in and read from, by the suffix of a file's name.
+
+A further format is a module beside this one and a line in FORMATS.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...errors import ConfigError
+from . import csv
+from .format import Format
+
+CSV = Format(csv.write, csv.read)
+
+FORMATS = {
+    ".csv": CSV,
+}
+
+
+def format_of(path: Path) -> Format:
+    """Return the format that a file's suffix names. Raises ConfigError for another suffix, naming all."""
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise ConfigError(f"{path}: results are written as {', '.join(FORMATS)}, not as '{suffix}'")
+    return FORMATS[suffix]

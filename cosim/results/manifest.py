@@ -1,0 +1,85 @@
+"""run.json, which stands beside results.csv: what it says of the run as a whole, and of each variable."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import ConfigError
+from ..writing import replacing
+from .variable import ResultVariable
+
+
+def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
+    """Write a manifest, and under "variables" what is known of each variable.
+
+    Numbers that are not finite become null: JSON has no name for them. Raises ConfigError where the file
+    cannot be written; then none is left half-done.
+    """
+    about = {**manifest, "variables": [_described(v) for v in variables]}
+    text = json.dumps(_jsonable(about), indent=2, allow_nan=False, ensure_ascii=False)
+    with replacing(path) as file:
+        # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
+        file.write((text + "\n").encode(errors="backslashreplace"))
+
+
+def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]]:
+    """Return what a run.json says of the run, and by name the variables that it describes.
+
+    Both are empty where there is no file. Raises ConfigError naming a file that cannot be read, is no JSON,
+    or does not describe variables.
+    """
+    manifest = _read(path)
+    return manifest, _variables(manifest.pop("variables", []), path)
+
+
+def _described(variable: ResultVariable) -> dict[str, Any]:
+    about = dataclasses.asdict(variable)
+    if not variable.items:
+        del about["items"]
+    return about
+
+
+def _jsonable(value: Any) -> Any:
+    """Return a value as JSON has it: arrays' numbers as Python's, paths as text, NaN and infinity as None."""
+    if isinstance(value, Mapping):
+        return {str(key): _jsonable(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_jsonable(inner) for inner in value]
+    if isinstance(value, np.generic):
+        return _jsonable(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return str(value) if isinstance(value, os.PathLike) else value
+
+
+def _read(path: Path) -> dict[str, Any]:
+    if not path.is_file():
+        return {}
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise ConfigError(f"{path}: is not a JSON file: {error}") from error
+    if not isinstance(manifest, dict):
+        raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")
+    return manifest
+
+
+def _variables(described: Any, place: Path) -> dict[str, ResultVariable]:
+    try:
+        found = [
+            ResultVariable(**{**about, "items": tuple((int(v), str(n)) for v, n in about.get("items", ()))})
+            for about in described
+        ]
+    except (TypeError, ValueError, AttributeError) as error:
+        raise ConfigError(f"{place}: 'variables' does not describe the variables: {error}") from error
+    return {v.name: v for v in found}

@@ -1,0 +1,165 @@
+"""Numbers in CSV files: two ways of reading give the same, and a mistake is found where it is."""
+
+from __future__ import annotations
+
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from evcosim.cosim import csv_numbers
+from evcosim.cosim.csv_numbers import CsvFile
+from evcosim.cosim.errors import ConfigError
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+tables = arrays.arrays(np.float64, st.tuples(st.integers(0, 5), st.integers(1, 4)), elements=finite)
+
+
+def text_of(table: np.ndarray, end: str = "\n") -> str:
+    names = [f"c{j}" for j in range(table.shape[1])]
+    return "".join(",".join(row) + end for row in [names, *(map(repr, row) for row in table.tolist())])
+
+
+def opened(path: Path, text: str | bytes) -> CsvFile:
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return CsvFile.with_header(path)
+
+
+@settings(deadline=None)  # what a disk takes for a file is not ours
+@given(table=tables, end=st.sampled_from(["\n", "\r\n"]), data=st.data())
+def test_the_numbers_are_those_that_were_written_whoever_reads_them(
+    table: np.ndarray, end: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    file = opened(tmp_path_factory.getbasetemp() / "numbers.csv", text_of(table, end))
+    every = range(table.shape[1])
+    columns = data.draw(st.lists(st.sampled_from(every), min_size=1, max_size=3))
+    assert file.names == tuple(f"c{j}" for j in every)
+    assert file.numbers().tobytes() == table.tobytes()
+    for wanted in (every, columns):
+        expected = table[:, list(wanted)].tobytes()
+        assert file.numbers(wanted).tobytes() == expected
+        by_numpy = file._by_numpy(wanted, empty_lines=False)
+        assert by_numpy is not None and by_numpy.tobytes() == expected
+        assert file._line_by_line(wanted, empty_lines=False).tobytes() == expected
+
+
+def test_one_of_many_columns_is_the_one_that_was_asked_for(tmp_path: Path) -> None:
+    table = np.random.default_rng(1).normal(size=(20, 30))
+    file = opened(tmp_path / "wide.csv", text_of(table))
+    assert np.array_equal(file.numbers((0, 17)), table[:, [0, 17]])
+
+
+def test_what_nobody_wants_may_be_anything(tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", 't,phase,v\n0,"cold, wet",1\n1,,2\n2,nan,3\n')
+    assert file.numbers((0, 2)).tolist() == [[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]]
+    with pytest.raises(ConfigError, match="line 2, column 'phase': 'cold, wet' is not a number"):
+        file.numbers((0, 1))
+
+
+def test_empty_lines_at_the_end_count_for_nothing_and_others_if_allowed(tmp_path: Path) -> None:
+    between = opened(tmp_path / "a.csv", "t,v\n\n0,1\r\n\r\n\n2,3\n\n\r\n\n")
+    assert between.numbers(empty_lines=True).tolist() == [[0.0, 1.0], [2.0, 3.0]]
+    with pytest.raises(ConfigError, match="line 2 has 0 values, the header has 2 columns"):
+        between.numbers()
+    at_the_end = opened(tmp_path / "b.csv", "t,v\n0,1\n\n\r\n\n")
+    assert at_the_end.numbers().tolist() == [[0.0, 1.0]]
+    for nothing in ("t,v", "t,v\n", "t,v\n\n\n"):
+        assert opened(tmp_path / "c.csv", nothing).numbers().shape == (0, 2)
+
+
+def test_a_name_may_hold_commas_and_line_ends(tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", b'\xef\xbb\xbf"Time\r\n[s]", "x[1,2]" ,6" wheel\n0,1,2\n3,4,fast\n')
+    assert file.names == ("Time\r\n[s]", "x[1,2]", '6" wheel')
+    assert file.numbers((0, 1)).tolist() == [[0.0, 1.0], [3.0, 4.0]]
+    with pytest.raises(ConfigError, match="line 4, column '6\" wheel': 'fast' is not a number"):
+        file.numbers()
+
+
+def test_old_line_ends_and_digits_of_other_scripts_are_read_too(tmp_path: Path) -> None:
+    assert opened(tmp_path / "x.csv", "t,v\r0,1\r2,٣\r").numbers().tolist() == [[0.0, 1.0], [2.0, 3.0]]
+
+
+HEADERS = {
+    b"": (),
+    b"\n0,1\n": (),
+    b"t\n0\n": ("t",),
+    b",,\n": ("", "", ""),
+    b"1,x\n": ("1", "x"),
+}
+
+
+@pytest.mark.parametrize("text", HEADERS)
+def test_names_are_read_as_they_are(text: bytes, tmp_path: Path) -> None:
+    assert opened(tmp_path / "x.csv", text).names == HEADERS[text]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"t;v\n0;1\n", "line 1: columns are separated by ',', not by ';': 't;v'"),
+        (b"0,1\n1,2\n", "line 1: a header with names is needed, not numbers: '0,1'"),
+        (b't,"v\n0,1\n2,3\n', "line 1: a quote of the header is not closed: 't,\"v'"),
+        (b"t,\xff\n0,1\n", "is not UTF-8 text: invalid start byte at byte 2"),
+        (b't,"' + 200_000 * b"x", "line 1: is not well-formed CSV: field larger than field limit"),
+    ],
+)
+def test_a_broken_header_is_refused(text: bytes, said: str, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        opened(tmp_path / "x.csv", text)
+    assert str(refusal.value).startswith(f"{tmp_path / 'x.csv'}: {said}")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"t,v\n0,1\n1,\n", "line 3, column 'v': the value is missing"),
+        (b"t,v\n0,1\n1, fast \n", "line 3, column 'v': 'fast' is not a number"),
+        (b"t,v\n0,1\n1,nan\n", "line 3, column 'v': 'nan' is not a finite number"),
+        (b"t,v\n0,-inf\n", "line 2, column 'v': '-inf' is not a finite number"),
+        (b"t,v\n0,1e999\n", "line 2, column 'v': '1e999' is not a finite number"),
+        (b"t,v\n0,1_000\n", "line 2, column 'v': '1_000' is not a finite number"),
+        (b"t,v\n0,1\n1\n", "line 3 has 1 value, the header has 2 columns"),
+        (b"t,v\n0,1,2\n1,1,2\n", "line 2 has 3 values, the header has 2 columns"),
+        (b"t,v\n0,1\n  \n", "line 3 has 1 value, the header has 2 columns"),
+        (b'"t\n",v\n0,"1\n"\n1,x\n', "line 5, column 'v': 'x' is not a number"),
+        (b"t,v\n0,1\n0,\xff\n", "is not UTF-8 text: invalid start byte at byte"),
+        (b't,v\n0,"' + 200_000 * b"x", "line 2: is not well-formed CSV: field larger than field limit"),
+    ],
+)
+def test_a_mistake_is_named_with_its_place(text: bytes, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_bytes(text)
+    with pytest.raises(ConfigError) as refusal:
+        CsvFile.with_header(path).numbers()
+    assert str(refusal.value).startswith(f"{path}: {said}")
+
+
+def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"none.csv: cannot be read: No such file or directory"):
+        CsvFile.with_header(tmp_path / "none.csv")
+    with pytest.raises(ConfigError, match="cannot be read: Is a directory"):
+        CsvFile.with_header(tmp_path)
+
+
+@pytest.mark.parametrize("phase", ["1", "warm"])
+def test_reading_holds_little_beside_the_numbers(phase: str, tmp_path: Path) -> None:
+    """Twice the rows take twice the numbers: 16 bytes for two columns, where texts would take 100."""
+    peaks = []
+    for count in (20_000, 40_000):
+        rows = "".join(f"{k},{phase},{k}.5\n" for k in range(count))
+        file = opened(tmp_path / "x.csv", "t,phase,v\n" + rows)
+        tracemalloc.start()
+        assert file.numbers((0, 2)).shape == (count, 2)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] - peaks[0] < 45 * 20_000
+
+
+def test_few_columns_of_many_are_not_all_converted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = opened(tmp_path / "x.csv", text_of(np.ones((2, 7))))
+    monkeypatch.setattr(csv_numbers, "_all_numbers", lambda *_: pytest.fail("numpy converts every column"))
+    assert file.numbers((0, 6)).tolist() == [[1.0, 1.0]] * 2
