@@ -1,13 +1,20 @@
-"""The channel: what a CAN message does to the values that cross it.
+"""The channel: the way of a message's values from the sender to the receivers.
 
-At each of its cycle times a message samples all its signals together: sender's value -> DBC signal's unit ->
-raw value -> physical value -> receivers' units (module quantization says how, exactly). Between two
-transmissions a receiver's slot of the memory is not written, so it holds the last value; before the first
-one it holds what it started with.
+Of a signal let x[k] be the sender's value in communication step k, and y[k] what a receiver's mailbox holds
+from the message's place in that step on:
 
-A MessageChannel writes its own `transmit` as straight-line Python with the constants folded in, since it
-runs at every communication step: about 0.2 us a signal. `source` shows it. Values that saturate leave the
-line for a function that counts them.
+    y[k] = D(Q(x[k])) if due(k) else y[k - 1],    y[-1] = initial
+    due(k) = k >= first and (k - first) % every == 0
+
+Q converts from the sender's unit to the signal's and makes a raw value of it, D makes a physical value of
+that and converts it to the receiver's unit (`quantization` defines both). `first` and `every` come from the
+DBC (`send_steps`), `every` times the `cycle` of the bus. A message that is due at k = 0 replaces `initial` in
+row 0 of the results already. All signals of a message are sampled together. On a bus with a delay of d steps
+the engine brings y[k - d] to the mailbox, and `initial` stays there until step first + d.
+
+A MessageChannel writes its own `transmit` as straight-line Python with the constants folded in, since it runs
+whenever the message is due: about 0.2 us a signal. `source` is that text. Values that saturate leave the line
+for a function that counts them.
 """
 
 from __future__ import annotations
@@ -23,7 +30,7 @@ from numpy.typing import NDArray
 from ..errors import ConfigError
 from ..units import Affine
 from .bus_settings import BusSettings
-from .dbc import Message, Signal
+from .database import Message, Signal
 from .quantization import SignalOperation, decode, operation, quantize, reference
 from .transmissions import RawLog, raw_store
 
@@ -32,8 +39,8 @@ from .transmissions import RawLog, raw_store
 class SignalRoute:
     """The way of one signal through the engine's memory.
 
-    `source` is the slot of the sender's value and `to_bus` the map to the DBC signal's unit. `sinks` are the
-    receivers' slots, each with the map from the DBC signal's unit.
+    `source` is the slot of the sender's value, `to_bus` the map from the sender's unit to the DBC signal's.
+    `sinks` are the receivers' slots, each with the map from the DBC signal's unit to the receiver's.
     """
 
     signal: Signal
@@ -44,25 +51,27 @@ class SignalRoute:
 
 @dataclasses.dataclass(frozen=True)
 class Saturation:
-    """How many values of a signal were out of range, and the communication step of the first."""
+    """The number of values of a signal that were out of range, and the communication step of the first."""
 
     count: int
     first_step: int
 
 
 class MessageChannel:
-    """One message of a bus, sent by `transmit(memory, k)`.
+    """One message of a bus with the routes of its signals, under the bus' settings (default: BusSettings()).
 
-    `memory` is an indexable of floats (fastest: a memoryview of doubles), `k` the communication step, which
-    is only recorded: the caller knows when the message is due (`dbc.schedule`). All signals are read and
-    checked before any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
-
-    With `log_raw` the raw values of each transmission are kept for `log` (`logs` tells whether), in memory
-    until `flush` puts them to the others, which are in a temporary file when they are many.
-    Raises ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
+    With `log_raw` (then `logs` is True) the raw values of each transmission are kept for `log`, in memory
+    until `flush` adds them to the earlier ones, which are in a temporary file when they are many. Raises
+    ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
     """
 
     transmit: Callable[[Any, int], None]
+    """Send the message: transmit(memory, k).
+
+    `memory` is an indexable of floats (fastest: a memoryview of doubles); `k` is the communication step, for
+    the records only, since the caller knows when the message is due. All signals are read and checked before
+    any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
+    """
 
     def __init__(
         self,
@@ -74,20 +83,20 @@ class MessageChannel:
         _check(message, routes)
         self.message, self.routes, self.logs = message, tuple(routes), log_raw
         self.operations = tuple(operation(route.signal, settings or BusSettings()) for route in routes)
-        self._counts = [[0, 0] for _ in routes]  # how often out of range, and the first step
+        self._counts = [[0, 0] for _ in routes]  # of each signal: values out of range, and the first step
         self._out = [
             _out_of_range(op, counter) for op, counter in zip(self.operations, self._counts, strict=True)
         ]
         self._log, self._logged = bytearray(), raw_store(len(routes))
-        self._row = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
+        self._format = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
         self.source = _source(self.routes, self.operations, log_raw)
-        names = self._names() | {"extend": self._log.extend, "pack": self._row.pack}
+        names = self._names() | {"extend": self._log.extend, "pack": self._format.pack}
         exec(compile(self.source, f"<channel {message.name}>", "exec"), names)
         self.transmit = names["transmit"]
 
     @property
     def saturations(self) -> dict[str, Saturation]:
-        """The signals that had values out of range (under "wrap": values that wrapped)."""
+        """The signals that had values out of range (under "wrap": values that wrapped), by name."""
         counted = zip(self.operations, self._counts, strict=True)
         return {op.signal.name: Saturation(count, first) for op, (count, first) in counted if count}
 
@@ -99,7 +108,7 @@ class MessageChannel:
         return RawLog(self.message, types, self._logged.table())
 
     def flush(self) -> None:
-        """Put what was logged since the last time to what is kept; an engine does so now and then.
+        """Add what was logged since the last call to what is kept: after each chunk of steps.
 
         Raises RunError when the temporary file cannot be written.
         """
@@ -110,25 +119,28 @@ class MessageChannel:
     # ---- for an engine that does the transmissions itself, with the constants in `operations`
 
     def out_of_range(self, i: int, x: float, k: int) -> float:
-        """The raw value of signal i for a value outside [low, high], counted. Raises ChannelError."""
+        """Return the raw value of signal i for x, in the signal's unit, outside [low, high], and count it.
+
+        Raises ChannelError where it cannot be sent.
+        """
         return self._out[i](x, k)
 
     def count(self, i: int, times: int, first_step: int) -> None:
-        """Add to what is counted of signal i."""
+        """Count `times` values of signal i out of range, the first of them in step `first_step`."""
         counter = self._counts[i]
         if not counter[0]:
             counter[1] = first_step
         counter[0] += times
 
     def keep(self, steps: NDArray[np.int64], raws: NDArray[np.float64]) -> None:
-        """Add transmissions to the log: `raws` has a row for each and a column for each signal."""
+        """Add n transmissions to the log: `steps` of shape (n,), `raws` of shape (n, signals)."""
         rows = np.empty((len(steps), 1 + raws.shape[1]), dtype="<f8")
         rows.view("<i8")[:, 0] = steps
         rows[:, 1:] = raws
         self._log.extend(rows.tobytes())
 
     def _names(self) -> dict[str, Any]:
-        """What the source refers to: for signal i, what to do out of range and what doubles cannot do."""
+        """Return the names that the source uses: for values out of range, and for what doubles cannot do."""
         names: dict[str, Any] = {}
         for i, op in enumerate(self.operations):
             names[f"out_{i}"] = self._out[i]
@@ -150,7 +162,10 @@ def _check(message: Message, routes: Sequence[SignalRoute]) -> None:
 
 
 def _out_of_range(op: SignalOperation, counter: list[int]) -> Callable[[float, int], float]:
-    """The slow path: raw value for a value outside [low, high], counted in `counter`."""
+    """Return the slow path: a function from a value outside [low, high], and the step, to the raw value.
+
+    It counts in `counter`: how often it was called, and in which step first.
+    """
 
     def out(x: float, k: int) -> float:
         raw = reference(op.signal, op.settings, x)[0]
@@ -171,7 +186,7 @@ def _exact_value(op: SignalOperation) -> Callable[[float], float]:
 
 
 def _log_type(op: SignalOperation) -> tuple[str, str]:
-    """Format of `struct` and type of numpy for a raw value of this signal."""
+    """Return struct's format and numpy's type of a raw value of this signal."""
     if op.kind == "exact":
         return ("q", "<i8") if op.signal.signed else ("Q", "<u8")
     return "d", "<f8"
@@ -194,7 +209,7 @@ def _source(routes: Sequence[SignalRoute], operations: Sequence[SignalOperation]
 
 
 def _send(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
-    """From the sender's slot to the raw value r<i>."""
+    """Return the lines from the sender's slot to the raw value r<i>."""
     use = op.settings
     return [
         f"# {_one_line(op.signal.name)} [{_one_line(op.signal.unit)}]: {use.rounding}, {use.overflow}",
@@ -207,7 +222,7 @@ def _send(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
 
 
 def _one_line(text: str) -> str:
-    """A text of the DBC file as part of a comment: a line break in it must not end the comment."""
+    """Return a text of the DBC file as part of a comment: a line break in it must not end the comment."""
     return text.encode("unicode_escape").decode("ascii")
 
 
@@ -231,7 +246,7 @@ def _quantize_lines(i: int, op: SignalOperation) -> list[str]:
 
 
 def _raw_steps(op: SignalOperation) -> str:
-    """(x - offset) / scale. A division stays one: a product with the inverse is not the same double."""
+    """Return (x - offset) / scale as source. A product with 1 / scale would not be the same double."""
     x = "x"
     if op.offset:
         x = f"(x - {op.offset!r})" if op.offset > 0 else f"(x + {-op.offset!r})"
@@ -244,7 +259,7 @@ def _never_negative(op: SignalOperation) -> bool:
 
 
 def _receive(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
-    """From the raw value r<i> to the receivers' slots."""
+    """Return the lines from the raw value r<i> to the receivers' slots."""
     if not route.sinks:
         return []
     value = f"value_{i}(r{i})" if op.kind == "exact" else _value(f"r{i}", op)
@@ -258,6 +273,6 @@ def _receive(i: int, route: SignalRoute, op: SignalOperation) -> list[str]:
 
 
 def _value(r: str, op: SignalOperation) -> str:
-    """r * scale + offset, without what does nothing."""
+    """Return r * scale + offset as source, without what does nothing."""
     product = f"{r} * {op.scale!r}" if op.scale != 1.0 else r
     return f"{product} + {op.offset!r}" if op.adds_offset else product

@@ -19,7 +19,7 @@ from typing import Any
 
 from ..errors import ConfigError
 from ..writing import in_place_of
-from .dbc import Message, Signal
+from .database import Message, Signal
 from .transmissions import RawLog
 
 _ASC_DATE = "Thu Jan 01 00:00:00.000 1970"
@@ -27,7 +27,7 @@ _ASC_DATE = "Thu Jan 01 00:00:00.000 1970"
 
 @dataclasses.dataclass(frozen=True)
 class BusLog:
-    """What crossed one bus: the messages' transmissions (`MessageChannel.log`)."""
+    """The transmissions of one bus' messages (`MessageChannel.log`)."""
 
     bus: str
     messages: Sequence[RawLog]
@@ -35,7 +35,7 @@ class BusLog:
 
 @dataclasses.dataclass(frozen=True)
 class Frame:
-    """One frame: `time` in s, `channel` the place of its bus among the logged ones."""
+    """One frame: `time` in s, `channel` the index of its bus among the logged ones."""
 
     time: float
     channel: int
@@ -47,9 +47,9 @@ class Frame:
 def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> int:
     """Write the frames of `logs` in the format that the file's suffix names; return how many there were.
 
-    `.log` is candump's, `.blf` and `.asc` are Vector's. Signals that no connection feeds are sent with their
-    start value. Written frame by frame. Raises ConfigError for another suffix or where the file cannot be
-    written.
+    `.log` is candump's, `.blf` and `.asc` are Vector's. `step_size` and `start_time` are the run's [s].
+    Signals that no connection feeds are sent with their start value. Written frame by frame. Raises
+    ConfigError for another suffix or where the file cannot be written.
     """
     path = Path(path)
     check_suffix(path)
@@ -69,7 +69,7 @@ def check_suffix(path: str | Path) -> None:
 
 
 def frames(logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> Iterator[Frame]:
-    """The frames of all buses in the order of time, those of one instant by frame id."""
+    """Yield the frames of all buses in the order of time, those of one instant by frame id; times in s."""
     streams = [_payloads(channel, log) for channel, bus_log in enumerate(logs) for log in bus_log.messages]
     for k, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
         yield Frame(start_time + k * step_size, channel, logs[channel].bus, message, data)
@@ -79,7 +79,7 @@ _Payload = tuple[int, int, int, Message, bytes]
 
 
 def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
-    """Step, arbitration order, channel, message and payload of each transmission of one message."""
+    """Yield step, arbitration order, channel, message and payload of each transmission of one message."""
     message = log.message
     # an extended frame loses against a standard one with the same leading 11 bits
     order = message.frame_id * 2 + 1 if message.extended else message.frame_id << 19
@@ -95,7 +95,7 @@ def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
 
 
 def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:
-    """A function from the raw values of all signals to the payload, by cantools; unused bits are 0."""
+    """Return a function from the raw values of all signals to the payload, by cantools; unused bits are 0."""
     from cantools.database.can import Message as CodecMessage
 
     codec = CodecMessage(
@@ -133,7 +133,7 @@ def _codec_signal(signal: Signal) -> Any:
 
 @contextlib.contextmanager
 def _candump(path: Path) -> Iterator[Callable[[Frame], None]]:
-    """candump -L. Not by python-can's writer, whose lines end in the direction, which tshark refuses."""
+    """Write as candump -L does. Lines of python-can's writer end in the direction, which tshark refuses."""
     with path.open("w", encoding="ascii", newline="\n") as file:
 
         def write(frame: Frame) -> None:

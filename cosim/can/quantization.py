@@ -1,4 +1,4 @@
-"""What a CAN signal does to a value: the definition, and the constants every engine computes with.
+"""The definition of a CAN signal's effect on a value, and the constants that every engine computes with.
 
 In the unit of the DBC signal, a value x becomes
 
@@ -30,8 +30,8 @@ rounding "half_even" it is what encode and decode of cantools give, bit for bit.
 
 `operation` folds a signal and the settings of its bus into a SignalOperation. Since (1) to (4) are monotone,
 all values that nothing saturates lie in one interval [low, high], so an engine compares twice, then computes
-(2), (3), (5); every value outside becomes one of two constants. Where that is done, it is exact: low and high
-are doubles, and the next double outside saturates.
+(2), (3), (5); every value outside becomes one of two constants. This is exact: low and high are doubles, and
+the next double outside saturates.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from typing import Literal
 
 from ..errors import ConfigError, RunError
 from .bus_settings import BusSettings, Rounding
-from .dbc import Signal
+from .database import Signal
 
 Kind = Literal["integer", "exact", "float32", "float64"]
 
@@ -61,9 +61,10 @@ class ChannelError(RunError):
 
 
 def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int | float, float]:
-    """The raw value sent for `value` and the value received, both sides in the DBC signal's unit.
+    """Return the raw value that is sent for `value`, and the value received; both values in the signal's
+    unit.
 
-    Raises ChannelError for NaN and what `settings` make an error.
+    Raises ChannelError for NaN and for what `settings` make an error.
     """
     if math.isnan(value):
         raise ChannelError(signal.name, value, "the value is NaN")
@@ -72,13 +73,13 @@ def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int 
     n = quantize(signal, settings.rounding, x)  # (2), (3)
     low, high = signal.raw_range
     if settings.overflow == "error" and (x != value or not low <= n <= high):
-        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_limits(signal)}")
+        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_range_text(signal)}")
     raw = _wrap(signal, n, value) if wraps else _clip(signal, n)  # (4)
     return raw, decode(signal, raw)  # (5)
 
 
 def quantize(signal: Signal, rounding: Rounding, x: float) -> int | float:
-    """Steps (2) and (3): the raw value before it is clipped; +-inf beyond all doubles."""
+    """Return n of steps (2) and (3) for x in the signal's unit: not clipped; +-inf beyond all doubles."""
     q = (x - signal.offset) / signal.scale
     if signal.is_float or math.isinf(q):
         return q
@@ -91,7 +92,8 @@ def quantize(signal: Signal, rounding: Rounding, x: float) -> int | float:
 
 
 def decode(signal: Signal, raw: int | float) -> float:
-    """Step (5). With an integer scale and offset in integers, rounded once, as cantools does."""
+    """Return y of step (5), in the signal's unit. Integer scale and offset: in integers, rounded once, as
+    cantools does."""
     if signal.scale == 1 and signal.offset == 0:
         return float(raw)
     return float(raw * signal.scale + signal.offset)
@@ -124,7 +126,7 @@ def _wrap(signal: Signal, n: int | float, value: float) -> int | float:
 
 
 def _to_float(signal: Signal, q: float) -> float:
-    """q in the signal's floating-point format, to nearest even; beyond its range Inf, as a C cast does."""
+    """Return q in the signal's floating-point format, to nearest even; beyond its range Inf, as a C cast."""
     if signal.length == 64:
         return q
     try:
@@ -133,7 +135,7 @@ def _to_float(signal: Signal, q: float) -> float:
         return math.copysign(math.inf, q)
 
 
-def _limits(signal: Signal) -> str:
+def _range_text(signal: Signal) -> str:
     low = signal.minimum if signal.minimum is not None else "-inf"
     high = signal.maximum if signal.maximum is not None else "inf"
     first, last = signal.raw_range
@@ -144,11 +146,12 @@ def _limits(signal: Signal) -> str:
 class SignalOperation:
     """The constants of one signal on one bus, for an engine.
 
-    A value with `low` <= x <= `high` is sent as raw = rounding((x - offset) / scale) and received as
-    raw * scale + offset. Any other value saturates (or wraps, or is an error: `overflow`): `raw_above` is
-    sent for one above `high`, `raw_below` for one below `low` (both None unless overflow is "saturate").
-    `kind` says what arithmetic does that right: "integer": doubles, since |raw| <= 2**50; "exact": integers
-    of any size (`quantize` and `decode`); "float32", "float64": no rounding, but to that format.
+    A value with `low` <= x <= `high`, in the signal's unit, is sent as raw = rounding((x - offset) / scale)
+    and received as raw * scale + offset. Any other value saturates (or wraps, or is an error:
+    `settings.overflow`): `raw_above` is sent for one above `high`, `raw_below` for one below `low` (both None
+    unless overflow is "saturate"). `kind` is the arithmetic that is exact: "integer": doubles, since |raw| <=
+    2**50; "exact": integers of any size (`quantize` and `decode`); "float32", "float64": no rounding, but to
+    that format.
     """
 
     signal: Signal
@@ -163,17 +166,20 @@ class SignalOperation:
 
     @property
     def adds_offset(self) -> bool:
-        """Whether decoding adds the offset: one of 0.0 makes 0.0 of -0.0, where there can be one."""
+        """True when decoding adds the offset: one of 0.0 makes 0.0 of -0.0, where there can be one."""
         if self.scale == 1.0 and self.offset == 0.0:
             return False
         return bool(self.offset) or self.scale < 0 or self.kind != "integer"
 
 
 def operation(signal: Signal, settings: BusSettings) -> SignalOperation:
-    """Fold a signal and the settings of its bus. Raises ConfigError when no value at all can be sent."""
+    """Return the constants of a signal under the settings of its bus.
+
+    Raises ConfigError when no value at all can be sent.
+    """
     low, high = _unsaturated(signal, settings)
     if low > high:
-        raise ConfigError(f"signal '{signal.name}': no value in {_limits(signal)} can be sent")
+        raise ConfigError(f"signal '{signal.name}': no value in {_range_text(signal)} can be sent")
     saturates = settings.overflow == "saturate"
     return SignalOperation(
         signal=signal,
@@ -199,7 +205,7 @@ def _kind(signal: Signal) -> Kind:
 
 
 def _unsaturated(signal: Signal, settings: BusSettings) -> tuple[float, float]:
-    """The least and the greatest x that steps (1) and (4) leave alone."""
+    """Return the least and the greatest x, in the signal's unit, that steps (1) and (4) leave alone."""
     wraps = settings.overflow == "wrap"
     first, last = signal.raw_type_range if wraps else signal.raw_range
 
@@ -219,7 +225,7 @@ def _unsaturated(signal: Signal, settings: BusSettings) -> tuple[float, float]:
 
 
 def _first_double(holds: Callable[[float], bool]) -> float:
-    """The least finite double at which `holds`, which stays true from there on; Inf when it never does."""
+    """Return the least finite double at which `holds`, which stays true from there on; Inf: it never does."""
     low, high = -_rank(sys.float_info.max), _rank(sys.float_info.max)
     if not holds(_double(high)):
         return math.inf
@@ -233,12 +239,12 @@ def _first_double(holds: Callable[[float], bool]) -> float:
 
 
 def _rank(x: float) -> int:
-    """The place of a double in the order of all doubles, 0.0 being 0."""
+    """Return the place of a double in the order of all doubles, 0.0 being 0."""
     bits: int = struct.unpack("<q", struct.pack("<d", abs(x)))[0]
     return bits if x >= 0 else -bits
 
 
 def _double(rank: int) -> float:
-    """The double of a rank."""
+    """Return the double of a rank."""
     x: float = struct.unpack("<d", struct.pack("<q", abs(rank)))[0]
     return x if rank >= 0 else -x

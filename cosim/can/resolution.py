@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from .bus_settings import Resolution
-from .dbc import Signal
+from .database import Signal
 
 
 def with_resolution(signal: Signal, resolution: Resolution) -> Signal:

@@ -1,4 +1,4 @@
-"""The transmissions of a message as they are kept: in memory while they are few, in a file beyond that."""
+"""The raw values that a message's transmissions had: few in memory, more in a temporary file."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..row_store import RowStore, Table
-from .dbc import Message
+from .database import Message
 
 _MEMORY = 2**20  # bytes of each message that stay in memory
 _STRETCH = 4096  # transmissions that are read at a time
 
 Steps = NDArray[np.int64]
+"""Communication steps of n transmissions, shape (n,)."""
+
 Raws = dict[str, NDArray[Any]]
+"""Raw values of n transmissions by signal, each of shape (n,)."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,8 +27,8 @@ class RawLog:
     """The transmissions of a message: their communication steps, and each signal's raw values, one for each.
 
     The raw values of an integer signal are whole float64, or integers where those could not hold them:
-    `types` tells for each signal which, in numpy's letters. A row of the `table` is a step and the raw
-    values, each the 8 bytes of its own type.
+    `types` has the type of each signal, in numpy's letters. The `table` has shape (transmissions, 1 +
+    signals); a row is a step and the raw values, each the 8 bytes of its own type.
     """
 
     message: Message
@@ -34,19 +37,19 @@ class RawLog:
 
     @property
     def steps(self) -> Steps:
-        """All steps, shape (transmissions,)."""
+        """The steps of all transmissions."""
         return self._taken(0, len(self))[0]
 
     @property
     def raws(self) -> Raws:
-        """All raw values by signal, each of shape (transmissions,)."""
+        """The raw values of all transmissions."""
         return self._taken(0, len(self))[1]
 
     def __len__(self) -> int:
         return self.table.shape[0]
 
     def stretches(self) -> Iterator[tuple[Steps, Raws]]:
-        """Steps and raw values, some transmissions at a time."""
+        """Yield steps and raw values of some transmissions at a time, in order."""
         for start in range(0, len(self), _STRETCH):
             yield self._taken(start, start + _STRETCH)
 
@@ -57,7 +60,7 @@ class RawLog:
 
 
 def raw_store(signals: int) -> RowStore:
-    """Where the transmissions of a message with so many signals are kept."""
+    """Return an empty store for the transmissions of a message with so many signals."""
     return RowStore(
         1 + signals, _MEMORY, what="the frames of a bus", advice="a run that keeps no frames needs none"
     )

@@ -6,8 +6,10 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 from ..can.channel import SignalRoute
-from ..can.dbc import Database, Message, Signal, check_signal, load_dbc, schedule
+from ..can.database import Database, Message, Signal, check_signal
+from ..can.dbc import load_dbc
 from ..can.resolution import with_resolution
+from ..can.send_steps import send_steps
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.system import Algorithm, Connection, Experiment, System
@@ -223,7 +225,7 @@ def _message(
 ) -> MessagePlan:
     message = work.databases[bus].require(name)
     settings, step_size = work.system.file.buses[bus], experiment.step_size
-    every, first = schedule(message, step_size, str(work.system.path))
+    every, first = send_steps(message, step_size, str(work.system.path))
     delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
     arrivals: list[tuple[int, int]] = []
     if delay:

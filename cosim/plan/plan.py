@@ -15,7 +15,7 @@ import functools
 
 from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
-from ..can.dbc import Message
+from ..can.database import Message
 from ..results.results import ResultVariable
 from ..system.scenario import Event
 from ..system.stimuli import TimeFunction

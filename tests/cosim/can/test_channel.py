@@ -5,50 +5,31 @@ from __future__ import annotations
 import math
 import random
 import timeit
-import tracemalloc
 from collections.abc import Callable
-from fractions import Fraction
 
 import hypothesis
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.can import transmissions as rawlog
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, Saturation, SignalRoute
-from evcosim.cosim.can.dbc import Message, Signal
+from evcosim.cosim.can.database import Signal
 from evcosim.cosim.can.quantization import ChannelError, operation, reference
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.units import Affine
-
-THROTTLE = Signal("Throttle", 0, 8, scale=0.4, minimum=0, maximum=100, unit="%", not_available=255)
-SPEED = Signal("Speed", 8, 8, minimum=0, maximum=254, unit="km/h", not_available=255)
-POWER = Signal("Power", 16, 16, signed=True, minimum=-32000, maximum=32000, unit="W")
-FREE = Signal("Free", 32, 8, signed=True)
-
-settings = st.builds(
-    BusSettings,
-    rounding=st.sampled_from(["nearest", "half_even", "truncate"]),
-    overflow=st.sampled_from(["saturate", "wrap", "error"]),
+from support.channels import (
+    FREE,
+    POWER,
+    SPEED,
+    THROTTLE,
+    cases,
+    channel_of,
+    memory_of,
+    message,
+    settings,
+    signals,
 )
-
-
-def message(*signals: Signal) -> Message:
-    return Message("test.dbc", "M", 1, length=64, signals={s.name: s for s in signals})
-
-
-def memory_of(*values: float, size: int = 40) -> memoryview:
-    memory = memoryview(bytearray(8 * size)).cast("d")
-    for i, value in enumerate(values):
-        memory[i] = value
-    return memory
-
-
-def channel_of(*signals: Signal, use: BusSettings | None = None, log_raw: bool = False) -> MessageChannel:
-    """Signal i goes from slot i to slot 20 + i, in the DBC signal's unit."""
-    routes = [SignalRoute(s, i, Affine(), ((20 + i, Affine()),)) for i, s in enumerate(signals)]
-    return MessageChannel(message(*signals), routes, use, log_raw)
 
 
 def through(signal: Signal, value: float, use: BusSettings | None = None) -> float:
@@ -152,6 +133,28 @@ def test_a_message_is_sampled_whole_or_not_at_all() -> None:
     assert memory[20] == 0.0  # the throttle before it has not arrived either
 
 
+@given(
+    st.lists(st.floats(-400.0, 400.0), min_size=1, max_size=30),
+    st.floats(-1e3, 1e3),
+    st.integers(1, 5),
+    st.integers(0, 8),
+    settings.filter(lambda use: use.overflow != "error"),
+)
+def test_the_recursion(x: list[float], initial: float, every: int, first: int, use: BusSettings) -> None:
+    """y[k] = D(Q(x[k])) if due(k) else y[k - 1], y[-1] = initial, with maps of units on both sides."""
+    into, out = Affine(3.6), Affine(1 / 3.6, 2.0)
+    channel = MessageChannel(message(SPEED), [SignalRoute(SPEED, 0, into, ((20, out),))], use)
+    memory = memory_of()
+    y = memory[20] = initial
+    for k, value in enumerate(x):
+        due = k >= first and (k - first) % every == 0
+        memory[0] = value
+        if due:
+            channel.transmit(memory, k)
+        y = out(reference(SPEED, use, into(value))[1]) if due else y
+        assert memory[20] == y
+
+
 def test_a_receiver_holds_its_value_between_transmissions() -> None:
     channel = channel_of(SPEED)
     memory = memory_of(12.0)
@@ -208,42 +211,6 @@ def test_the_log_keeps_steps_and_raw_values() -> None:
     assert len(channel.log.steps) == 4
 
 
-@given(st.lists(st.integers(0, 2**64 - 1), max_size=12), st.sets(st.integers(0, 11)))
-def test_a_log_in_a_file_is_that_in_memory(raws: list[int], flushes: set[int]) -> None:
-    """Also of integers whose bytes, taken for a double, are a NaN."""
-    wide = Signal("Wide", 0, 64)
-    channels = [MessageChannel(message(wide), [SignalRoute(wide, 0, Affine(), ())], log_raw=True)]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rawlog, "_MEMORY", 0)
-        channels.append(MessageChannel(message(wide), [SignalRoute(wide, 0, Affine(), ())], log_raw=True))
-    for k, raw in enumerate(raws):
-        for channel in channels:
-            channel.transmit(memory_of(min(float(raw), 2.0**64 - 2048)), k)
-        if k in flushes:
-            channels[1].flush()
-    kept, filed = (channel.log for channel in channels)
-    assert kept.steps.tolist() == filed.steps.tolist() == list(range(len(raws)))
-    assert kept.raws["Wide"].tolist() == filed.raws["Wide"].tolist()
-    assert kept.raws["Wide"].tolist() == [min(int(float(raw)), 2**64 - 2048) for raw in raws]
-
-
-def test_a_long_log_is_not_in_memory() -> None:
-    """Three times the transmissions take no more of it, kept or read: not even their own bytes."""
-    peaks = []
-    for count in (60_000, 200_000):
-        channel = channel_of(THROTTLE, POWER, log_raw=True)
-        memory = memory_of(1.0, 2.0)
-        tracemalloc.start()
-        for k in range(count):
-            channel.transmit(memory, k)
-            if k % 1000 == 0:
-                channel.flush()
-        assert sum(len(steps) for steps, _ in channel.log.stretches()) == count
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    assert peaks[1] - peaks[0] < 0.2 * 24 * 140_000
-
-
 def test_without_log_raw_nothing_is_kept() -> None:
     channel = channel_of(THROTTLE)
     channel.transmit(memory_of(1.0), 0)
@@ -281,56 +248,6 @@ def test_a_multiplexed_message_is_refused() -> None:
 
 
 # ---- the generated code against the definition
-
-
-def round_exactly(q: float, rounding: str) -> int:
-    """Independent of the implementation: by exact fractions."""
-    exact = Fraction(q)
-    if rounding == "half_even":
-        return round(exact)
-    if rounding == "truncate":
-        return math.floor(exact) if exact >= 0 else math.ceil(exact)
-    half = Fraction(1, 2)
-    return math.floor(exact + half) if exact >= 0 else math.ceil(exact - half)
-
-
-@given(st.floats(-1e18, 1e18), st.sampled_from(["nearest", "half_even", "truncate"]))
-def test_the_definition_rounds_as_exact_fractions_do(q: float, rounding: str) -> None:
-    wide = Signal("S", 0, 64, signed=True)
-    raw, _ = reference(wide, BusSettings(rounding=rounding), q)  # type: ignore[arg-type] # sampled text
-    assert raw == round_exactly(q, rounding)
-
-
-@st.composite
-def signals(draw: st.DrawFn) -> Signal:
-    is_float = draw(st.integers(0, 5)) == 0
-    length = draw(st.sampled_from([32, 64]) if is_float else st.integers(1, 64))
-    signed = draw(st.booleans())
-    scale = draw(st.sampled_from([1, 2, -1, 3, -7, 0.1, -0.5, 0.4, 0.01, 1 / 3, 1e-3, 1000, 2.0**-20]))
-    offset = draw(st.sampled_from([0, -40, 1000, 0.5, -273.15, 7, 1e6]))
-    signal = Signal("S", 0, length, signed=signed, is_float=is_float, scale=scale, offset=offset)
-    if draw(st.booleans()):
-        first, last = (max(-(2.0**40), min(2.0**40, r)) for r in signal.raw_type_range)
-        ends = [draw(st.floats(first, last)) * scale + offset for _ in range(2)]
-        signal = Signal("S", 0, length, signed=signed, is_float=is_float, scale=scale, offset=offset,
-                        minimum=min(ends), maximum=max(ends))  # fmt: skip # one call
-    return signal
-
-
-@st.composite
-def cases(draw: st.DrawFn) -> tuple[Signal, BusSettings, list[float]]:
-    """A signal, settings, and values that love its edges."""
-    signal, use = draw(signals()), draw(settings)
-    edges = [float(r * signal.scale + signal.offset) for r in signal.raw_type_range]
-    edges += [float(x) for x in (signal.minimum, signal.maximum) if x is not None]
-    near = st.builds(
-        lambda x, d: x + d * signal.scale,
-        st.sampled_from(edges),
-        st.sampled_from([0, 0.5, -0.5, 1, -1, 0.49, -0.49, 2, -2]),
-    )
-    inside = st.floats(min(edges), max(edges)) if all(map(math.isfinite, edges)) else st.floats()
-    values = st.one_of(near, inside, st.floats(), st.sampled_from([math.inf, -math.inf, math.nan, -0.0]))
-    return signal, use, draw(st.lists(values, min_size=1, max_size=12))
 
 
 def outcome(run: Callable[[], tuple[float, float]]) -> tuple[str, ...]:

@@ -23,7 +23,8 @@ from hypothesis import strategies as st
 from evcosim.cosim.can import dbc
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
-from evcosim.cosim.can.dbc import Message, Signal, load_dbc
+from evcosim.cosim.can.database import Message, Signal
+from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.can.quantization import ChannelError
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units import Affine

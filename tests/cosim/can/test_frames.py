@@ -13,15 +13,16 @@ import can
 import cantools
 import pytest
 
-from evcosim.cosim.can import dbc
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
-from evcosim.cosim.can.dbc import Message, Signal, load_dbc, schedule
+from evcosim.cosim.can.database import Message, Signal
+from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.can.frames import BusLog, frames, write_can_log
+from evcosim.cosim.can.send_steps import send_steps
 from evcosim.cosim.can.transmissions import RawLog
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units import Affine
+from support.databases import EV
 
-EV = Path(dbc.__file__).parents[1] / "data" / "can" / "ev.dbc"
 STEP = 0.01
 NAMES = ("EMD_Status", "VCU_Request", "BMS_Status", "MCU_Status")
 SUFFIXES = (".log", ".blf", ".asc")
@@ -49,7 +50,7 @@ class Run:
                 self.send(channel, k)
 
     def send(self, channel: MessageChannel, k: int) -> None:
-        every, first = schedule(channel.message, STEP)
+        every, first = send_steps(channel.message, STEP)
         if k >= first and (k - first) % every == 0:
             channel.transmit(self.memory, k)
             received = {r.signal.name: self.memory[r.sinks[0][0]] for r in channel.routes}

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.can.bus_settings import BusSettings
-from evcosim.cosim.can.dbc import Signal
+from evcosim.cosim.can.database import Signal
 from evcosim.cosim.can.quantization import reference
 from evcosim.cosim.can.resolution import with_resolution
 

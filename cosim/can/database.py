@@ -1,0 +1,214 @@
+"""CAN databases as records of our own, and the rules that a channel relies on.
+
+The words are those of cantools: a raw value is what a frame holds, physical = scale * raw + offset. Rules on
+one message or signal hold when a connection asks for it with `require`, so that a message nobody uses cannot
+stop a run.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import struct
+from pathlib import Path
+
+from ..errors import ConfigError, nearest
+
+_FLOAT_MAX = {32: struct.unpack("<f", b"\xff\xff\x7f\x7f")[0], 64: math.ldexp(2.0 - 2.0**-52, 1023)}
+
+
+@dataclasses.dataclass(frozen=True)
+class Signal:
+    """One signal of a message.
+
+    `start` is the DBC start bit: of the least significant bit where `little_endian`, else of the most
+    significant one. `scale` and `offset` are int where the physical values of all raw values are
+    integers, as in cantools. `minimum`, `maximum` are physical, in `unit`; None: no limit. `start_raw` is
+    the raw value that is sent until a value is known; `not_available` the raw code that says that there
+    is no value. `multiplexer_ids` is empty unless the signal is multiplexed.
+    """
+
+    name: str
+    start: int
+    length: int
+    little_endian: bool = True
+    signed: bool = False
+    is_float: bool = False
+    scale: float | int = 1
+    offset: float | int = 0
+    minimum: float | None = None
+    maximum: float | None = None
+    unit: str = ""
+    choices: dict[int, str] = dataclasses.field(default_factory=dict)
+    start_raw: float | int = 0
+    not_available: int | None = None
+    multiplexer_ids: tuple[int, ...] = ()
+    is_multiplexer: bool = False
+    comment: str = ""
+
+    @property
+    def raw_type_range(self) -> tuple[int, int] | tuple[float, float]:
+        """Least and greatest raw value that `length` bits hold (of a float: the finite ones)."""
+        if self.is_float:
+            return -_FLOAT_MAX[self.length], _FLOAT_MAX[self.length]
+        if self.signed:
+            return -(1 << self.length - 1), (1 << self.length - 1) - 1
+        return 0, (1 << self.length) - 1
+
+    @property
+    def raw_range(self) -> tuple[int, int] | tuple[float, float]:
+        """Least and greatest raw value that may be sent: `not_available` at an end is left out."""
+        low, high = self.raw_type_range
+        return low + (low == self.not_available), high - (high == self.not_available)
+
+    @property
+    def bits(self) -> tuple[int, ...]:
+        """The bits in the message, least significant first; bit b is bit b % 8 of byte b // 8."""
+        if self.little_endian:
+            return tuple(range(self.start, self.start + self.length))
+        # Motorola: from the most significant bit down to bit 0 of a byte, then bit 7 of the next byte
+        position = 8 * (self.start // 8) + 7 - self.start % 8
+        downward = range(position, position + self.length)
+        return tuple(8 * (p // 8) + 7 - p % 8 for p in reversed(downward))
+
+
+@dataclasses.dataclass(frozen=True)
+class Message:
+    """One message.
+
+    `length` is in bytes, `cycle_time` (None: not sent cyclically) and `start_delay` are in s. `file` is
+    where the message stands, for error messages.
+    """
+
+    file: str
+    name: str
+    frame_id: int
+    extended: bool = False
+    length: int = 8
+    cycle_time: float | None = None
+    start_delay: float = 0.0
+    senders: tuple[str, ...] = ()
+    signals: dict[str, Signal] = dataclasses.field(default_factory=dict)
+    fd: bool = False
+    comment: str = ""
+
+    @property
+    def multiplexed(self) -> bool:
+        """True when a signal selects which other signals a frame holds."""
+        return any(s.is_multiplexer for s in self.signals.values())
+
+    def require(self, name: str, place: str = "") -> Signal:
+        """Return the signal `name`, fit for a channel.
+
+        Raises ConfigError, which starts with `place` (who asks), when there is none or it breaks a rule of
+        `check_signal`.
+        """
+        if name not in self.signals:
+            raise ConfigError(
+                f"{prefix(place)}{self.file}: message '{self.name}' has no signal '{name}'"
+                f"{nearest(name, self.signals)}; signals: {', '.join(self.signals) or 'none'}"
+            )
+        signal = self.signals[name]
+        check_signal(self, signal, place)
+        return signal
+
+
+@dataclasses.dataclass(frozen=True)
+class Database:
+    """The messages of a DBC file, by name."""
+
+    path: Path
+    messages: dict[str, Message]
+
+    def require(self, name: str, place: str = "") -> Message:
+        """Return the message `name`.
+
+        Raises ConfigError, which starts with `place` (who asks) and has the nearest name, when there is none.
+        """
+        if name not in self.messages:
+            raise ConfigError(
+                f"{prefix(place)}{self.path}: no message '{name}'{nearest(name, self.messages)}; "
+                f"messages: {', '.join(self.messages) or 'none'}"
+            )
+        return self.messages[name]
+
+
+def prefix(place: str) -> str:
+    """Return the beginning of a message for `place`, which may be nothing."""
+    return f"{place}: " if place else ""
+
+
+def check_signal(message: Message, signal: Signal, place: str = "") -> None:
+    """Raise ConfigError, which starts with `place`, when a receiver could read another value than was sent.
+
+    The rules: the message is not multiplexed and its start values are raw values; a finite scale other than 0
+    and a finite offset; floats of 32 or 64 bits; minimum <= maximum, some value between them can be sent, and
+    none of them is sent as the "not available" code.
+    """
+    for problem in (_message_problem(message), _unsupported(signal), _range_problem(signal)):
+        if problem:
+            raise ConfigError(f"{prefix(place)}{message.file}: {message.name}.{signal.name}: {problem}")
+
+
+def _message_problem(message: Message) -> str:
+    """Return the rule that the message breaks, with the values; "" for none. So do the next two."""
+    if message.multiplexed:
+        return "the message is multiplexed; a connection needs one whose frames all hold the same signals"
+    for s in message.signals.values():
+        low, high = s.raw_type_range
+        if not low <= s.start_raw <= high or (not s.is_float and s.start_raw != int(s.start_raw)):
+            return f"the start value {s.start_raw} of {s.name} is no raw value of {_bits(s)}"
+    return ""
+
+
+def _bits(signal: Signal) -> str:
+    if signal.is_float:
+        return f"a {signal.length}-bit float"
+    return f"{signal.length} {'signed' if signal.signed else 'unsigned'} bits"
+
+
+def _unsupported(signal: Signal) -> str:
+    if signal.is_float and signal.length not in _FLOAT_MAX:
+        return f"a float of {signal.length} bits; 32 or 64 are supported"
+    if signal.scale == 0 or not math.isfinite(signal.scale) or not math.isfinite(signal.offset):
+        return f"scale {signal.scale} and offset {signal.offset}: no value can be told from another"
+    return ""
+
+
+def _range_problem(signal: Signal) -> str:
+    low, high = signal.minimum, signal.maximum
+    if low is not None and high is not None and low > high:
+        return f"minimum {low} is above maximum {high}"
+    if signal.is_float:
+        return ""
+    raw_low, raw_high, least, greatest = _raw_limits(signal)
+    if raw_low > raw_high:
+        return f"no value in [{low}, {high}] fits into {_bits(signal)}"
+    code = signal.not_available
+    if code is None or not raw_low <= code <= raw_high:
+        return ""
+    if (least is None and code == raw_low) or (greatest is None and code == raw_high):
+        return ""  # no limit was written on that side, so the raw range ends before the code
+    return (
+        f"values in [{low}, {high}] are sent as raw {raw_low} to {raw_high}, but raw {code} means not "
+        f"available; give the signal a minimum and maximum that leave {code} out"
+    )
+
+
+def _raw_limits(signal: Signal) -> tuple[int, int, float | None, float | None]:
+    """Return the least and the greatest raw value of any rounding to the nearest.
+
+    The other two are minimum and maximum in raw steps, the one that limits the least raw value first; None:
+    no limit.
+    """
+    limits = (signal.minimum, signal.maximum) if signal.scale > 0 else (signal.maximum, signal.minimum)
+    least, greatest = (_in_raw_steps(limit, signal) if limit is not None else None for limit in limits)
+    first, last = (int(raw) for raw in signal.raw_type_range)
+    raw_low = first if least is None else max(first, math.ceil(least - 0.5))
+    raw_high = last if greatest is None else min(last, math.floor(greatest + 0.5))
+    return raw_low, raw_high, least, greatest
+
+
+def _in_raw_steps(value: float, signal: Signal) -> float:
+    """Return a physical value in raw steps, kept finite."""
+    return max(-1e30, min(1e30, (value - signal.offset) / signal.scale))
