@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from .cosim.can.bus_settings import BusVariation
     from .cosim.errors import ConfigError, RunError
     from .cosim.results.metrics import Metric
-    from .cosim.results.results import Results, ResultVariable
+    from .cosim.results.results import Results
+    from .cosim.results.variable import ResultVariable
     from .cosim.system.identification_spec import IdentificationSpec
     from .cosim.system.run_options import RunOptions
     from .cosim.system.scenario import Scenario, load_scenario
@@ -69,7 +70,7 @@ _MODULES = {
     "IdentificationSpec": "cosim.system.identification_spec",
     "Metric": "cosim.results.metrics",
     "Outcome": "master.studies.parallel",
-    "ResultVariable": "cosim.results.results",
+    "ResultVariable": "cosim.results.variable",
     "Results": "cosim.results.results",
     "RunError": "cosim.errors",
     "RunOptions": "cosim.system.run_options",
