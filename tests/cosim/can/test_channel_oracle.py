@@ -237,7 +237,7 @@ def lines_of(message: Message, rounding: str) -> dict[str, Line]:
     return found
 
 
-@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.settings(max_examples=150)
 @given(databases(), st.data())
 def test_a_random_message_is_what_cantools_encodes_and_decodes(text: str, data: st.DataObject) -> None:
     message, codec = load_text(text)
@@ -255,7 +255,7 @@ def test_a_random_message_is_what_cantools_encodes_and_decodes(text: str, data: 
         assert line.raws()[-1] == raw_values[name]
 
 
-@hypothesis.settings(max_examples=150, deadline=None)
+@hypothesis.settings(max_examples=150)
 @given(databases(), st.data(), st.sampled_from(ROUNDINGS))
 def test_relations(text: str, data: st.DataObject, rounding: str) -> None:
     message, _ = load_text(text)
