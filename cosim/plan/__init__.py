@@ -1,1 +1,1 @@
-"""From files and interfaces to the plan of a run."""
+"""The plan of a run: every value has a slot of one array, and the schedule refers to slots alone."""

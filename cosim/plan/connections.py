@@ -1,4 +1,4 @@
-"""The connections of a system, resolved: routes within a step, messages on buses, what drives each input."""
+"""The connections of a system, resolved: routes within a step, messages on buses, a driver for each input."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .unit_plan import Route
 
 @dataclasses.dataclass
 class Network:
-    """What `connect` found; inputs by "unit.variable"."""
+    """The resolved connections: routes by receiving unit; `inputs` and `initial` by "unit.variable"."""
 
     routes: dict[str, list[Route]]
     links: list[Link] = dataclasses.field(default_factory=list)
@@ -33,26 +33,30 @@ class Network:
     warnings: list[str] = dataclasses.field(default_factory=list)
 
     def drive(self, name: str, plan: InputPlan, place: str) -> None:
-        """Note what drives an input. Raises ConfigError when something drives it already."""
+        """Note the driver of an input. Raises ConfigError when something drives it already."""
         if name in self.inputs:
             raise ConfigError(f"{place}: {name} is driven already, by {self.inputs[name].driver}")
         self.inputs[name] = plan
 
     def add_mailbox(self, unit: str, name: str, slots: Slots, driver: str) -> int:
-        """Give an input a mailbox and the route from it."""
+        """Give an input a mailbox and the route from it; return the mailbox's slot."""
         mailbox, slot = slots.take(1), slots.valid[unit, name]
         self.routes[unit].append(Route(mailbox, slot))
         self.inputs[f"{unit}.{name}"] = InputPlan(slot, mailbox, driver)
         return mailbox
 
     def input_of(self, name: str, interfaces: Mapping[str, UnitInterface], place: str) -> tuple[str, str]:
-        """Split "unit.variable" of an input. Raises ConfigError with the nearest name there is."""
+        """Return unit and variable of the input "unit.variable".
+
+        Raises ConfigError with the nearest name when there is no such input.
+        """
         return _split(name, ("input",), interfaces, place)
 
 
 def _split(
     name: str, causalities: Sequence[str], interfaces: Mapping[str, UnitInterface], place: str
 ) -> tuple[str, str]:
+    """Return unit and variable of "unit.variable". Raises ConfigError where it has another causality."""
     unit, _, variable = name.partition(".")
     if unit not in interfaces:
         raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
@@ -62,7 +66,11 @@ def _split(
 
 @dataclasses.dataclass
 class _Connector:
-    """The inputs of `connect`, in one place for its helpers."""
+    """The arguments of `connect` and what it has found so far, for its helpers.
+
+    By (bus, message): `senders` are the sending variables by signal, `signal_routes` the routes of the
+    signals.
+    """
 
     system: System
     interfaces: Mapping[str, UnitInterface]
@@ -84,7 +92,7 @@ def connect(
     algorithm: Algorithm,
     ideal: bool,
 ) -> Network:
-    """Resolve the connections between the participating units; `every` is each unit's period in steps.
+    """Return the resolved connections of the participating units; `every` is each unit's period in steps.
 
     A connection of a unit that was left out is dropped; with `ideal` a bus signal becomes a direct
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
@@ -115,6 +123,7 @@ def _place(system: System, connection: Connection) -> str:
 
 
 def _connect(work: _Connector, connection: Connection) -> None:
+    """Resolve one connection, if its sender takes part."""
     place = _place(work.system, connection)
     if connection.source.partition(".")[0] not in work.interfaces:
         return  # the sender was left out: its receivers are free inputs
@@ -136,6 +145,7 @@ def _connect(work: _Connector, connection: Connection) -> None:
 
 
 def _direct(work: _Connector, source: tuple[str, str], sink: tuple[str, str], place: str) -> None:
+    """Resolve a connection without a bus: a route within the step."""
     sender, receiver = _variable(work, source), _variable(work, sink)
     _check_types(source, sender, sink, receiver, place)
     map_ = _unit_map(
@@ -157,20 +167,25 @@ def _over_bus(
     signal: Signal,
     place: str,
 ) -> None:
+    """Resolve a connection over a bus: a signal's route into mailboxes, and routes from them.
+
+    Raises ConfigError when the signal has a sender already, a receiver another driver, or a receiver that is
+    not Real cannot receive the signal's values.
+    """
     bus = str(connection.via).split(".")[0]
     key = (bus, message.name)
     senders = work.senders.setdefault(key, {})
     if signal.name in senders:
         raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
     senders[signal.name] = connection.source
-    wire: _End = (connection.via or "", signal.unit, {})
+    on_bus: _End = (connection.via or "", signal.unit, {})
     sender = _variable(work, source)
-    to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), wire, place)
+    to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), on_bus, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
     ends = []
     for sink in sinks:
         receiver = _variable(work, sink)
-        to_receiver = _unit_map(work, wire, (".".join(sink), receiver.unit, _defined_by(work, sink)), place)
+        to_receiver = _unit_map(work, on_bus, (".".join(sink), receiver.unit, _defined_by(work, sink)), place)
         if receiver.type != "Real" and not (
             float(signal.scale).is_integer() and float(signal.offset).is_integer()
         ):
@@ -196,8 +211,10 @@ def _coarser(
     ends: Sequence[tuple[str, str]],
     place: str,
 ) -> Signal:
-    """The signal in the resolution that the bus asks for. A state or a count, which stands behind a variable
-    that is not Real, has no resolution."""
+    """Return the signal in the resolution that the bus asks for.
+
+    A state or a count, which stands behind a variable that is not Real, has no resolution.
+    """
     resolution = work.system.file.buses[bus].resolution
     if resolution == 1.0 or any(_variable(work, end).type != "Real" for end in ends):
         return signal
@@ -207,6 +224,7 @@ def _coarser(
 
 
 def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signal]:
+    """Return message and signal of "bus.message.signal". Raises ConfigError when there is none."""
     bus, message_name, signal_name = via.split(".")
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
@@ -223,6 +241,11 @@ def _message(
     algorithm: Algorithm,
     order: list[str],
 ) -> MessagePlan:
+    """Return the plan of one message. Raises ConfigError when its times are no multiples of the step.
+
+    Under `gauss_seidel` it is sent after the last of its senders, by `order`, with an output that is not
+    continuous.
+    """
     message = work.databases[bus].require(name)
     settings, step_size = work.system.file.buses[bus], experiment.step_size
     every, first = send_steps(message, step_size, str(work.system.path))
@@ -256,7 +279,7 @@ def _message(
 
 
 def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
-    """The route into slots of its own instead of mailboxes; `arrivals` gets the pairs (slot, mailbox)."""
+    """Return the route into slots of its own; add the pairs of these and the mailboxes to `arrivals`."""
     sinks = [(slots.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
     arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
     return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))
@@ -275,9 +298,10 @@ _End = tuple[str, str, Mapping[str, UnitOfMeasure]]
 
 
 def _unit_map(work: _Connector, source: _End, target: _End, place: str) -> Affine:
-    """The map from the unit of `source` to that of `target`.
+    """Return the map from the unit of `source` to that of `target`; the identity where one has none.
 
-    Each FMU's own definition comes first, then those of the others (a DBC defines none), then pint's.
+    Each FMU's own definition comes first, then those of the others (a DBC defines none), then pint's. Raises
+    ConfigError, which starts with `place`, when they measure different quantities.
     """
     (source_name, source_unit, source_defs), (target_name, target_unit, target_defs) = source, target
     if source_unit == target_unit and not (source_defs and target_defs):
@@ -299,6 +323,7 @@ def _unit_map(work: _Connector, source: _End, target: _End, place: str) -> Affin
 def _note_missing_unit(
     work: _Connector, source_name: str, source_unit: str, target_name: str, target_unit: str
 ) -> None:
+    """Add a warning of an end without a unit of measure, unless the other end measures nothing either."""
     if {source_unit, target_unit} <= {"", "1"}:
         return
     bare, other = (source_name, target_unit) if not source_unit else (target_name, source_unit)
@@ -308,6 +333,7 @@ def _note_missing_unit(
 def _check_types(
     source: tuple[str, str], sender: VariableInfo, sink: tuple[str, str], receiver: VariableInfo, place: str
 ) -> None:
+    """Raise ConfigError unless a direct connection can take the sender's FMI type to the receiver's."""
     whole = ("Integer", "Enumeration")
     fits = (
         sender.type == receiver.type

@@ -1,11 +1,11 @@
-"""What a run does, resolved to slots of one array: the schedule that every engine runs.
+"""The plan of a run, resolved to slots of one array: every engine runs it.
 
-All values of a run stand in one float64 array, `memory`. Each recorded input and output has a slot;
-Integer, Boolean and Enumeration values are stored as floats. A continuous output has two slots: `valid`
-holds its value at the current communication point t_k, `latest` the one after the unit's last step
-(t_{k+1} once it has stepped). An input over a bus, or one that nothing drives, has a mailbox beside its
-slot: the value last received, or set by the user. An input slot is written from its route each step,
-so an override or a bias acts on what the unit receives and never on what was sent.
+All values of a run stand in one float64 array, `memory` of shape (memory_size,). Each input, and each output
+that is recorded or connected, has a slot; Integer, Boolean and Enumeration values are stored as floats. A
+continuous output has two slots: `valid` holds its value at the current communication point t_k, `latest` the
+one after the unit's last step (t_{k+1} once it has stepped). An input over a bus, or one that nothing drives,
+has a mailbox beside its slot: the value last received, or set by the user. An input slot is written from its
+route each step, so an override or a bias acts on what the unit receives and never on what was sent.
 """
 
 from __future__ import annotations
@@ -23,8 +23,6 @@ from ..system.system import Algorithm, Experiment
 from ..units import Affine
 from .unit_plan import UnitPlan
 
-__all__ = ["Drive", "InputPlan", "Link", "MessagePlan", "Plan"]
-
 
 @dataclasses.dataclass(frozen=True)
 class Link:
@@ -37,7 +35,7 @@ class Link:
 
 @dataclasses.dataclass(frozen=True)
 class Drive:
-    """A stimulus: `signal` over time in its own unit, mapped, drives the input slot `sink`."""
+    """A stimulus: `signal` over time in its own unit, converted by `map`, drives the input slot `sink`."""
 
     variable: str
     sink: int
@@ -49,9 +47,10 @@ class Drive:
 class MessagePlan:
     """A message that is sent at the steps k with k >= first and (k - first) % every == 0.
 
-    It is sampled at the start of the step (`after` is None), or right after the turn of the unit with
-    index `after`, where signals of variability discrete come from that unit's step. `senders` are the
-    variables behind the signals, for messages to the user.
+    It is sampled at the start of the step (`after` is None), or right after the turn of the unit with index
+    `after`, where signals of variability discrete come from that unit's step. `settings` are those of its
+    bus; `every`, `delay` and the signals of `message` follow from them. `senders` are the variables behind
+    the signals, for messages to the user.
 
     With a `delay` of d > 0 steps the routes end in slots of their own, and what a transmission writes there
     reaches the mailboxes d steps later, at the same place in the step: `arrivals` are the pairs (slot,
@@ -72,7 +71,12 @@ class MessagePlan:
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """A system with a scenario, ready to run. Times in s; `steps` communication steps to the stop time."""
+    """A system with a scenario, ready to run: `steps` communication steps to the stop time.
+
+    `events` have the step at which each happens, in order. `inputs` are by "unit.variable"; column j of the
+    results shows the slot `column_slots[j]`. `initial` are the values of slots, in the inputs' own units,
+    before anything was computed or received.
+    """
 
     system: str
     scenario: str
@@ -94,7 +98,7 @@ class Plan:
 
     @functools.cached_property
     def slots(self) -> dict[str, int]:
-        """The slots that show the recorded variables at the current communication point, by name."""
+        """The slots that show the recorded variables at the communication point, by "unit.variable"."""
         return {c.name: slot for c, slot in zip(self.columns, self.column_slots, strict=True)}
 
 

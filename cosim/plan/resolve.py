@@ -1,4 +1,4 @@
-"""From a system, a scenario and the units' interfaces to the plan of a run; every error is found here."""
+"""From a system, a scenario and the units' interfaces to the plan of a run, or what is wrong in them."""
 
 from __future__ import annotations
 
@@ -22,11 +22,15 @@ from .steps import steps_in
 from .unit_plan import UnitPlan
 
 _MOST_VALUES = 2**31
-"""What a run records stays in memory: 16 GiB."""
+"""Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole
+table, as `Results.data` is, needs that much memory."""
 
 
 def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
-    """The units that take part, in the order in which they step."""
+    """Return the units that take part, in the order in which they step.
+
+    Raises ConfigError when the scenario leaves out a unit that there is not, or all.
+    """
     units = dict(system.file.units)
     for name in scenario.file.leave_out:
         if name not in units:
@@ -42,7 +46,7 @@ def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
 def resolve(
     system: System, scenario: Scenario, interfaces: Mapping[str, UnitInterface], options: RunOptions
 ) -> Plan:
-    """The plan of a run. `interfaces` are those of the participating units, in their order.
+    """Return the plan of a run. `interfaces` are those of the participating units, in their order.
 
     Raises ConfigError naming place, rule and values, before any unit is instantiated.
     """
@@ -96,7 +100,7 @@ def resolve(
 
 
 def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
-    """How the results describe a variable of a unit."""
+    """Return the description that results give of a variable of a unit."""
     return ResultVariable(
         name=f"{unit}.{v.name}",
         unit=v.unit,
@@ -120,7 +124,11 @@ def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tupl
 
 
 def _steps(experiment: Experiment, columns: int, place: str) -> int:
-    """How many steps the run has, each recorded in so many columns."""
+    """Return the number of steps of the run, each recorded in so many columns.
+
+    Raises ConfigError when the stop time is no whole number of steps after the start, or too much is
+    recorded.
+    """
     duration = experiment.stop_time - experiment.start_time
     if not (math.isfinite(duration) and duration > 0.0):
         raise ConfigError(
@@ -137,11 +145,12 @@ def _steps(experiment: Experiment, columns: int, place: str) -> int:
 
 
 def _every(period: float | None, step_size: float, place: str) -> int:
+    """Return a unit's period [s] in communication steps (None: it steps at each)."""
     return 1 if period is None else _multiple(period, step_size, place)
 
 
 def _multiple(time: float, step_size: float, place: str) -> int:
-    """How many steps `time` is, at least one."""
+    """Return how many steps of `step_size` [s] the `time` [s] is. Raises ConfigError for less than one."""
     if (count := steps_in(time, step_size, place)) < 1:
         raise ConfigError(f"{place} = {time} s is not a multiple of the communication step {step_size} s")
     return count
@@ -154,7 +163,10 @@ def _parameters(
     interfaces: Mapping[str, UnitInterface],
     options: RunOptions,
 ) -> dict[str, dict[str, Value]]:
-    """Every unit's parameters: the system's, then the scenario's, then the user's."""
+    """Return every unit's parameters by name: the user's, else the scenario's, else the system's.
+
+    Each value is in its parameter's own type and unit. Raises ConfigError as `checked` does.
+    """
     given: list[tuple[str, str, str, Value]] = []
     for unit, entry in entries.items():
         given += [
@@ -177,6 +189,7 @@ def _parameters(
 def _starts(
     system: System, scenario: Scenario, unit: str, entry: UnitEntry, interface: UnitInterface
 ) -> dict[str, Value]:
+    """Return the start values of a unit's inputs by name: the scenario's, else the system's."""
     starts = {}
     given = {
         name: (f"{system.path}: units.{unit}.start.{name}", value) for name, value in entry.start.items()
@@ -190,7 +203,10 @@ def _starts(
 
 
 def checked(value: Any, variable: VariableInfo, place: str) -> Value:
-    """The value in the variable's type. Raises ConfigError when it has another type or is out of range."""
+    """Return the value, given in the variable's unit, in the variable's type.
+
+    Raises ConfigError, which starts with `place`, when it has another type or is out of range.
+    """
     unit = f" {variable.unit}" if variable.unit else ""
     if variable.type == "String":
         if not isinstance(value, str):
@@ -218,6 +234,7 @@ def checked(value: Any, variable: VariableInfo, place: str) -> Value:
 
 
 def _item(name: str, variable: VariableInfo, place: str) -> int:
+    """Return the number of an enumeration's item. Raises ConfigError when there is no such item."""
     values = {text: number for number, text in variable.items}
     if name not in values:
         raise ConfigError(
@@ -229,6 +246,10 @@ def _item(name: str, variable: VariableInfo, place: str) -> int:
 def _drives(
     scenario: Scenario, interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots
 ) -> tuple[Drive, ...]:
+    """Return the stimuli of a scenario, each noted as what drives its input in `network`.
+
+    Raises ConfigError when an input is driven already, or its unit measures another quantity.
+    """
     drives = []
     for number, entry in enumerate(scenario.file.stimuli):
         place = f"{scenario.path}: stimulus {number + 1} ({entry.to})"
@@ -248,6 +269,7 @@ def _drives(
 
 
 def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots) -> None:
+    """Give a mailbox to every input that nothing drives."""
     for unit, interface in interfaces.items():
         for v in interface.of_causality("input"):
             if v.type != "String" and f"{unit}.{v.name}" not in network.inputs:
@@ -257,7 +279,10 @@ def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Net
 def _initial(
     interfaces: Mapping[str, UnitInterface], starts: Mapping[str, Mapping[str, Value]], network: Network
 ) -> dict[int, float]:
-    """What stands in the inputs and mailboxes before anything was computed or received."""
+    """Return the values of the inputs' slots and mailboxes before anything was computed or received.
+
+    A value is the connection's `initial`, else the start given in a file, else the FMU's; 0 for a String.
+    """
     values = {}
     for name, plan in network.inputs.items():
         unit, _, variable = name.partition(".")

@@ -1,4 +1,4 @@
-"""Where each value of a run stands in memory."""
+"""The slot of each value of a run in memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NUMERIC = ("Real", "Integer", "Enumeration", "Boolean")
 
 @dataclasses.dataclass
 class Slots:
-    """Slots given out so far. `valid` and `latest` map (unit, variable) to slots (see `plan`)."""
+    """The `size` slots given out so far. `valid` and `latest` map (unit, variable) to slots (see `plan`)."""
 
     size: int = 0
     valid: dict[tuple[str, str], int] = dataclasses.field(default_factory=dict)
@@ -23,24 +23,27 @@ class Slots:
     groups: dict[str, list[SlotGroup]] = dataclasses.field(default_factory=dict)
 
     def take(self, count: int) -> int:
-        """The first of `count` new slots."""
+        """Return the first of `count` new slots."""
         first = self.size
         self.size += count
         return first
 
     def source(self, unit: str, name: str, every: int) -> int:
-        """The slot that a receiver reads: within the same step what is latest, but a unit that steps only
-        every `every` > 1 steps has looked ahead, so what it shows is what is valid."""
+        """Return the slot that a receiver reads of an output of a unit with a period of `every` steps.
+
+        Within the same step it is the latest value. A unit with every > 1 has stepped beyond the next
+        communication point, so receivers read the valid value.
+        """
         return self.latest.get((unit, name), self.valid[unit, name]) if every == 1 else self.valid[unit, name]
 
 
 def allot(
     interfaces: Mapping[str, UnitInterface], record: Iterable[str], needed: set[str], place: str
 ) -> tuple[Slots, list[tuple[str, VariableInfo]]]:
-    """Give every input, and every recorded or `needed` (connected) output, its slots.
+    """Return slots for every input, and every recorded or `needed` (connected) output; and what is recorded.
 
-    Returns the slots and the recorded variables in the units' order. Raises ConfigError when a pattern
-    of `record` fits no variable.
+    The second are pairs of a unit's name and a variable, in the units' order. Raises ConfigError, which
+    starts with `place`, when a pattern of `record` fits no variable.
     """
     recorded = _recorded(interfaces, tuple(record), place)
     slots = Slots()
@@ -65,6 +68,7 @@ def allot(
 
 
 def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...], place: str) -> set[str]:
+    """Return the names that fit a pattern. Raises ConfigError for a pattern that fits no variable."""
     shown = {
         f"{unit}.{v.name}": v.causality
         for unit, interface in interfaces.items()
@@ -83,7 +87,7 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
 
 
 def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
-    """Why a variable that there is cannot be recorded ("": there is none of this name)."""
+    """Return why a variable that there is cannot be recorded ("": there is none of this name)."""
     unit, _, variable = name.partition(".")
     if unit not in interfaces:
         return ""
@@ -98,6 +102,7 @@ def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
 def _slotted(
     unit: str, interface: UnitInterface, wanted: set[str]
 ) -> tuple[list[VariableInfo], list[VariableInfo]]:
+    """Return the inputs, and the outputs and local variables that are `wanted` as "unit.variable"."""
     numeric = [v for v in interface.variables.values() if v.type in _NUMERIC]
     inputs = [v for v in numeric if v.causality == "input"]
     outputs = [v for v in numeric if v.causality in ("output", "local") and f"{unit}.{v.name}" in wanted]
@@ -107,6 +112,7 @@ def _slotted(
 def _outputs_by_kind(
     outputs: list[VariableInfo], inputs: set[str]
 ) -> list[tuple[str, list[VariableInfo], int]]:
+    """Return slot groups to be made: kind, members, and how many members depend on an input at once."""
     discrete = [v for v in outputs if v.variability != "continuous"]
     continuous = [v for v in outputs if v.variability == "continuous"]
     through = [v for v in continuous if v.depends and not inputs.isdisjoint(v.depends)]
@@ -117,6 +123,7 @@ def _outputs_by_kind(
 def _slot_groups(
     slots: Slots, unit: str, kind: str, variables: list[VariableInfo], feedthrough: int
 ) -> list[SlotGroup]:
+    """Return the groups of one kind, one for each FMI type, with slots that stand side by side."""
     made = []
     for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",)):
         members = tuple(v for v in variables if v.type in types)
@@ -129,6 +136,7 @@ def _slot_groups(
 
 
 def _with_latest(slots: Slots, unit: str, group: SlotGroup) -> SlotGroup:
+    """Return the group with slots for its values after the step, if it is continuous."""
     if group.kind != "continuous":
         return group
     latest = slots.take(len(group.variables))

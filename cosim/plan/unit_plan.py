@@ -1,6 +1,7 @@
-"""What one unit does in a run, as part of the plan (see `plan`).
+"""The part of one unit in the plan of a run (see `plan`).
 
-It stands apart since it is all that the process of an isolated unit needs to know, which shall start quickly.
+It stands apart since it is all that the process of an isolated unit loads of the plan, which must start
+quickly.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class SlotGroup:
 
 @dataclasses.dataclass(frozen=True)
 class Route:
-    """Before a unit's step the value in slot `source`, mapped, is written to the input slot `sink`."""
+    """The way of a value into a unit: before its step, slot `source`, converted by `map`, goes to `sink`."""
 
     source: int
     sink: int
@@ -49,7 +50,7 @@ class Route:
 
 @dataclasses.dataclass(frozen=True)
 class UnitPlan:
-    """One unit: what it is given before the start, its slot groups, and its routes.
+    """One unit: its values before the start by variable name, its slot groups, and its routes.
 
     It steps at every communication step k with k % every == 0, `substeps` FMU steps each time.
     """

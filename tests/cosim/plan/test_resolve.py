@@ -5,120 +5,9 @@ from __future__ import annotations
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.system.system import SystemFile, load_system
 from evcosim.cosim.system.toml import read_toml, validate
-from evcosim.cosim.units import Affine, UnitOfMeasure
-from support.mocks import MockUnit, plan_of, real
-
-SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
-DEFINED = {
-    "m/s": UnitOfMeasure("m/s", SPEED),
-    "km/h": UnitOfMeasure("km/h", SPEED, 1 / 3.6),
-    "N": UnitOfMeasure("N", (1, 1, -2, 0, 0, 0, 0, 0)),
-    "%": UnitOfMeasure("%", (0,) * 8, 0.01),
-}
-
-
-def unit(name: str, *variables: VariableInfo) -> MockUnit:
-    mock = MockUnit(name, list(variables))
-    mock.interface = UnitInterface(f"{name}.fmu", mock.interface.variables, DEFINED)
-    return mock
-
-
-def car() -> MockUnit:
-    return unit(
-        "car",
-        real("throttle", "input", unit="%"),
-        real("grade", "input"),
-        real("speed", "output", unit="m/s"),
-        real("force", "output", unit="N"),
-        VariableInfo("gear", "Integer", "output", "discrete"),
-        real("mass", "parameter", unit="kg", start=200.0, min=1.0, max=1e4),
-        VariableInfo("sport", "Boolean", "parameter", "fixed", start=False),
-        VariableInfo("mode", "Enumeration", "parameter", "fixed", start=0, items=((0, "eco"), (1, "fast"))),
-        VariableInfo("count", "Integer", "parameter", "fixed", start=0),
-    )
-
-
-def ecu() -> MockUnit:
-    return unit(
-        "ecu",
-        real("speed", "input", unit="km/h", start=0.0),
-        VariableInfo("flag", "Boolean", "input", "discrete", start=False),
-        real("throttle", "output", unit="%", variability="discrete"),
-    )
-
-
-def plan(connect, scenario=None, **more):
-    options = more.pop("options", {})
-    return plan_of([ecu(), car()], {"connect": connect, **more}, scenario, **options)
-
-
-BUS = {"buses": {"can0": {"dbc": "can/ev.dbc"}}}
-SENT = {"from": "car.speed", "to": ["ecu.speed"], "via": "can0.EMD_Status.EMD_VehicleSpeed"}
-
-
-def test_a_direct_connection_converts_units():
-    (route,) = [
-        r for r in plan([{"from": "car.speed", "to": ["ecu.speed"]}]).units[0].routes if not r.map.identity
-    ]
-    assert route.map == Affine(3.6)
-
-
-def test_a_bus_connection_converts_on_both_sides():
-    (message,) = plan([SENT], **BUS).messages
-    (signal,) = message.routes
-    assert signal.to_bus == Affine(3.6)  # m/s to the signal's km/h
-    assert [map_ for _, map_ in signal.sinks] == [Affine()]
-    assert (message.every, message.first) == (1, 0)
-
-
-def test_ideal_leaves_the_bus_out():
-    assert plan([SENT], **BUS, options={"ideal": True}).messages == ()
-
-
-@pytest.mark.parametrize(
-    ("connect", "said"),
-    [
-        (
-            [{"from": "car.spede", "to": ["ecu.speed"]}],
-            r"'car' has no variable 'spede' \(did you mean 'speed'\?\)",
-        ),
-        ([{"from": "caar.speed", "to": ["ecu.speed"]}], r"no unit 'caar' \(did you mean 'car'\?\)"),
-        (
-            [{"from": "car.speed", "to": ["ecu.sped"]}],
-            r"'ecu' has no variable 'sped' \(did you mean 'speed'\?\)",
-        ),
-        ([{"from": "ecu.speed", "to": ["car.throttle"]}], "causality input, not output or local"),
-        ([{"from": "car.speed", "to": ["ecu.throttle"]}], "causality output, not input"),
-        (
-            [{"from": "car.speed", "to": ["car.throttle"]}],
-            r"car.speed \[m/s\] cannot feed car.throttle \[%\]: .*different quantities",
-        ),
-        ([{"from": "car.speed", "to": ["ecu.flag"]}], "car.speed is of type Real, ecu.flag of type Boolean"),
-        ([{"from": "car.speed"}], "needs a receiver in 'to' or a signal in 'via'"),
-        (
-            [{"from": "car.speed", "to": ["ecu.speed"]}, {"from": "car.speed", "to": ["ecu.speed"]}],
-            "ecu.speed is driven already, by car.speed",
-        ),
-        ([SENT | {"via": "can1.EMD_Status.EMD_VehicleSpeed"}], r"no bus 'can1' \(did you mean 'can0'\?\)"),
-        (
-            [SENT | {"via": "can0.EMD_Stats.EMD_VehicleSpeed"}],
-            r"no message 'EMD_Stats' \(did you mean 'EMD_Status'",
-        ),
-        ([SENT | {"via": "can0.EMD_Status.EMD_Speed"}], "no signal 'EMD_Speed'"),
-        ([SENT | {"from": "car.force"}], r"car.force \[N\] cannot feed .* \[km/h\]"),
-        ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed"),
-    ],
-)
-def test_a_wrong_connection_is_named(connect, said):
-    for ideal in (False, True):
-        if ideal and "sent already" in said:
-            continue  # without the bus there is no signal to send twice
-        with pytest.raises(ConfigError, match=said) as caught:
-            plan(connect, **BUS, options={"ideal": ideal})
-        assert "mocks.toml: connect" in str(caught.value)
+from support.car import plan
 
 
 @pytest.mark.parametrize(
@@ -151,15 +40,6 @@ def test_parameters_user_before_scenario_before_system():
     assert changed.units[1].parameters["mass"] == 180.0
 
 
-def test_a_unit_left_out_frees_its_receivers():
-    connect = [{"from": "ecu.throttle", "to": ["car.throttle"]}, {"from": "car.speed", "to": ["ecu.speed"]}]
-    both = plan_of([ecu(), car()], {"connect": connect})
-    assert both.inputs["car.throttle"].driver == "ecu.throttle"
-    alone = plan_of([ecu(), car()], {"connect": connect}, {"leave_out": ["ecu"]})
-    assert [u.name for u in alone.units] == ["car"]
-    assert alone.inputs["car.throttle"].driver == ""
-
-
 @pytest.mark.parametrize(
     ("scenario", "said"),
     [
@@ -183,18 +63,6 @@ def test_a_unit_left_out_frees_its_receivers():
 def test_a_wrong_scenario_is_named(scenario, said):
     with pytest.raises(ConfigError, match=said):
         plan([{"from": "car.speed", "to": ["ecu.speed"]}], scenario)
-
-
-def test_what_is_recorded():
-    names = [c.name for c in plan([], record=["car.*"]).columns]
-    assert names == ["car.throttle", "car.grade", "car.speed", "car.force", "car.gear"]
-    assert [c.name for c in plan([], record=["*.speed"]).columns] == ["ecu.speed", "car.speed"]
-
-
-def test_a_missing_unit_of_measure_is_said():
-    bare = unit("car", real("speed", "output"))
-    plan_ = plan_of([ecu(), bare], {"connect": [{"from": "car.speed", "to": ["ecu.speed"]}]})
-    assert plan_.warnings == ("car.speed declares no unit of measure; it is taken as [km/h]",)
 
 
 # ---- the files

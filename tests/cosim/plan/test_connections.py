@@ -1,0 +1,159 @@
+"""Connections: routes, messages and drivers, and every wrong one refused with place, rule and values."""
+
+from __future__ import annotations
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.interface import VariableInfo
+from evcosim.cosim.system.system import BusEntry
+from evcosim.cosim.units import Affine
+from support.car import BUS, SENT, car, ecu, plan, unit
+from support.mocks import plan_of, real
+
+
+def test_a_direct_connection_converts_units():
+    (route,) = [
+        r for r in plan([{"from": "car.speed", "to": ["ecu.speed"]}]).units[0].routes if not r.map.identity
+    ]
+    assert route.map == Affine(3.6)
+
+
+def test_a_bus_connection_converts_on_both_sides():
+    (message,) = plan([SENT], **BUS).messages
+    (signal,) = message.routes
+    assert signal.to_bus == Affine(3.6)  # m/s to the signal's km/h
+    assert [map_ for _, map_ in signal.sinks] == [Affine()]
+    assert (message.every, message.first) == (1, 0)
+
+
+def test_ideal_leaves_the_bus_out():
+    assert plan([SENT], **BUS, options={"ideal": True}).messages == ()
+
+
+@pytest.mark.parametrize(
+    ("connect", "said"),
+    [
+        (
+            [{"from": "car.spede", "to": ["ecu.speed"]}],
+            r"'car' has no variable 'spede' \(did you mean 'speed'\?\)",
+        ),
+        ([{"from": "caar.speed", "to": ["ecu.speed"]}], r"no unit 'caar' \(did you mean 'car'\?\)"),
+        (
+            [{"from": "car.speed", "to": ["ecu.sped"]}],
+            r"'ecu' has no variable 'sped' \(did you mean 'speed'\?\)",
+        ),
+        ([{"from": "ecu.speed", "to": ["car.throttle"]}], "causality input, not output or local"),
+        ([{"from": "car.speed", "to": ["ecu.throttle"]}], "causality output, not input"),
+        (
+            [{"from": "car.speed", "to": ["car.throttle"]}],
+            r"car.speed \[m/s\] cannot feed car.throttle \[%\]: .*different quantities",
+        ),
+        ([{"from": "car.speed", "to": ["ecu.flag"]}], "car.speed is of type Real, ecu.flag of type Boolean"),
+        ([{"from": "car.speed"}], "needs a receiver in 'to' or a signal in 'via'"),
+        (
+            [{"from": "car.speed", "to": ["ecu.speed"]}, {"from": "car.speed", "to": ["ecu.speed"]}],
+            "ecu.speed is driven already, by car.speed",
+        ),
+        ([SENT | {"via": "can1.EMD_Status.EMD_VehicleSpeed"}], r"no bus 'can1' \(did you mean 'can0'\?\)"),
+        (
+            [SENT | {"via": "can0.EMD_Stats.EMD_VehicleSpeed"}],
+            r"no message 'EMD_Stats' \(did you mean 'EMD_Status'",
+        ),
+        ([SENT | {"via": "can0.EMD_Status.EMD_Speed"}], "no signal 'EMD_Speed'"),
+        ([SENT | {"from": "car.force"}], r"car.force \[N\] cannot feed .* \[km/h\]"),
+        ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed"),
+    ],
+)
+def test_a_wrong_connection_is_named(connect, said):
+    for ideal in (False, True):
+        if ideal and "sent already" in said:
+            continue  # without the bus there is no signal to send twice
+        with pytest.raises(ConfigError, match=said) as caught:
+            plan(connect, **BUS, options={"ideal": ideal})
+        assert "mocks.toml: connect" in str(caught.value)
+
+
+def test_a_unit_left_out_frees_its_receivers():
+    connect = [{"from": "ecu.throttle", "to": ["car.throttle"]}, {"from": "car.speed", "to": ["ecu.speed"]}]
+    both = plan_of([ecu(), car()], {"connect": connect})
+    assert both.inputs["car.throttle"].driver == "ecu.throttle"
+    alone = plan_of([ecu(), car()], {"connect": connect}, {"leave_out": ["ecu"]})
+    assert [u.name for u in alone.units] == ["car"]
+    assert alone.inputs["car.throttle"].driver == ""
+
+
+def test_a_missing_unit_of_measure_is_said():
+    bare = unit("car", real("speed", "output"))
+    plan_ = plan_of([ecu(), bare], {"connect": [{"from": "car.speed", "to": ["ecu.speed"]}]})
+    assert plan_.warnings == ("car.speed declares no unit of measure; it is taken as [km/h]",)
+
+
+def test_a_mailbox_stands_between_a_bus_and_its_receiver():
+    made = plan([SENT], **BUS)
+    (message,) = made.messages
+    ((mailbox, _),) = message.routes[0].sinks
+    received = made.inputs["ecu.speed"]
+    assert (received.mailbox, received.driver) == (mailbox, "car.speed via can0.EMD_Status.EMD_VehicleSpeed")
+    (route,) = [route for route in made.units[0].routes if route.source == mailbox]
+    assert (route.sink, route.map) == (received.slot, Affine())
+
+
+def test_a_direct_connection_has_no_mailbox():
+    received = plan([{"from": "car.speed", "to": ["ecu.speed"]}]).inputs["ecu.speed"]
+    assert (received.mailbox, received.driver) == (None, "car.speed")
+
+
+def test_the_first_value_is_that_of_the_connection():
+    made = plan([SENT | {"initial": 12.5}], **BUS)
+    received = made.inputs["ecu.speed"]
+    assert made.initial[received.slot] == made.initial[received.mailbox] == 12.5
+
+
+@pytest.mark.parametrize("cycle", [1, 4])
+def test_a_late_message_passes_slots_of_its_own(cycle):
+    bus = {"dbc": "can/ev.dbc", "delay": 0.03, "cycle": cycle}
+    made = plan([SENT], buses={"can0": bus})
+    (message,) = made.messages
+    ((slot, mailbox),) = message.arrivals
+    assert message.routes[0].sinks[0][0] == slot != mailbox == made.inputs["ecu.speed"].mailbox
+    assert (message.delay, message.every, message.first) == (3, cycle, 0)
+    assert message.settings == BusEntry(**bus)
+
+
+def test_a_coarser_signal_is_in_the_message_and_in_the_route():
+    made = plan([SENT], buses={"can0": {"dbc": "can/ev.dbc", "resolution": 4.0}})
+    (message,) = made.messages
+    (route,) = message.routes
+    assert message.message.signals["EMD_VehicleSpeed"] == route.signal
+    assert route.signal.scale == 4 * plan([SENT], **BUS).messages[0].routes[0].signal.scale
+
+
+@pytest.mark.parametrize(
+    ("variability", "algorithm", "after"),
+    [
+        ("continuous", "gauss_seidel", None),
+        ("discrete", "gauss_seidel", 1),
+        ("discrete", "jacobi", None),
+    ],
+)
+def test_a_message_of_discrete_values_waits_for_its_sender(variability, algorithm, after):
+    sender = unit("car", real("speed", "output", unit="km/h", variability=variability))
+    made = plan_of([ecu(), sender], {"connect": [SENT], **BUS}, algorithm=algorithm)
+    assert [m.after for m in made.messages] == [after]
+
+
+def test_a_receiver_that_is_not_real_needs_whole_values():
+    flag = VariableInfo("flag", "Boolean", "input", "discrete", start=False)
+    connect = [{"from": "car.throttle", "to": ["ecu.flag"], "via": "can0.VCU_Request.VCU_ThrottleRequest"}]
+    sender = unit("car", real("throttle", "output", unit="%"))
+    with pytest.raises(ConfigError, match=r"ecu.flag is an Boolean, the signal has scale 0.4 and offset 0$"):
+        plan_of([unit("ecu", flag), sender], {"connect": connect, **BUS})
+
+
+def test_every_input_has_one_route_or_a_stimulus():
+    connect = [SENT, {"from": "ecu.throttle", "to": ["car.throttle"]}]
+    made = plan(connect, {"stimulus": [{"to": "car.grade", "constant": 1}]}, **BUS)
+    driven = [route.sink for u in made.units for route in u.routes] + [drive.sink for drive in made.drives]
+    assert sorted(driven) == sorted(i.slot for i in made.inputs.values())
+    assert set(made.inputs) == {"ecu.speed", "ecu.flag", "car.throttle", "car.grade"}
