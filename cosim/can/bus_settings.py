@@ -63,7 +63,7 @@ _Settings = TypeVar("_Settings", bound=BusSettings)
 
 @dataclasses.dataclass(frozen=True)
 class BusVariation:
-    """What is changed of all buses of a system, on top of what its file says of each.
+    """Changes of all buses of a system, on top of the settings that its file gives each.
 
     `delay_steps` communication steps are added to the delay; `resolution` multiplies the factor by which
     signals are coarser than their DBC says, "ideal" leaves quantization out; `cycle` multiplies the cycle

@@ -1,8 +1,7 @@
 """CAN databases as records of our own, and the rules that a channel relies on.
 
 The words are those of cantools: a raw value is what a frame holds, physical = scale * raw + offset. Rules on
-one message or signal hold when a connection asks for it with `require`, so that a message nobody uses cannot
-stop a run.
+one message or signal are checked by `require`, so that a message that no connection uses cannot stop a run.
 """
 
 from __future__ import annotations
@@ -100,8 +99,8 @@ class Message:
     def require(self, name: str, place: str = "") -> Signal:
         """Return the signal `name`, fit for a channel.
 
-        Raises ConfigError, which starts with `place` (who asks), when there is none or it breaks a rule of
-        `check_signal`.
+        Raises ConfigError, which starts with `place` (of the connection), when there is none or it breaks a
+        rule of `check_signal`.
         """
         if name not in self.signals:
             raise ConfigError(
@@ -123,7 +122,8 @@ class Database:
     def require(self, name: str, place: str = "") -> Message:
         """Return the message `name`.
 
-        Raises ConfigError, which starts with `place` (who asks) and has the nearest name, when there is none.
+        Raises ConfigError, which starts with `place` (of the connection) and has the nearest name, when there
+        is none.
         """
         if name not in self.messages:
             raise ConfigError(
@@ -171,7 +171,8 @@ def _unsupported(signal: Signal) -> str:
     if signal.is_float and signal.length not in _FLOAT_MAX:
         return f"a float of {signal.length} bits; 32 or 64 are supported"
     if signal.scale == 0 or not math.isfinite(signal.scale) or not math.isfinite(signal.offset):
-        return f"scale {signal.scale} and offset {signal.offset}: no value can be told from another"
+        rule = "the scale must be finite and not 0, the offset finite"
+        return f"scale {signal.scale} and offset {signal.offset}: {rule}"
     return ""
 
 

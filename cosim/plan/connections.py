@@ -190,7 +190,7 @@ def _over_bus(
             float(signal.scale).is_integer() and float(signal.offset).is_integer()
         ):
             raise ConfigError(
-                f"{place}: {'.'.join(sink)} is an {receiver.type}, the signal has scale {signal.scale} "
+                f"{place}: {'.'.join(sink)} is of type {receiver.type}, the signal has scale {signal.scale} "
                 f"and offset {signal.offset}"
             )
         name = ".".join(sink)
@@ -211,7 +211,7 @@ def _coarser(
     ends: Sequence[tuple[str, str]],
     place: str,
 ) -> Signal:
-    """Return the signal in the resolution that the bus asks for.
+    """Return the signal in the resolution of the bus.
 
     A state or a count, which stands behind a variable that is not Real, has no resolution.
     """

@@ -69,7 +69,7 @@ class StimulusEntry(FiniteModel):
 
 
 class _EventRecord(FiniteModel):
-    """What all events have: each takes effect at the first communication point at or after `time` [s]."""
+    """Base of all events: each takes effect at the first communication point at or after `time` [s]."""
 
     time: float = Field(ge=0.0)
 

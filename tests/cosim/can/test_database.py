@@ -92,7 +92,7 @@ def test_a_range_that_was_not_written_ends_before_the_code(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("signal", "says"),
     [
-        ('S : 0|8@1+ (0,0) [0|0] "" B', "scale 0 and offset 0: no value can be told from another"),
+        ('S : 0|8@1+ (0,0) [0|0] "" B', "scale 0 and offset 0: the scale must be finite and not 0, "),
         ('S : 0|8@1+ (1,0) [5|4] "" B', "minimum 5 is above maximum 4"),
         ('S : 0|8@1+ (1,0) [300|400] "" B', "no value in [300, 400] fits into 8 unsigned bits"),
     ],

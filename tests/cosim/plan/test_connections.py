@@ -147,7 +147,8 @@ def test_a_receiver_that_is_not_real_needs_whole_values():
     flag = VariableInfo("flag", "Boolean", "input", "discrete", start=False)
     connect = [{"from": "car.throttle", "to": ["ecu.flag"], "via": "can0.VCU_Request.VCU_ThrottleRequest"}]
     sender = unit("car", real("throttle", "output", unit="%"))
-    with pytest.raises(ConfigError, match=r"ecu.flag is an Boolean, the signal has scale 0.4 and offset 0$"):
+    said = r"ecu.flag is of type Boolean, the signal has scale 0.4 and offset 0$"
+    with pytest.raises(ConfigError, match=said):
         plan_of([unit("ecu", flag), sender], {"connect": connect, **BUS})
 
 
