@@ -1,4 +1,4 @@
-"""What pyproject.toml cannot declare: a build starts without what an earlier one left in build/."""
+"""The build step that pyproject.toml cannot declare: it starts without the files of an earlier build."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def wanted(root: pathlib.Path = ROOT) -> dict[str, pathlib.Path]:
 
 
 def problems(wheel: pathlib.Path, root: pathlib.Path = ROOT) -> list[str]:
-    """What is wrong with a wheel, a line each; [] if nothing is."""
+    """Return the defects of a wheel, a line each; [] for none."""
     version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
     files = wanted(root)
     metadata = {f"evcosim-{version}.dist-info/{name}" for name in _METADATA}

@@ -76,7 +76,7 @@ def test_importing_it_loads_nothing_else():
 
 
 def run(code: str, *options: str, folder: Path = ROOT) -> str:
-    """What a program prints that runs in the clone, as a user's does."""
+    """Return the output of a program that runs in the clone, as a user's does."""
     call = [sys.executable, *options, *(["-c", code] if code else [])]
     return subprocess.run(call, capture_output=True, text=True, check=True, cwd=folder).stdout
 

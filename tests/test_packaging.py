@@ -1,4 +1,4 @@
-"""What an installation consists of: packages, dependencies, version, and the check of the wheel."""
+"""The parts of an installation: packages, dependencies, version; and the check of the wheel."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def check_wheel() -> Any:
 
 
 def contents(check_wheel: Any) -> dict[str, bytes]:
-    """What a wheel of this project holds."""
+    """The files of a wheel of this project."""
     files = {name: path.read_bytes() for name, path in check_wheel.wanted().items()}
     version = PROJECT["project"]["version"]
     names = ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt", "licenses/LICENSE")
@@ -93,7 +93,7 @@ def test_a_whole_wheel_passes(check_wheel, tmp_path):
 
 
 def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes]) -> list[str]:
-    """What the check says of a wheel of these files."""
+    """Return the defects that the check finds in a wheel of these files."""
     wheel = folder / "evcosim.whl"
     with zipfile.ZipFile(wheel, "w") as archive:
         for name, data in files.items():

@@ -194,5 +194,5 @@ def test_names_that_begin_with_an_underscore_are_listed():
 
 
 def set_here(node: ast.Attribute) -> bool:
-    """Whether an attribute is one of our own objects."""
+    """True of an attribute of one of our own objects."""
     return isinstance(node.value, ast.Name) and node.value.id in ("self", "cls", "slave")

@@ -27,7 +27,7 @@ def test_every_public_name_has_a_reference():
 
 
 def alone(code: str) -> bool:
-    """Whether an example starts processes, which import it: it is a script of its own."""
+    """True of an example that starts processes, which import it: it is a script of its own."""
     return "__main__" in code
 
 

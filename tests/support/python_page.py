@@ -57,7 +57,7 @@ def _entry(name: str, item: Any) -> str:
 
 
 def _is_record(item: Any) -> bool:
-    """Whether a class is its keys: a TypedDict, a dataclass, or what a file says (pydantic)."""
+    """True of a class that is its keys: a TypedDict, a dataclass, or the record of a file (pydantic)."""
     return any(hasattr(item, key) for key in ("__optional_keys__", "model_fields")) or (
         dataclasses.is_dataclass(item)
     )

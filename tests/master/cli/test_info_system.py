@@ -43,7 +43,7 @@ def without_binary(path: Path, folder: str) -> None:
 
 
 def connections(evcosim, system: Path) -> dict[str, dict[str, str]]:
-    """What is shown of each connection, by its receiver."""
+    """Return the entry of each connection, by its receiver."""
     return {c["to"]: c for c in evcosim("info", system, "--json").json["connections"] if c["to"]}
 
 
