@@ -1,16 +1,17 @@
 """The command line `evcosim`: a module per verb, and what the verbs share.
 
     app         the verbs and global options
+    options     the options that verbs share, and those of a run as one record
+    arguments   the parsers of `--set`, `--fmu` and times
+    completion  the names that the Tab key offers
     failures    every error as plain text on stderr, and the exit code
     console     tables, JSON and the progress bar
-    arguments   what `--set` and `--fmu` say
     interrupts  Ctrl-C while units are stepping
     outputs     the folder of a run
-    summary     what a run says at its end
-    completion  what the Tab key offers
+    summary     the summary of a run at its end
 
 Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C; 141 the
-reader of the output has gone. Verb modules import what is heavy inside their functions, so that
+reader of the output has gone. Verb modules import heavy packages inside their functions, so that
 `evcosim --help` answers at once.
 """
 

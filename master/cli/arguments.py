@@ -1,4 +1,4 @@
-"""What the options `--set unit.parameter=value` and `--fmu unit=PATH` say."""
+"""The parsers of options such as `--set unit.parameter=value`, `--fmu unit=PATH` and `--try 5s`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...cosim.interface import Value
 
 
 def parse_settings(options: Sequence[str]) -> dict[str, Value]:
-    """`--set` options as "unit.parameter" to value; the last of a name counts. Raises ConfigError."""
+    """Return `--set` options as "unit.parameter" to value; the last of a name counts. Raises ConfigError."""
     values = {}
     for option in options:
         name, equals, text = (part.strip() for part in option.partition("="))
@@ -22,7 +22,7 @@ def parse_settings(options: Sequence[str]) -> dict[str, Value]:
 
 
 def scalar(text: str) -> Value:
-    """A value as a TOML file would write it: true, false, a number, a quoted string; else the text itself."""
+    """Return a value that is written as in TOML: true, false, a number, a quoted string; else the text."""
     import tomllib
 
     with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is plain text
@@ -36,7 +36,7 @@ def scalar(text: str) -> Value:
 
 
 def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, str]:
-    """Options unit=PATH (or built-in name) as unit to path. Raises ConfigError."""
+    """Return options unit=PATH (or built-in name) as unit to path. Raises ConfigError."""
     paths = {}
     for text in given:
         unit, _, path = (part.strip() for part in text.partition("="))
@@ -48,7 +48,7 @@ def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, st
 
 @contextlib.contextmanager
 def as_typed(options: Sequence[str]) -> Iterator[None]:
-    """Let an error about a parameter name the `--set` option that the user typed."""
+    """Add the `--set` option that was typed to an error about its parameter."""
     try:
         yield
     except ConfigError as error:
@@ -60,7 +60,7 @@ def as_typed(options: Sequence[str]) -> Iterator[None]:
 
 
 def seconds(option: str, text: str) -> float:
-    """A time as "5s", "500ms" or "5", in s. Raises ConfigError."""
+    """Return the time [s] that is written as "5s", "500ms" or "5". Raises ConfigError."""
     import re
 
     found = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ms|s|)\s*", text)

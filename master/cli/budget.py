@@ -1,4 +1,4 @@
-"""`evcosim budget`: how late, coarse and slow a system's buses may be before its own metric breaks."""
+"""`evcosim budget`: the bus delay, coarseness and slowness at which a system's own metric breaks."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def budget(
     the metric of its [budget] table. Writes budget.md, budget.json and a figure.
     """
     from ...cosim.analysis.bus_budget import as_data
-    from ..studies.bus_budget import budget as measured
+    from ..studies.bus_budget import budget as measure_budget
     from .console import print_json, progress_bar
     from .outputs import prepared
 
     folder = prepared(output or _default_folder(system, scenario))
     with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
-        found = measured(
+        found = measure_budget(
             system,
             scenario,
             workers=workers,

@@ -27,7 +27,7 @@ def build(
     """Build the built-in FMUs and print where they are; compile the engine for later runs."""
     from ...cosim.errors import ConfigError, nearest
     from ..builtin import build_fmu, builtin_names
-    from ..engine.selection import prepared
+    from ..engine.selection import compile_engine
     from .failures import complain
 
     known = builtin_names()
@@ -38,5 +38,5 @@ def build(
             )
     for name in dict.fromkeys(names or known):
         print(build_fmu(name, output))
-    if notice := prepared():
+    if notice := compile_engine():
         complain(f"warning: {notice}")

@@ -1,4 +1,4 @@
-"""`evcosim check`: whether an FMU fits into the place of a system's unit, and how it behaves there."""
+"""`evcosim check`: the fit of an FMU in the place of a system's unit, and its behavior there."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def check(
 
 @dataclasses.dataclass(frozen=True)
 class _Checked:
-    """What was read, and the rows for what the system needs from the unit."""
+    """An FMU (by itself, or with a swap file) that was read, and a row for each need of the system."""
 
     place: str
     system: System
@@ -112,7 +112,7 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:
-    """What the unit that the system has now offers. Raises ConfigError that says what it is needed for."""
+    """Return the interface of the system's present unit. Raises ConfigError if it cannot be read."""
     from ...cosim.errors import ConfigError
     from ...cosim.swap.mapping import present
     from ..builtin import fmu_file
@@ -123,8 +123,8 @@ def _there_now(system: System, unit: str) -> UnitInterface:
         interface = read_fmu(fmu_file(entry.fmu, system.path)).interface
     except ConfigError as error:
         raise ConfigError(
-            f"{where}.fmu = '{entry.fmu}' cannot be read, so that nobody knows what this unit declares "
-            f"and what its place asks for:\n{error}\nput an FMU there that can be read, or a built-in one"
+            f"{where}.fmu = '{entry.fmu}' cannot be read, so that the interface of this unit, which its "
+            f"place needs, is unknown:\n{error}\nput an FMU there that can be read, or a built-in one"
         ) from error
     return present(interface, entry, where)
 
@@ -172,8 +172,8 @@ def _show_rows(place: str, rows: Sequence[Row]) -> None:
 
 
 def _reason(row: Row) -> str:
-    told = row.verdict in ("your choice", "missing") and row.others
-    others = f"; others: {', '.join(row.others)}" if told else ""
+    open_ = row.verdict in ("your choice", "missing")
+    others = f"; others: {', '.join(row.others)}" if open_ and row.others else ""
     return f"{row.reason}{others}" + (f" ({'; '.join(row.needed)})" if row.needed else "")
 
 
@@ -193,14 +193,14 @@ def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, 
         counts[row.verdict] = counts.get(row.verdict, 0) + 1
     left = sum(counts.get(verdict, 0) for verdict in ("your choice", "missing"))
     problems = [f for f in tried.findings if f.verdict == "problem"] if tried else []
-    told = [f"{counted(left, 'row')} to decide"] if left else []
-    told += [counted(len(problems), "problem")] if problems else []
+    remaining = [f"{counted(left, 'row')} to decide"] if left else []
+    remaining += [counted(len(problems), "problem")] if problems else []
     system, _, unit = checked.place.rpartition(".")
     print(", ".join(f"{n} {verdict}" for verdict, n in counts.items()))
-    said = " and ".join(told) or "it fits"
+    conclusion = " and ".join(remaining) or "it fits"
     if write is not None:
-        print(f"{said}; written: {write}; then: evcosim run {system} --swap {unit}={write}")
+        print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}")
     elif complete and file.endswith(".toml"):
-        print(f"{said}: evcosim run {system} --swap {unit}={file}")
+        print(f"{conclusion}: evcosim run {system} --swap {unit}={file}")
     else:
-        print(f"{said}: evcosim check {file} --as {checked.place} --write swap.toml writes the mapping")
+        print(f"{conclusion}: evcosim check {file} --as {checked.place} --write swap.toml writes the mapping")

@@ -1,4 +1,4 @@
-"""`evcosim compare`: whether two results are the same within a tolerance."""
+"""`evcosim compare`: two results, compared within a tolerance."""
 
 from __future__ import annotations
 

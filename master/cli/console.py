@@ -1,4 +1,4 @@
-"""What the verbs print: tables and JSON on stdout, a progress bar on stderr."""
+"""The output of the verbs: tables and JSON on stdout, a progress bar on stderr."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from typing import Any
 
 import typer
 
-_UNBOUNDED = 10_000  # columns of what is no terminal: a line of a table is a line of the file
+_UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
 _NARROW = 24  # a text is not wrapped to fewer columns
 _GAP, _BELOW = "  ", "    "
 _REFRESH = 0.1  # s
 
 Show = Callable[[float], None]
-"""Told the simulated time reached, in s."""
+"""Called with the simulated time reached [s]."""
 
 
 def print_json(data: Any) -> None:
-    """Print JSON; a number that is not finite becomes null, since JSON has no name for it."""
+    """Print JSON; a number that is not finite becomes null."""
     print(json.dumps(finite(data), indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def finite(data: Any) -> Any:
-    """The data with names as texts and null for numbers that are not finite: JSON has no name for them."""
+    """Return the data with texts as keys, and None for numbers that are not finite: JSON has none."""
     if isinstance(data, Mapping):
         return {str(key): finite(value) for key, value in data.items()}
     if isinstance(data, (list, tuple)):
@@ -43,8 +43,8 @@ def finite(data: Any) -> Any:
 def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[str] = ()) -> None:
     """Print rows below headers; the columns named in `right` are right-aligned, empty ones are left out.
 
-    The last column is wrapped; where the terminal is too narrow for it, it goes below the others. Nothing
-    is cut off: a line may be longer than the terminal is wide.
+    The last column is wrapped; if the terminal is too narrow for it, it stands below the others. No text is
+    cut off: a line may be longer than the terminal is wide. `cosim.writing` has the tables of pages.
     """
     shown = [i for i in range(len(headers)) if any(row[i] for row in rows)]
     *fixed, last = shown or [len(headers) - 1]
@@ -83,7 +83,7 @@ def print_title(text: str, first: bool = False) -> None:
 
 
 def _wrapped(head: str, text: str, indent: int) -> str:
-    """`head`, then `text` wrapped to the width with `indent` spaces before its other lines."""
+    """Return `head`, then `text` wrapped to the width with `indent` spaces before its other lines."""
     lines = textwrap.wrap(
         text, max(_width() - indent, _NARROW), break_on_hyphens=False, break_long_words=False
     ) or [""]
@@ -91,7 +91,7 @@ def _wrapped(head: str, text: str, indent: int) -> str:
 
 
 def _width() -> int:
-    """The columns of the terminal; of what is none, as many as a line needs."""
+    """Return the columns of the terminal, or of a file."""
     bounded = sys.stdout.isatty() or "COLUMNS" in os.environ
     return shutil.get_terminal_size().columns if bounded else _UNBOUNDED
 
@@ -101,13 +101,13 @@ def _print_bold(text: str) -> None:
 
 
 def number(value: float) -> str:
-    """A number for people: six digits."""
+    """Return a number with six digits."""
     return f"{value:.6g}"
 
 
 @contextlib.contextmanager
 def progress_bar(text: str, start: float, stop: float, wanted: bool) -> Iterator[Show]:
-    """A bar over the simulated time [s] on stderr, where that is a terminal and a bar is wanted."""
+    """Show a bar over the simulated time [s] on stderr, if that is a terminal and a bar is wanted."""
     if not (wanted and sys.stderr.isatty()):
         yield lambda reached: None
         return

@@ -43,7 +43,7 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
 
 
 def complain(message: str, whole: bool = False) -> None:
-    """Say on stderr what is wrong: at most a screen, unless `whole`."""
+    """Print a message on stderr: at most a screen, unless `whole`."""
     lines = message.strip().splitlines() or ["no reason given"]
     if len(lines) > _SCREEN and not whole:
         lines[_SCREEN - 1 :] = [f"... and {len(lines) - _SCREEN + 1} more lines; --debug shows them"]
@@ -51,7 +51,7 @@ def complain(message: str, whole: bool = False) -> None:
 
 
 def _judged(error: Exception) -> tuple[int, str]:
-    """Exit code and message of an error."""
+    """Return exit code and message of an error."""
     from ...cosim.errors import ConfigError, RunError
 
     if hasattr(error, "format_message"):  # a usage error: of click, or of typer's own copy of click
@@ -75,14 +75,14 @@ def _usage(error: Any) -> str:
 
 
 def _print_what_the_terminal_can() -> None:
-    """A character that the terminal's encoding lacks is printed as '?' and stops nothing."""
+    """Print characters that the terminal's encoding lacks as '?'."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
 
 
 def _forget_stdout() -> None:
-    """Let Python's own flush at exit go nowhere: the reader has gone (`evcosim list | head -1`)."""
+    """Discard what Python flushes at exit: the reader has gone (`evcosim list | head -1`)."""
     try:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError:

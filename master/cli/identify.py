@@ -119,7 +119,7 @@ def identify(
     bar = not (as_json or quiet)
     found = _measure(target, spec, scenario, settings or [], options, step_size, bar)
     files = _write(where, found, not no_plot)
-    _tell(found, where, files, as_json, quiet)
+    _report(found, where, files, as_json, quiet)
     return 0
 
 
@@ -138,7 +138,7 @@ def _pair(text: str | None, option: str) -> tuple[float, float] | None:
 
 
 def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> IdentificationSpec:
-    """The scenario's table with the user's options on top."""
+    """Return the scenario's table with the options given in place of its values. Raises ConfigError."""
     from ...cosim.errors import ConfigError
     from ...cosim.system.identification_spec import IdentificationSpec
     from ...cosim.system.toml import validate
@@ -201,7 +201,7 @@ def _measure(
 
 
 _SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}
-"""Begin and length of a phase, as shares of the time that one working point takes; others stand before."""
+"""Begin and length of a phase, as shares of the time of one working point; others share the first 10 %."""
 
 
 def _write(folder: Path, found: list[Identification], figures: bool) -> list[str]:
@@ -244,7 +244,7 @@ def _draw(folder: Path, found: list[Identification]) -> list[str]:
     return [path.name for path in paths]
 
 
-def _tell(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
+def _report(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
     from .console import print_fields, print_json, print_title
     from .failures import complain
 

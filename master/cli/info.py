@@ -1,4 +1,4 @@
-"""`evcosim info`: what an FMU offers, or how a system is connected."""
+"""`evcosim info`: the interface of an FMU, or the connections of a system."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _draw(system: str, path: Path) -> None:
 
 
 def fmu_path(name: str) -> Path:
-    """The file of an FMU by path or built-in name. Raises ConfigError with the nearest system or FMU."""
+    """Return the file of an FMU, by path or built-in name. Raises ConfigError with the nearest name."""
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.system.system import system_names
     from ..builtin import builtin_names, fmu_file

@@ -1,4 +1,4 @@
-"""What an FMU says that it can do, and what that means in a run of evcosim."""
+"""The capabilities that an FMU declares, and their meaning in a run of evcosim."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ _LIMITS = {
 
 
 def capabilities(kind: Any) -> list[dict[str, str]]:
-    """What an interface (FMPy's CoSimulation, ...) can do: `what`, and what comes of it `here`."""
+    """Return the capabilities of an interface (FMPy's CoSimulation, ...): `what`, and its effect `here`."""
     found = _true(kind, _ABILITIES)
     if order := int(getattr(kind, "maxOutputDerivativeOrder", 0) or 0):
-        found.append(_told(f"output derivatives up to order {order}", _UNUSED))
+        found.append(_entry(f"output derivatives up to order {order}", _UNUSED))
     if step := getattr(kind, "fixedInternalStepSize", None):
-        told = "choose period and substeps so that the FMU's step is a multiple of it"
-        found.append(_told(f"fixed internal step of {step} s", told))
+        here = "choose period and substeps so that the FMU's step is a multiple of it"
+        found.append(_entry(f"fixed internal step of {step} s", here))
     return found
 
 
 def limitations(kind: Any, holds_python: bool) -> list[dict[str, str]]:
-    """What an interface asks for or cannot do, in the same form."""
+    """Return the needs and limits of an interface, in the same form."""
     found = _true(kind, _LIMITS)
     for limit in found if holds_python else ():
         if limit["what"] == _LIMITS["needsExecutionTool"][0]:
@@ -60,9 +60,9 @@ def limitations(kind: Any, holds_python: bool) -> list[dict[str, str]]:
 
 
 def _true(kind: Any, table: dict[str, tuple[str, str]]) -> list[dict[str, str]]:
-    words = dict(told for name, told in table.items() if is_true(kind, name))
-    return [_told(*told) for told in words.items()]  # FMI 2.0 and 3.0 spell some of the names differently
+    entries = dict(entry for name, entry in table.items() if is_true(kind, name))
+    return [_entry(*entry) for entry in entries.items()]  # FMI 2.0 and 3.0 spell some names differently
 
 
-def _told(what: str, here: str) -> dict[str, str]:
+def _entry(what: str, here: str) -> dict[str, str]:
     return {"what": what, "here": here}

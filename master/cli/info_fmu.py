@@ -1,4 +1,4 @@
-"""What `evcosim info` says of an FMU, of any FMI version that FMPy reads."""
+"""The report of `evcosim info` on an FMU, of any FMI version that FMPy reads."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _KINDS = {
 def described(
     path: Path, causalities: Sequence[str], search: str | None, strict: bool = False
 ) -> dict[str, Any]:
-    """All that is shown of an FMU, with the variables of these causalities (none: all) that hold `search`.
+    """Return the report on an FMU, with the variables of these causalities ([]: all) that contain `search`.
 
-    Raises ConfigError when it is no FMU, no variable has such a causality, or with `strict` it has defects.
+    Raises ConfigError if it is no FMU, no variable has such a causality, or with `strict` it has defects.
     """
     from ..fmi.fmu import read_fmu
 
@@ -80,13 +80,13 @@ def _limitations(kinds: Iterable[Any], holds_python: bool) -> list[dict[str, str
 
 
 def _validated(path: Path) -> list[str]:
-    """What FMPy's validator has to say about the description as it stands in the file, one sentence each."""
+    """Return the messages of FMPy's validator about the description as it is in the file."""
     from fmpy.validation import validate_fmu
 
-    def told(message: str) -> str:
+    def short(message: str) -> str:
         return re.sub(r"^ERROR \(line (\d+), column \d+\): ", r"line \1: ", " ".join(message.split()))
 
-    return [told(message) for message in validate_fmu(str(path))]
+    return [short(message) for message in validate_fmu(str(path))]
 
 
 def _experiment(experiment: Any) -> dict[str, float]:
@@ -101,7 +101,7 @@ def _experiment(experiment: Any) -> dict[str, float]:
 
 
 def _variable(v: Any) -> dict[str, str]:
-    """The columns of a variable, as the description writes them; what it leaves open is ""."""
+    """Return the columns of a variable, as the description writes them; "" for those that it leaves open."""
     declared = v.declaredType
 
     def own_or_declared(name: str) -> str:
@@ -145,11 +145,11 @@ def _selected(
 
 
 def show(about: dict[str, Any]) -> None:
-    """Print what `described` gave."""
+    """Print the report that `described` returned."""
     experiment = about["default_experiment"]
     several = len(about["kinds"]) > 1
     can = [(f"can ({kind})" if several else "can", found) for kind, found in about["capabilities"].items()]
-    defects, told = about["defects"], about["validator"]
+    defects, messages = about["defects"], about["validator"]
     fields = [
         ("name", about["name"]),
         ("description", about["description"]),
@@ -164,7 +164,7 @@ def show(about: dict[str, Any]) -> None:
         *_listed("limits", map(_with_meaning, about["limits"])),
         ("experiment", ", ".join(f"{name.replace('_', ' ')} {x:g}" for name, x in experiment.items())),
         *_listed("mended", _bounded(defects)),
-        *_listed("validator", _bounded(told)),
+        *_listed("validator", _bounded(messages)),
         ("file", f"{about['file']} ({_size(about['size'])}, unpacked {_size(about['unpacked_size'])})"),
         ("sha256", about["sha256"]),
     ]
@@ -179,7 +179,7 @@ def show(about: dict[str, Any]) -> None:
 
 
 def _solver(about: dict[str, Any]) -> str:
-    """How Model Exchange is solved here, and when; nothing where there is none."""
+    """Return a sentence about the solver of Model Exchange; "" without that interface."""
     if _KINDS["modelExchange"] not in about["kinds"]:
         return ""
     if about["fmi_version"].startswith("1"):
@@ -189,24 +189,24 @@ def _solver(about: dict[str, Any]) -> str:
 
 
 def _sources(about: dict[str, Any]) -> str:
-    """The files, and what to do with them where there is no binary for this machine."""
+    """Return the source files, and without a binary for this machine the command that makes one."""
     files = ", ".join(_bounded([name.removeprefix("sources/") for name in about["sources"]]))
     if not files or about["binary_for_this_machine"]:
         return files
     return f"{files}; there is no binary for this machine: 'evcosim compile {about['file']}' makes one"
 
 
-def _with_meaning(told: dict[str, str]) -> str:
-    return f"{told['what']}: {told['here']}"
+def _with_meaning(entry: dict[str, str]) -> str:
+    return f"{entry['what']}: {entry['here']}"
 
 
 def _listed(name: str, texts: Iterable[str]) -> list[tuple[str, str]]:
-    """A field of several lines."""
+    """Return the lines of a field, with the name in the first."""
     return [(name if i == 0 else "", text) for i, text in enumerate(texts)]
 
 
 def _bounded(texts: Sequence[str]) -> list[str]:
-    """The first texts, none of them too long; --json has them all."""
+    """Return the first texts, shortened; --json has all of them whole."""
     shown = [t if len(t) <= _LONGEST else t[:_LONGEST] + " ..." for t in texts[:_MESSAGES]]
     more = len(texts) - len(shown)
     return [*shown, *([f"and {more} more (--json shows all)"] if more else [])]
@@ -217,7 +217,7 @@ def _size(count: int) -> str:
 
 
 def _short(text: str) -> str:
-    """A number of many digits as people read it; the file and --json have them all."""
+    """Return a number of many digits with six; the file and --json have all."""
     try:
         return number(float(text)) if len(text) > _DIGITS else text
     except ValueError:

@@ -1,4 +1,4 @@
-"""What `evcosim info` says of a system: units, connections with their conversions, messages, scenarios."""
+"""The report of `evcosim info` on a system: units, connections with conversions, messages, scenarios."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def described(name: str) -> dict[str, Any]:
-    """All that is shown of a system. Raises ConfigError for everything that is wrong in it."""
+    """Return the report on a system. Raises ConfigError for everything that is wrong in it."""
     from ...cosim.system.scenario import load_scenario, scenario_names
 
     prepared = _whole(name)
@@ -42,7 +42,7 @@ def described(name: str) -> dict[str, Any]:
 
 
 def _whole(name: str) -> Prepared:
-    """Return the system with its plan, no unit left out by a scenario; as `run` prepares it."""
+    """Return the system and its plan as `run` prepares them, no unit left out by a scenario."""
     from ...cosim.system.scenario import Scenario, ScenarioFile
     from ..prepare import prepare
 
@@ -50,7 +50,7 @@ def _whole(name: str) -> Prepared:
 
 
 def _connections(system: System, plan: Plan) -> list[dict[str, str]]:
-    """One entry for each connection and receiver, in the order of the file."""
+    """Return an entry for each connection and receiver, in the order of the file."""
     units = {f"{u.name}.{v.name}": v.unit for u in plan.units for v in u.interface.variables.values()}
     direct = {(".".join(link.source), ".".join(link.sink)): link.map for link in plan.links}
     over_bus = {f"{m.bus}.{m.message.name}.{r.signal.name}": r for m in plan.messages for r in m.routes}
@@ -72,7 +72,7 @@ def _connections(system: System, plan: Plan) -> list[dict[str, str]]:
 
 
 def in_words(map_: Affine) -> str:
-    """A unit conversion as it is computed: "x 3.6", "x 1.8 + 32"; "" where values stay what they are."""
+    """Return a unit conversion as it is computed: "x 3.6", "x 1.8 + 32"; "" if values are not changed."""
     words = f"x {map_.scale:.10g}" if map_.scale != 1.0 else ""
     if map_.offset:
         words += f" {'+' if map_.offset > 0 else '-'} {abs(map_.offset):.10g}"
@@ -99,7 +99,7 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
 
 
 def show(about: dict[str, Any]) -> None:
-    """Print what `described` gave."""
+    """Print the report that `described` returned."""
     steps = f"steps of {about['step_size']:g} s to {about['stop_time']:g} s, {about['algorithm']}"
     fields = [("system", about["name"]), ("title", about["title"]), ("source", about["source"])]
     fields += [("file", about["file"]), ("experiment", steps)]
@@ -129,7 +129,7 @@ def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _connection_row(c: dict[str, str]) -> tuple[str, ...]:
-    """Each end with its unit of measure, and the conversion at the end of the arrow where there is one."""
+    """Return source, sink and bus signal with their units of measure, and the conversions at their ends."""
     source, bus, sink = (
         " ".join([name, *([f"[{unit}]"] if unit else []), *([f"({map_})"] if map_ else [])]) if name else ""
         for name, unit, map_ in (

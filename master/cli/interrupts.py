@@ -20,7 +20,7 @@ from .failures import INTERRUPTED
 
 
 class Interrupts:
-    """A `with` block in which Ctrl-C is noted: `check` raises KeyboardInterrupt once it has come.
+    """A `with` block in which Ctrl-C is noted, and `check` raises KeyboardInterrupt after it.
 
     Outside the main thread, where Python allows no signal handlers, it does nothing.
     """
@@ -30,7 +30,7 @@ class Interrupts:
         self._active = threading.current_thread() is threading.main_thread()
 
     def check(self) -> None:
-        """Raise KeyboardInterrupt if Ctrl-C has come."""
+        """Raise KeyboardInterrupt if Ctrl-C was noted."""
         if self._count:
             raise KeyboardInterrupt
 

@@ -47,4 +47,4 @@ def _print(systems: list[dict[str, Any]], fmus: dict[str, str]) -> None:
         print_fields(marked, indent=2)
     print_title("FMUs")
     print_fields(list(fmus.items()), indent=2)
-    print("\n'evcosim run SYSTEM --scenario NAME' runs one (* the default), 'evcosim info NAME' tells more.")
+    print("\n'evcosim run SYSTEM --scenario NAME' runs one (* the default), 'evcosim info NAME' shows more.")

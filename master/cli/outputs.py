@@ -1,4 +1,4 @@
-"""The folder of a run: found writable before the first step, then filled with all that the run leaves."""
+"""The output folder: tried before the first step, then filled with the files of a run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CAN_LOGS = ("can.log", "can.blf", "can.asc")
 
 
 def prepared(folder: Path) -> Path:
-    """Make the folder if needed and try to write into it. Raises ConfigError naming it and the reason."""
+    """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
     from ...cosim.errors import ConfigError
 
     trial = folder / f".trial.{os.getpid()}"
@@ -34,9 +34,9 @@ def prepared(folder: Path) -> Path:
 
 
 def prepared_for_results(folder: Path) -> Path:
-    """The same for a folder in which a run takes the place of an earlier one.
+    """Prepare a folder in which a run replaces an earlier one, and return it.
 
-    Raises ConfigError also where a file that would be replaced or removed is somebody's own.
+    Raises ConfigError with the reason, also if a file to be replaced or removed was not written by a run.
     """
     from ...cosim.errors import ConfigError
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
@@ -62,14 +62,16 @@ def _is_of_a_run(manifest: Path) -> bool:
 
 
 def write_results(folder: Path, results: Results) -> list[str]:
-    """Write results.csv and run.json and return their names. Figures and logs of an earlier run are removed:
-    a folder holds one run. Where they cannot be written they go to a temporary folder, and RunError says so.
+    """Write results.csv and run.json, and return their names.
+
+    Figures and logs of an earlier run are removed: a folder holds one run. If the two cannot be written they
+    go to a temporary folder, and RunError names it.
     """
     from ...cosim.errors import ConfigError, RunError
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
 
     for name in (*FIGURES, *CAN_LOGS):
-        with contextlib.suppress(OSError):  # if it stays, writing below says why
+        with contextlib.suppress(OSError):  # the error of writing below has the reason
             (folder / name).unlink(missing_ok=True)
     try:
         results.write(folder)

@@ -43,7 +43,7 @@ def plot(
 
 
 def chosen(results: Results, patterns: list[str]) -> Results:
-    """The results of the variables that match a pattern. Raises ConfigError for one that matches none."""
+    """Return the results of variables that match a pattern. Raises ConfigError for one that matches none."""
     from ...cosim.errors import ConfigError, nearest
 
     for pattern in patterns:
@@ -63,7 +63,7 @@ def _matches(name: str, pattern: str) -> bool:
 
 
 def spec_of(results: Results) -> FigureSpec | None:
-    """The figure of the system and scenario that run.json names, if they are there and it fits."""
+    """Return the figure of system and scenario that run.json names; None if it is gone or does not fit."""
     from ...cosim.errors import ConfigError
     from ...cosim.figures import draw as figures
     from ...cosim.system.scenario import load_scenario

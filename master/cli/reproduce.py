@@ -1,4 +1,4 @@
-"""`evcosim reproduce`: the papers' tables and figures beside what comes out."""
+"""`evcosim reproduce`: the papers' tables and figures beside the obtained ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`evcosim run`: a system to its stop time, the results in a folder, and what happened in a few lines."""
+"""`evcosim run`: a system to its stop time, the results in a folder, and a summary in a few lines."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ def run(
 
 @dataclasses.dataclass(frozen=True)
 class Order:
-    """A run that was asked for: its inputs, its output folder (None: the default), its files, and the bar."""
+    """A run as the command line describes it; `output` is its folder (None: the default).
+
+    `can_log` and `figure` are wanted files, `profile` measures the parts of a step, `bar` shows the progress.
+    """
 
     system: str
     scenario: str | None
@@ -58,7 +61,7 @@ class Order:
 
 @dataclasses.dataclass
 class Outcome:
-    """What came of it: `error` is the failure (None: none), `files` the names of what was written."""
+    """The outcome of a run: `error` is its failure (None: none), `files` are the names of written files."""
 
     simulation: Simulation
     folder: Path
@@ -124,7 +127,7 @@ def _default_folder(simulation: Simulation) -> Path:
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
-    """Step to the stop time; the engine lets us look at Ctrl-C after each tenth of a second, or step."""
+    """Step to the stop time; every 0.1 s, or after a longer step, show the progress and look at Ctrl-C."""
     from .console import progress_bar
 
     experiment = simulation.plan.experiment
@@ -140,7 +143,7 @@ def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
 
 
 def _evaluate(outcome: Outcome) -> None:
-    """The metrics of a whole run, also for run.json; how a broken one ended."""
+    """Evaluate the metrics of a whole run, and note them, or the error of a failed one, for run.json."""
     manifest = outcome.results.manifest
     if outcome.error is None:
         outcome.metrics = outcome.results.metrics()

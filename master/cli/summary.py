@@ -1,4 +1,4 @@
-"""What a run says at its end, for people and as data."""
+"""The summary of a run at its end, as text and as data."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FINAL_VALUES = 8
 
 
 def show(outcome: Outcome) -> None:
-    """Print it in a few lines."""
+    """Print a run's summary in a few lines."""
     manifest = outcome.results.manifest
     fields = [
         ("run", _name(manifest)),
@@ -37,7 +37,7 @@ def show(outcome: Outcome) -> None:
 
 
 def as_data(outcome: Outcome) -> dict[str, Any]:
-    """The same as data; `final` holds the last value of every recorded variable."""
+    """Return the summary as data; `final` holds the last value of every recorded variable."""
     results, manifest = outcome.results, outcome.results.manifest
     keys = ("system", "scenario", "status", "order", "ideal", "steps", "saturations", "loop_seconds")
     return {key: manifest[key] for key in keys} | {
@@ -70,7 +70,7 @@ def _show_profile(profile: list[dict[str, Any]]) -> None:
 
 
 def of_failure(outcome: Outcome) -> str:
-    """Why a run broke off, and where what it recorded is."""
+    """Return the reason why a run failed or was interrupted, and the place of its recorded rows."""
     results = outcome.results
     if isinstance(outcome.error, KeyboardInterrupt):
         why = f"interrupted at t = {number(outcome.simulation.time)} s"
@@ -106,7 +106,7 @@ def _time(outcome: Outcome) -> str:
 
 
 def _final_values(outcome: Outcome) -> list[tuple[str, str]]:
-    """The last values of a few outputs: those that other units receive first."""
+    """Return the last values of a few outputs, first of those that other units receive."""
     results = outcome.results
     sent = {connection.source for connection in outcome.simulation.system.file.connect}
     outputs = [v for v in results.variables if v.causality == "output"]

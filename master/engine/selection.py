@@ -27,7 +27,7 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
     return CompiledEngine, ""
 
 
-def prepared() -> str:
+def compile_engine() -> str:
     """Compile the engine into its cache, also the one that measures a profile, if they are not there.
 
     Return a notice if that is impossible, else "".

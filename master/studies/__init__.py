@@ -1,1 +1,1 @@
-"""Questions that need several runs: identification, bus budgets, trials of an FMU."""
+"""Studies, which need several runs: identification, bus budgets, trials of an FMU."""

@@ -1,4 +1,7 @@
-"""Running a bus budget: every point of every series, independent of each other, on all cores."""
+"""Measuring a bus budget: a run for every point of every series, on all cores.
+
+The record `Budget` and its arithmetic stand in `cosim.analysis.bus_budget`, its command in `cli.budget`.
+"""
 
 from __future__ import annotations
 
@@ -29,17 +32,17 @@ def budget(
     progress: TaskProgress | None = None,
     **options: Unpack[RunOptions],
 ) -> Budget:
-    """Vary the buses of a system and judge it by the metric of its [budget] table.
+    """Measure the bus budget of a system: its buses varied, judged by the metric of its [budget] table.
 
-    The arguments are those of `simulate`, but for `bus` and `ideal`, which a budget sets itself; `workers`
-    and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
+    The arguments are those of `simulate`, except for `bus` and `ideal`, which a budget sets itself;
+    `workers` and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
     Raises ConfigError before any run; a run that fails is a broken point.
     """
     for name in ("bus", "ideal"):
         if options.get(name):
             raise ConfigError(f"a bus budget varies the buses itself, so that '{name}' cannot be given")
     prepared = prepare(system, scenario, **options)
-    entry, spec = _asked(prepared)
+    entry, spec = _criterion(prepared)
     planned = series(prepared.plan.experiment.step_size)
     names: dict[BusVariation, str] = {}
     for each in planned:
@@ -75,14 +78,15 @@ def measure(
 
 
 def _judged(point: Point, outcome: Outcome[Metric]) -> Point:
+    """Return the point with the value of its run, NaN and the reason if it failed."""
     if outcome.failure is not None:
         return dataclasses.replace(point, value=math.nan, reason=outcome.failure.reason)
     metric = outcome.result()
     return dataclasses.replace(point, value=metric.value, reason=metric.reason)
 
 
-def _asked(prepared: Prepared) -> tuple[BudgetEntry, MetricSpec]:
-    """The metric that the system names. Raises ConfigError where there is none, or no bus to vary."""
+def _criterion(prepared: Prepared) -> tuple[BudgetEntry, MetricSpec]:
+    """Return the [budget] table and its metric. Raises ConfigError without them, or without a bus to vary."""
     path, entry = prepared.system.path, prepared.system.file.budget
     if entry is None:
         raise ConfigError(

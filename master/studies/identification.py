@@ -35,10 +35,10 @@ _BEND = 0.12  # of the swing: the scooter at 30 km/h and 20 % has 0.09, at 25 % 
 
 @dataclasses.dataclass(frozen=True)
 class Identification:
-    """What was found at one working point. Inputs in `input_unit`, outputs in `output_unit`.
+    """The result at one working point. Inputs are in `input_unit`, outputs in `output_unit`.
 
-    `working_point` is an input and its steady output; `time` [s] since the start of the sweep, `u` and `y`
-    are the block averages that were analyzed, shape (n,).
+    `working_point` is an input and its steady output; `time` [s] since the start of the sweep, and the
+    analyzed block averages `u` and `y`, have shape (n,).
     """
 
     target: str
@@ -64,7 +64,7 @@ class Identification:
         return f"{self.output_unit or '1'} per {self.input_unit or '1'}"
 
     def as_data(self) -> dict[str, Any]:
-        """Everything but the signals (JSON-able)."""
+        """Return everything but the signals (JSON-able)."""
         fit, response = self.fit, self.response
         kept = (response.frequency >= self.sweep.start) & (response.frequency <= self.sweep.stop)
         return {
@@ -108,9 +108,9 @@ def identify(
     """Identify `target` (a system, or an FMU alone) at the first working point of `spec`.
 
     Without a spec the scenario's is taken. Parameters of an FMU alone are named without a unit, and
-    `step_size` [s] is for it alone; the other arguments are those of `Simulation`, but for `stop_time`.
-    Raises ConfigError for input that does not fit, before the sweep; RunError for a run that fails, an
-    output that does not come to rest or does not answer.
+    `step_size` [s] is for it alone; the other arguments are those of `Simulation`, except `stop_time`.
+    Raises ConfigError for input that does not fit, before the sweep; RunError if the run fails, or the
+    output does not come to rest or does not react.
     """
     spec = spec or spec_of(target, scenario)
     if spec is None:

@@ -1,4 +1,4 @@
-"""Independent tasks on all cores, in processes of their own: FMUs cannot be shared, and one may crash.
+"""Independent tasks on all cores, in processes of their own, since FMUs cannot be shared and may crash.
 
 outcomes = run_all([Task("mass 180", simulate, ("scooter",), {"parameters": {"vehicle.mass": 180.0}})])
 
@@ -39,7 +39,7 @@ TaskProgress = Callable[[int, int, str], None]
 
 @dataclasses.dataclass(frozen=True)
 class Task(Generic[T]):
-    """A call of a module's function with picklable arguments; `name` is what errors call it."""
+    """A call of a module's function with picklable arguments; errors name it by `name`."""
 
     name: str
     function: Callable[..., T]
@@ -52,8 +52,8 @@ class Task(Generic[T]):
 
 @dataclasses.dataclass(frozen=True)
 class Failure:
-    """Why a task gave no result: the class of the exception (`ProcessDied`: none was raised) and what it
-    said. `trace` is the traceback in the worker."""
+    """The reason why a task has no result: class (`ProcessDied`: none was raised) and message of the
+    exception. `trace` is the traceback in the worker."""
 
     kind: str
     reason: str
@@ -70,7 +70,7 @@ class TaskError(RunError):
 
 @dataclasses.dataclass(frozen=True)
 class Outcome(Generic[T]):
-    """What came of a task: its result, or else a failure; `seconds` it took."""
+    """The result of a task, or else its failure; `seconds` [s] is the time that it took."""
 
     name: str
     value: T | None
@@ -78,14 +78,14 @@ class Outcome(Generic[T]):
     seconds: float
 
     def result(self) -> T:
-        """What the task returned. Raises TaskError with the task's name if it failed."""
+        """Return the value that the task returned. Raises TaskError with the task's name if it failed."""
         if self.failure is not None:
             raise TaskError(self.name, self.failure)
         return self.value  # type: ignore[return-value] # T may be None itself; without a failure it is a T
 
 
 def cores() -> int:
-    """The number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)  # Windows and macOS have none
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
@@ -93,10 +93,10 @@ def cores() -> int:
 def run_all(
     tasks: Sequence[Task[T]], workers: int | None = None, progress: TaskProgress | None = None
 ) -> list[Outcome[T]]:
-    """Run all tasks in `workers` processes (default: as many as there are cores) and wait for them.
+    """Run all tasks in `workers` processes (default: one for each core) and return their outcomes in order.
 
-    A script that calls this needs `if __name__ == "__main__":` round its own calls, since every worker
-    imports it. Raises TypeError, before any task is started, for one that cannot be sent to a process.
+    A script that calls this needs `if __name__ == "__main__":` around its own calls, since every worker
+    imports it. Raises TypeError, before any task is started, for one that cannot be pickled.
     """
     if workers is not None and workers < 1:
         raise ValueError(f"workers = {workers}: at least one is needed")
@@ -121,7 +121,7 @@ def _packed(task: Task[Any]) -> bytes:
 
 @dataclasses.dataclass
 class _Worker:
-    """A process, our end of its pipe, and the task that it does."""
+    """A process, this end of its pipe, and the place of its present task (-1: none) with its begin."""
 
     process: BaseProcess
     pipe: Connection
@@ -130,7 +130,7 @@ class _Worker:
 
 
 class _Pool:
-    """The workers; leaving the `with` block ends them all, whatever they do."""
+    """The worker processes; leaving the `with` block kills all of them."""
 
     def __init__(self, size: int) -> None:
         self.size = size
@@ -138,7 +138,7 @@ class _Pool:
         self.context = multiprocessing.get_context("spawn")
 
     def __enter__(self) -> _Pool:
-        # FMUs are extracted below this folder: a worker that is killed cannot remove them, so we do
+        # FMUs are extracted below this folder, which is removed here: a killed worker cannot do it
         self.folder = tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True)
         return self
 
@@ -157,9 +157,9 @@ class _Pool:
             self._submit(self._start_worker(), i, queue)
         while busy := {w.pipe: w for w in self.workers if w.task >= 0}:
             for pipe in wait(list(busy)):
-                worker = busy[pipe]  # type: ignore[index] # we gave pipes alone
-                i, answer = worker.task, _answer(worker)
-                yield i, Outcome(tasks[i].name, *answer, seconds=time.perf_counter() - worker.begin)
+                worker = busy[pipe]  # type: ignore[index] # `busy` has pipes alone
+                i, (value, failure) = worker.task, _received(worker)
+                yield i, Outcome(tasks[i].name, value, failure, seconds=time.perf_counter() - worker.begin)
                 worker.task = -1
                 if not worker.process.is_alive():
                     self.workers.remove(worker)
@@ -179,17 +179,15 @@ class _Pool:
     @staticmethod
     def _submit(worker: _Worker, i: int, queue: Sequence[bytes]) -> None:
         worker.task, worker.begin = i, time.perf_counter()
-        with contextlib.suppress(
-            OSError
-        ):  # it died while it had nothing to do: waiting for its answer says so
+        with contextlib.suppress(OSError):  # it died while it was idle: receiving its outcome reports that
             worker.pipe.send_bytes(queue[i])
 
 
-def _answer(worker: _Worker) -> tuple[Any, Failure | None]:
-    """The result and the failure that a worker sends, or that it has died."""
+def _received(worker: _Worker) -> tuple[Any, Failure | None]:
+    """Return result and failure that a worker sends; a failure `ProcessDied` if it ended instead."""
     try:
-        answer: tuple[Any, Failure | None] = pickle.loads(worker.pipe.recv_bytes())
-        return answer
+        received: tuple[Any, Failure | None] = pickle.loads(worker.pipe.recv_bytes())
+        return received
     except (EOFError, OSError):
         worker.process.join(_ENDING)
         worker.process.kill()  # one that closed its pipe and goes on is of no use
@@ -206,7 +204,7 @@ def _ending(code: int | None) -> str:
 
 @contextlib.contextmanager
 def _without_ctrl_c() -> Iterator[None]:
-    """What starts in here never sees Ctrl-C, not even while it imports; for us it waits to the end of it."""
+    """Block Ctrl-C within: a process started here never sees it, this one receives it at the end."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows: a worker ignores it from `_serve` on
         yield
         return
@@ -221,10 +219,10 @@ def _without_ctrl_c() -> Iterator[None]:
 
 
 def _serve(pipe: Connection, folder: str) -> None:
-    """Do what comes through the pipe until it ends."""
+    """Do the tasks that come through the pipe until it is closed; `folder` is for temporary files."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stdout = sys.stderr
-    os.dup2(2, 1)  # what native code prints, too: the caller's stdout may be read by a machine
+    os.dup2(2, 1)  # for native code too: the caller's stdout may be read by a machine
     tempfile.tempdir = folder
     threading.Thread(target=_end_with_caller, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):  # the caller has gone
@@ -233,7 +231,7 @@ def _serve(pipe: Connection, folder: str) -> None:
 
 
 def _end_with_caller() -> None:
-    """A caller that was killed could not end us; a task may go on for minutes."""
+    """End this process when the caller has died: a killed caller cannot, and a task may take minutes."""
     caller = multiprocessing.parent_process()
     if caller is not None:
         wait([caller.sentinel])
@@ -241,6 +239,7 @@ def _end_with_caller() -> None:
 
 
 def _done(packed: bytes) -> bytes:
+    """Do a pickled task; return its result and failure, pickled."""
     try:
         task: Task[Any] = pickle.loads(packed)
         return pickle.dumps((task(), None))

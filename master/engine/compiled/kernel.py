@@ -189,10 +189,10 @@ def out_of_range(t, i, s, x, k):
         put_word(s, L.TIMES, word(s, L.TIMES) + 1)
         put_word(word(t, L.STATE), L.NOTED, 1)
         return number(s, L.ABOVE) if x > number(s, L.GREATEST) else number(s, L.BELOW), True
-    asked = word(t, L.NUMBERS)
-    put_number(asked, L.VALUE, x)
+    numbers = word(t, L.NUMBERS)
+    put_number(numbers, L.VALUE, x)
     good = call_2(word(word(t, L.STATE), L.PYTHON), -1 - i, k) == 0
-    return number(asked, L.VALUE), good
+    return number(numbers, L.VALUE), good
 
 
 @inlined

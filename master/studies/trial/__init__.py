@@ -1,7 +1,7 @@
-"""Trying an FMU before it takes the place of a unit: `evcosim check --try`.
+"""Trials of an FMU before it takes the place of a unit: `evcosim check --try`.
 
-levels   what the system can give to each input, and how far a trial moves it
+levels   the range that the system can give to each input, and how far a trial moves it
 bench    one unit alone, driven over some seconds, in a process of its own
-probes   what a trial looks at, each a function from runs to findings
+probes   the checks of a trial, each a function from runs to findings
 trial    the trial: all probes in order, within a time limit
 """

@@ -1,4 +1,4 @@
-"""One unit alone, driven over some seconds."""
+"""The bench of a trial: one unit alone, driven over some seconds."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class OutOfTime(RunError):
 
 @dataclasses.dataclass(frozen=True)
 class Deadline:
-    """The end of a trial; `answer` [s] is what an answer of a unit's process may take."""
+    """The end of a trial [s], on the monotonic clock; `answer` [s] is the longest time of a unit's call."""
 
     end: float
     answer: float
@@ -42,8 +42,11 @@ class Deadline:
 
 
 class Bench:
-    """A unit's entry of a system, to be run alone. `outputs` are recorded, in the units of measure of `ours`,
-    the interface of the unit that is in the system now; `ours` None: it is that unit itself."""
+    """A unit's entry of a system, to be run alone.
+
+    `outputs` are recorded, in the units of measure of `ours`, the interface of the unit that is in the system
+    now; `ours` is None for that unit itself. A run is `duration` [s] long, rounded to periods.
+    """
 
     def __init__(
         self,
@@ -71,12 +74,12 @@ class Bench:
 
     @property
     def period(self) -> float:
-        """How often the unit steps [s]."""
+        """The period of the unit [s]."""
         return self.entry.period or self.step_size
 
     @contextlib.contextmanager
     def loaded(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> Iterator[Simulation]:
-        """The unit ready to step. Raises ConfigError, RunError."""
+        """Yield a simulation of the unit alone, ready to step. Raises ConfigError, RunError."""
         deadline.check()
         timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
         update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout}
@@ -88,7 +91,7 @@ class Bench:
                 self.warnings += sum(unit.warnings for unit in simulation.units.values())
 
     def run(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
-        """The outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
+        """Return the outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
         with self.loaded(drive, deadline, substeps) as simulation:
             deadline.check()
             simulation.run(lambda *_: deadline.check())
@@ -100,14 +103,15 @@ class Bench:
         return columns
 
     def to_ours(self, name: str) -> Affine:
-        """From the values of a variable to the unit of measure of the unit that is there now."""
+        """Return the map from a variable's own unit of measure to that in the present unit's interface."""
         return _between(self.interface, self.ours, name)
 
     def from_ours(self, name: str) -> Affine:
-        """The other way."""
+        """Return the inverse map, from the unit of measure in the present unit's interface."""
         return _between(self.ours, self.interface, name)
 
     def _alone(self, entry: UnitEntry) -> System:
+        """Return a system of this unit only."""
         experiment = self.system.file.experiment.model_copy(
             update={"stop_time": self.start + self.duration, "step_size": self.step_size}
         )
@@ -120,6 +124,7 @@ class Bench:
         return System(self.system.path, file)
 
     def _driven(self, drive: Drive) -> Scenario:
+        """Return a scenario that drives the inputs, with the unit's own parameters and starts."""
         stimuli = [
             StimulusEntry(
                 to=f"{self.unit}.{name}",
@@ -142,7 +147,7 @@ class Bench:
 
 
 def _between(source: UnitInterface, target: UnitInterface, name: str) -> Affine:
-    """Between the units of measure of a variable; as it is where one of the two has none."""
+    """Return the map between the units of measure of a variable in two interfaces; 1 if either has none."""
     before, after = source.variables[name].unit, target.variables[name].unit
     if not before or not after:
         return Affine()
@@ -154,5 +159,5 @@ def _of(values: Mapping[str, Value], known: Mapping[str, object]) -> dict[str, V
 
 
 def largest(values: Array) -> float:
-    """The largest magnitude."""
+    """Return the largest magnitude of an array, shape (n,); 0.0 for an empty one."""
     return float(np.max(np.abs(values))) if len(values) else 0.0

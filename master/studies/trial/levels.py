@@ -1,4 +1,4 @@
-"""What a system can give to the inputs of a unit, and how far a trial moves each of them."""
+"""The ranges that a system can give to the inputs of a unit, and how far a trial moves each of them."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ _USUAL = {
 
 @dataclasses.dataclass(frozen=True)
 class Level:
-    """An input in the unit of measure that the system has for it: the value at `rest`, the one that a trial
-    goes to, and the `limits` (low, high) of what the system can give (infinite where nobody says)."""
+    """The values of an input, in the system's unit of measure for it.
+
+    `rest` is its start value, `high` the one that a trial moves it to, `limits` (low, high) the range that
+    the system can give, infinite if nothing declares it.
+    """
 
     rest: float
     high: float
@@ -31,7 +34,7 @@ class Level:
 
 
 def levels(system: System, unit: str, inputs: Iterable[VariableInfo]) -> dict[str, Level]:
-    """The level of each input of a unit, as the FMU that is there now declares them.
+    """Return the level of each input of a unit, as the present FMU declares it.
 
     Limits are those of the input itself, of the output that drives it, and of the bus signal in between.
     Raises ConfigError for a system that cannot run.
@@ -55,7 +58,7 @@ def _level(v: VariableInfo, limits: tuple[float, float]) -> Level:
 
 
 def _usual(unit: str) -> float | None:
-    """The usual step in a unit of measure; None for what has no dimension, or nobody knows."""
+    """Return the usual step in a unit of measure; None if it is unknown or has no dimension."""
     try:
         known = defined(unit)
     except ConfigError:
@@ -67,6 +70,7 @@ def _usual(unit: str) -> float | None:
 
 
 def _reachable(plan: Plan, unit: str, v: VariableInfo) -> tuple[float, float]:
+    """Return the range that an input can receive, by all that declares one; infinite without."""
     name = f"{unit}.{v.name}"
     given = [(v.min, v.max), *_of_links(plan, (unit, v.name)), *_of_messages(plan, name)]
     low = max((low for low, _ in given if low is not None), default=-math.inf)
@@ -75,9 +79,11 @@ def _reachable(plan: Plan, unit: str, v: VariableInfo) -> tuple[float, float]:
 
 
 Ends = tuple[float | None, float | None]
+"""The ends of a range; None: not declared."""
 
 
 def _of_links(plan: Plan, sink: tuple[str, str]) -> Iterable[Ends]:
+    """Yield the range of each output that is connected directly, in the input's unit of measure."""
     declared = _declared(plan)
     for link in plan.links:
         if link.sink == sink:
@@ -86,6 +92,7 @@ def _of_links(plan: Plan, sink: tuple[str, str]) -> Iterable[Ends]:
 
 
 def _of_messages(plan: Plan, name: str) -> Iterable[Ends]:
+    """Yield the ranges of the bus signal and of its sender, in the input's unit of measure."""
     mailbox, declared = plan.inputs[name].mailbox, _declared(plan)
     for message in plan.messages:
         arrivals = dict(message.arrivals)

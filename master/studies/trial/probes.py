@@ -1,4 +1,4 @@
-"""What a trial looks at: from runs of an FMU and of the unit that is there now to findings."""
+"""The probes of a trial: functions from runs of an FMU and of the present unit to findings."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ Verdict = Literal["good", "note", "problem"]
 Columns = Mapping[str, Array]
 
 _MATTERS = 0.01  # of an output's range: a difference between step sizes
-_NO_REACTION = 1e-3  # of the reaction that the unit has that is there now
+_NO_REACTION = 1e-3  # of the present unit's reaction
 _LIKE, _UNLIKE = 0.5, 5.0  # agreement of two courses from which on they are alike; ratio from which on not
-_ABSURD = 1e4  # times the largest value of the unit that is there now
+_ABSURD = 1e4  # times the largest value of the present unit
 _FACTORS = {3.6: "km/h beside m/s", 1000.0: "kilo", 100.0: "%", 180.0 / math.pi: "deg beside rad",
             60.0 / (2.0 * math.pi): "rpm beside rad/s", 9.80665: "g beside m/s2"}  # fmt: skip # mistakes
 
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """One thing that a trial saw: `what` was looked at, a verdict, and a sentence.
+    """A result of a trial: `what` was examined, a verdict, and a sentence.
 
-    "problem": it should not run like this; "note": worth knowing; "good": as it should be.
+    "problem": it should not run like this; "note": worth knowing; "good": nothing is wrong.
     """
 
     what: str
@@ -43,7 +43,7 @@ class Finding:
 
 
 def failed(what: str, error: Exception) -> Finding:
-    """A run that ended before its end."""
+    """Return the finding of a run that ended before its end."""
     return Finding(what, "problem", " ".join(str(error).split()))
 
 
@@ -56,8 +56,10 @@ def _number(x: float, digits: int = 3) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Reaction:
-    """How both units react with one output to one input; `sign` is 1 where they agree, -1 for the other sign,
-    0 where that cannot be said."""
+    """The reactions of one output of both units to one input.
+
+    `sign` is 1 if they agree, -1 if they are opposite, 0 if neither is certain.
+    """
 
     pair: Pair
     finding: Finding
@@ -65,7 +67,10 @@ class Reaction:
 
 
 def reaction(pair: Pair, unit: str, theirs: Array, ours: Array) -> Reaction | None:
-    """Compare the changes of an output, shape (n,), that the same input made; None where neither has one."""
+    """Compare the changes of an output, shape (n,), in `unit`, that the same input caused.
+
+    Return None if neither unit reacts.
+    """
     size, expected = largest(theirs), largest(ours)
     what, measure = " -> ".join(pair), "" if unit in ("", "1") else f" {unit}"
     if expected == 0.0:
@@ -77,16 +82,16 @@ def reaction(pair: Pair, unit: str, theirs: Array, ours: Array) -> Reaction | No
     if size < _NO_REACTION * expected:
         return Reaction(pair, Finding(what, "problem", f"no reaction; {now}"), 0)
     ratio, agreement = alike(theirs, ours)
-    told = f"{_moves(theirs)} it by up to {_number(size)}{measure}"
+    moved = f"{_moves(theirs)} it by up to {_number(size)}{measure}"
     if agreement <= -_LIKE:
-        return Reaction(pair, Finding(what, "problem", f"{told}: the other sign; {now}"), -1)
+        return Reaction(pair, Finding(what, "problem", f"{moved}: the other sign; {now}"), -1)
     if agreement < _LIKE:
-        return Reaction(pair, Finding(what, "note", f"{told}, in another course; {now}"), 0)
+        return Reaction(pair, Finding(what, "note", f"{moved}, in another course; {now}"), 0)
     guess = _guess(ratio, agreement)
     if guess or not 1.0 / _UNLIKE < ratio < _UNLIKE:
-        said = f"{told}, {_number(ratio)} times as much as it should{guess}; {now}"
-        return Reaction(pair, Finding(what, "problem", said), 1)
-    same = f"{told}, as that of the system ({_number(expected)}{measure})"
+        text = f"{moved}, {_number(ratio)} times as much as it should{guess}; {now}"
+        return Reaction(pair, Finding(what, "problem", text), 1)
+    same = f"{moved}, as that of the system ({_number(expected)}{measure})"
     return Reaction(pair, Finding(what, "good", same), 1)
 
 
@@ -95,7 +100,7 @@ def _moves(change: Array) -> str:
 
 
 def _guess(ratio: float, agreement: float) -> str:
-    """Which mistake in a unit of measure would give the ratio; "" where none is near."""
+    """Return a question about the unit of measure whose mistake would give the ratio; "" if none would."""
     for factor, name in _FACTORS.items():
         if agreement > 0.99 and min(abs(ratio / factor - 1.0), abs(ratio * factor - 1.0)) < 0.03:
             return f": is its unit of measure another one ({name})?"
@@ -106,7 +111,7 @@ def _guess(ratio: float, agreement: float) -> str:
 
 
 def values(columns: Sequence[Columns], ours: Sequence[Columns], bench: Bench) -> list[Finding]:
-    """Values far beyond those of the unit that is there now, and beyond the FMU's own limits."""
+    """Find values far beyond those of the present unit (`ours`), and beyond the FMU's own limits."""
     found = []
     for name in bench.outputs:
         variable = bench.interface.variables[name]
@@ -124,7 +129,7 @@ def values(columns: Sequence[Columns], ours: Sequence[Columns], bench: Bench) ->
 
 
 def _beyond(v: VariableInfo, reached: Sequence[Array], bench: Bench) -> str:
-    """That values leave the limits which the FMU itself declares; "" where they do not."""
+    """Return a sentence about values beyond the limits that the FMU itself declares; "" if there are none."""
     scale = bench.to_ours(v.name)
     low, high = min(float(np.min(c)) for c in reached), max(float(np.max(c)) for c in reached)
     room = 1e-9 * max(abs(low), abs(high))
@@ -139,7 +144,7 @@ def _beyond(v: VariableInfo, reached: Sequence[Array], bench: Bench) -> str:
 
 
 def input_ends(bench: Bench, given: Mapping[str, Level]) -> list[Finding]:
-    """What the system can give to an input and the FMU does not take."""
+    """Find inputs to which the system can give values that the FMU does not take."""
     found = []
     for name, level in given.items():
         v = bench.interface.variables.get(name)
@@ -155,7 +160,7 @@ def input_ends(bench: Bench, given: Mapping[str, Level]) -> list[Finding]:
 
 
 def _cut(ends: Sequence[float], v: VariableInfo) -> Verdict:
-    """Nobody says how far an input goes: that is worth a note; a limit that is said is a problem."""
+    """Return "problem" if a declared end exceeds the FMU's limit, "note" if an undeclared one may."""
     said = any(
         math.isfinite(end) and limit is not None and (end - limit) * side > 0.0
         for end, limit, side in zip(ends, (v.min, v.max), (-1.0, 1.0), strict=True)
@@ -173,8 +178,10 @@ def _end(x: float | None) -> str:
 def steps(
     run: Callable[[int], Columns], counts: Sequence[int], names: Sequence[str], period: float
 ) -> tuple[Finding, int]:
-    """How far the outputs `names` with `counts` FMU steps in a period are from those with the last of them,
-    and how many steps are enough. `run` raises RunError where the FMU fails."""
+    """Compare the outputs `names` with `counts` FMU steps in a period [s] with those of the last count.
+
+    Return the finding and the number of steps that is enough. `run` raises RunError if the FMU fails.
+    """
     reference = run(counts[-1])
     apart: list[float] = []
     worst = ""
@@ -188,8 +195,8 @@ def steps(
         worst = worst or name
         apart.append(found.get(name, 0.0))
     names = ", ".join(f"{1000.0 * period / count:g}" for count in counts[:-1])
-    told = ", ".join(map(_share, apart))
-    text = f"of {names} ms differ from those of {1000.0 * period / counts[-1]:g} ms by {told} of the range"
+    shares = ", ".join(map(_share, apart))
+    text = f"of {names} ms differ from those of {1000.0 * period / counts[-1]:g} ms by {shares} of the range"
     if apart[0] <= _MATTERS:
         return Finding("steps", "good", text), counts[0]
     enough = next((c for c, a in zip(counts, apart, strict=False) if a <= _MATTERS), counts[-1])
@@ -207,6 +214,7 @@ def _share(apart: float) -> str:
 
 
 def _apart(values: Array, reference: Array) -> float:
+    """Return the largest difference of two courses, shape (n,), as a share of the reference's range."""
     span, size = float(np.ptp(reference)), largest(reference)
     difference = largest(values - reference)
     return difference / span if span > 1e-9 * size else 0.0 if difference <= 1e-9 * size else math.inf
@@ -216,7 +224,10 @@ def _apart(values: Array, reference: Array) -> float:
 
 
 def speed(unit: IsolatedUnit, at: float, step: float, seconds: float) -> Finding:
-    """The time of a step of `step` s from the time `at` on, from the fastest of many stretches."""
+    """Measure the time of a step of `step` [s], from the time `at` [s] on: the fastest of many stretches.
+
+    `seconds` [s] is the duration of the measurement.
+    """
     count, best, end = 1, math.inf, time.perf_counter() + seconds
     while True:
         begin = time.perf_counter()
@@ -230,8 +241,8 @@ def speed(unit: IsolatedUnit, at: float, step: float, seconds: float) -> Finding
         if took < 0.01 and count < 256:
             count *= 2
     times = step / best if best > 0.0 else math.inf
-    told = f"{_number(1e6 * best, 2)} us for a step of {1000.0 * step:g} ms"
-    text = f"{told}, {_number(times, 2)} times as fast as real time"
+    text = f"{_number(1e6 * best, 2)} us for a step of {1000.0 * step:g} ms"
+    text += f", {_number(times, 2)} times as fast as real time"
     return Finding("speed", "good" if times >= 1.0 else "note", text)
 
 
@@ -239,7 +250,7 @@ _STEPS = 25
 
 
 def state(unit: IsolatedUnit, bench: Bench, at: float) -> Finding:
-    """Whether the unit goes on from a saved state as it did before, whatever it declares."""
+    """Compare the outputs after a saved state, from the time `at` [s] on, with those after it is restored."""
     kind = bench.fmu.kind
     declared = is_true(kind, "canGetAndSetFMUstate") or is_true(kind, "canGetAndSetFMUState")
     but = (
@@ -273,7 +284,7 @@ def _outputs(unit: IsolatedUnit, bench: Bench) -> tuple[object, ...]:
 
 
 def _onward(unit: IsolatedUnit, bench: Bench, at: float) -> list[tuple[object, ...]]:
-    """The outputs after each of some steps from a time on, the inputs held."""
+    """Do some periods from the time `at` [s] on, the inputs held; return the outputs after each."""
     found = []
     for k in range(_STEPS):
         unit.start_step(at + k * bench.period, bench.period / bench.entry.substeps, bench.entry.substeps)

@@ -20,7 +20,7 @@ from .bench import Bench, Deadline, Drive, OutOfTime, largest
 from .levels import Level, levels
 from .probes import Columns, Finding, Reaction
 
-_FINER = (1, 2, 5, 10)  # steps in a period: of 10, 5, 2 and 1 ms where that is 10 ms
+_FINER = (1, 2, 5, 10)  # steps in a period: of 10, 5, 2 and 1 ms in one of 10 ms
 _SPEED = 0.3  # s that measuring the speed takes
 _NAMED = 3
 _MOVED = ("Real", "Integer")
@@ -28,7 +28,7 @@ _MOVED = ("Real", "Integer")
 
 @dataclasses.dataclass(frozen=True)
 class Trial:
-    """What a trial of some seconds [s] found, and what it proposes for the swap file."""
+    """The findings of a trial of `duration` [s], and its proposal for the swap file."""
 
     duration: float
     findings: tuple[Finding, ...]
@@ -36,7 +36,7 @@ class Trial:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing is a problem."""
+        """True if no finding is a problem."""
         return all(finding.verdict != "problem" for finding in self.findings)
 
 
@@ -50,11 +50,11 @@ def try_unit(
     limit: float = 120.0,
     answer: float = 10.0,
 ) -> Trial:
-    """Try the FMU of `entry` alone beside the unit that the system has now, both driven alike.
+    """Try the FMU of `entry` alone, beside the present unit of the system, both driven alike.
 
     `names` are the variables of the unit that the system needs. Every run of the FMU is in a process of its
-    own and `duration` s long; all of them together take `limit` s at most, a call of the FMU `answer` s.
-    Whatever the FMU does is a finding. Raises ConfigError where the system itself cannot run.
+    own and `duration` [s] long; all of them together take `limit` [s] at most, a call of the FMU `answer`
+    [s]. Any failure of the FMU is a finding. Raises ConfigError if the system itself cannot run.
     """
     if not (duration > 0.0 and math.isfinite(duration)):
         raise ConfigError(f"--try {duration:g}: a trial takes some seconds")
@@ -73,13 +73,16 @@ def try_unit(
 
 
 def _remarks(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """What stands above a mapping that was tried: all that is not good."""
-    told = [f"{f.verdict}: {f.what}: {f.text}" for f in findings if f.verdict != "good"]
-    return ("A trial found:", *told) if told else ("A trial found nothing wrong.",)
+    """Return the lines above a mapping that was tried: all findings that are not good."""
+    lines = [f"{f.verdict}: {f.what}: {f.text}" for f in findings if f.verdict != "good"]
+    return ("A trial found:", *lines) if lines else ("A trial found nothing wrong.",)
 
 
 class _TrialRun:
-    """A trial under way: what it found so far."""
+    """A trial under way: its findings and proposal so far, and the outputs of runs by their drive.
+
+    `ours` is the bench of the present unit, `theirs` that of the FMU.
+    """
 
     def __init__(self, ours: Bench, given: Mapping[str, Level], deadline: Deadline) -> None:
         self.ours, self.given, self.deadline = ours, given, deadline
@@ -96,7 +99,7 @@ class _TrialRun:
         self.findings.append(Finding(what, verdict, text))
 
     def work(self, theirs: Bench) -> None:
-        """All probes in order."""
+        """Do all probes in order. Raises OutOfTime, and ConfigError or RunError outside a probe."""
         self.theirs = theirs
         self.moved = [name for name in self.given if name in theirs.inputs]
         self.shown = [name for name in theirs.outputs if self._is_number(theirs, name)]
@@ -119,7 +122,7 @@ class _TrialRun:
     # ---- runs
 
     def _run(self, drive: Drive) -> Columns:
-        """The FMU's outputs; the same inputs are run once. Raises ConfigError, RunError."""
+        """Return the FMU's outputs; the same inputs are run once. Raises ConfigError, RunError."""
         key = repr(sorted(drive.items()))
         known = self._theirs_by_drive
         if key not in known:
@@ -130,24 +133,25 @@ class _TrialRun:
         return known[key]
 
     def _run_ours(self, drive: Drive) -> Columns:
+        """Return the present unit's outputs; the same inputs are run once."""
         key, known = repr(sorted(drive.items())), self._ours_by_drive
         if key not in known:
             known[key] = self.ours.run(drive, self.deadline)
         return known[key]
 
     def _at(self, high: Sequence[str] = ()) -> dict[str, list[tuple[float, float]]]:
-        """All inputs constant: at rest, those in `high` moved."""
+        """Return a drive with all inputs constant: at rest, those in `high` at their high value."""
         return {n: [(0.0, self.given[n].high if n in high else self.given[n].rest)] for n in self.moved}
 
     def _swept(self, base: Drive, name: str, way: float = 1.0) -> Drive:
-        """One input going over to its high value in 60 % of the time."""
+        """Return a drive in which one input moves to its high value in 60 % of the time."""
         level = self.given[name]
         end = level.rest + way * (level.high - level.rest)
         return {**base, name: [(0.0, level.rest), (0.6 * self.ours.duration, end)]}
 
     @contextlib.contextmanager
     def _as_finding(self, what: str) -> Iterator[None]:
-        """A failure in here is a finding and stops nothing but what is in here."""
+        """Turn a failure within the block into a finding."""
         try:
             yield
         except OutOfTime:
@@ -158,7 +162,7 @@ class _TrialRun:
     # ---- the probes
 
     def _starts(self) -> bool:
-        """Whether it runs with constant inputs, perhaps only with smaller steps."""
+        """Return True if the FMU runs with constant inputs, perhaps only with smaller steps."""
         with self._as_finding("constant inputs"):
             try:
                 self._run(self._at())
@@ -186,7 +190,7 @@ class _TrialRun:
         return True
 
     def _go_on_with(self, substeps: int, why: str) -> None:
-        """Propose so many steps in a period, and let what follows have them."""
+        """Propose so many steps in a period, and do the following probes with them."""
         self.proposal = dataclasses.replace(self.proposal, substeps=substeps, why_substeps=why)
         self.theirs.entry = self.theirs.entry.model_copy(update={"substeps": substeps})
         self._theirs_by_drive = {}
@@ -196,7 +200,7 @@ class _TrialRun:
         return False
 
     def _react(self) -> None:
-        """What each input does to each output, beside what it does in the unit that is there now."""
+        """Compare the reactions of each output to each input with those of the present unit."""
         reactions: list[Reaction] = []
         for name in self.moved:
             with self._as_finding(f"{name} swept"):
@@ -205,7 +209,7 @@ class _TrialRun:
         self._propose_signs({r.pair: r.sign for r in reactions if r.sign})
 
     def _reactions_to(self, name: str) -> list[Reaction]:
-        base = self._telling_base(name)
+        base = self._base_for(name)
         ours = _changes(self._run_ours(self._swept(base, name)), self._run_ours(base))
         theirs = _changes(self._run(self._swept(base, name)), self._run(base))
         expected = [n for n in self.shown if largest(ours[n]) > 0.0]
@@ -219,21 +223,21 @@ class _TrialRun:
         return [pair for pair in pairs if pair is not None]
 
     def _other_way(self, base: Drive, name: str, ours: Columns) -> list[Reaction]:
-        """The reactions of an FMU that knows the input with the other sign only; none where it is not so."""
+        """Return the reactions if the FMU reacts to the other sign of the input only, else []."""
         theirs = _changes(self._run(self._swept(base, name, -1.0)), self._run(base))
         found = []
         for n in self.shown:
             seen = probes.reaction((name, n), self.ours.interface.variables[n].unit, theirs[n], ours[n])
             if seen is not None and seen.sign:
-                told = f"reacts to the other sign only: then it {seen.finding.text}"
-                finding = dataclasses.replace(seen.finding, verdict="problem", text=told)
+                text = f"reacts to the other sign only: then it {seen.finding.text}"
+                finding = dataclasses.replace(seen.finding, verdict="problem", text=text)
                 found.append(dataclasses.replace(seen, finding=finding, sign=-seen.sign))
         return found
 
-    def _telling_base(self, name: str) -> Drive:
-        """The constant inputs at which the unit that is there now shows most of what an input does.
+    def _base_for(self, name: str) -> Drive:
+        """Return the constant inputs at which most outputs of the present unit react to an input.
 
-        All at rest, or one other moved: a brake shows nothing on a vehicle that stands.
+        They are at rest, or one other is moved: a brake has no effect on a vehicle at standstill.
         """
         others: list[tuple[str, ...]] = [(), *((n,) for n in self.moved if n != name)]
 
@@ -246,6 +250,7 @@ class _TrialRun:
         return self._at(others[counts.index(max(counts))])
 
     def _propose_signs(self, signs: Mapping[Pair, int]) -> None:
+        """Propose the variables to invert so that all reactions have the present unit's sign."""
         if all(sign > 0 for sign in signs.values()):
             return
         found = turned(signs)
@@ -260,7 +265,7 @@ class _TrialRun:
         self.found("signs", "problem", f"with invert = true for {names} all would have the right one")
 
     def _compare_steps(self) -> None:
-        """All inputs moved up and down at the same time, each in its own rhythm, with smaller steps."""
+        """Compare smaller steps, all inputs moved up and down at the same time, each in its own rhythm."""
         own = self.theirs.entry.substeps
         drive = {n: self._waves(n, i) for i, n in enumerate(self.moved, 1)}
 
@@ -284,19 +289,19 @@ class _TrialRun:
         return [(t, level.rest + s * (level.high - level.rest)) for t, s in zip(times, share, strict=True)]
 
     def _look_inside(self) -> None:
-        """The state and the speed of the unit, each some way into a run."""
+        """Probe state and speed of the unit, each after a quarter of a run."""
         bench = self.theirs
         step = bench.period / bench.entry.substeps
         looks: dict[str, Callable[[IsolatedUnit, float], Finding]] = {
             "state": lambda unit, at: probes.state(unit, bench, at),
             "speed": lambda unit, at: probes.speed(unit, at, step, _SPEED),
         }
-        drive = next((self._swept(self._telling_base(n), n) for n in self.moved), {})
+        drive = next((self._swept(self._base_for(n), n) for n in self.moved), {})
         for what, look in looks.items():
             with self._as_finding(what), bench.loaded(drive, self.deadline) as simulation:
                 simulation.step(max(1, simulation.steps_left // 4))
                 unit = simulation.units[bench.unit]
-                assert isinstance(unit, IsolatedUnit)  # as the bench asks for
+                assert isinstance(unit, IsolatedUnit)  # as the bench demands
                 self.findings.append(look(unit, simulation.time))
 
 
@@ -305,7 +310,7 @@ def _changes(swept: Columns, base: Columns) -> dict[str, Array]:
 
 
 def _why(signs: Mapping[Pair, int], name: str, place: int) -> str:
-    """Why the sign of an input (`place` 0 of the pairs) or an output (1) shall be turned."""
+    """Return the reason to invert an input (`place` 0 of the pairs) or an output (1)."""
     wrong = [pair[1 - place] for pair, sign in signs.items() if pair[place] == name and sign < 0]
     others = ", ".join(wrong[:_NAMED]) + (", ..." if len(wrong) > _NAMED else "")
     if place == 0:

@@ -137,7 +137,7 @@ def test_a_place_whose_own_fmu_cannot_be_read(evcosim, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(text)
     found = check(evcosim, vehicle_fmu(tmp_path / "Vehicle.fmu", 2), "--as", "mine.toml.vehicle")
     assert found.code == 2
-    assert "mine.toml: units.vehicle.fmu = 'gone.fmu' cannot be read, so that nobody knows" in found.err
+    assert "mine.toml: units.vehicle.fmu = 'gone.fmu' cannot be read, so that the interface" in found.err
     assert "gone.fmu: there is no such FMU file" in found.err
 
 
