@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 from ..analysis.bus_budget import Budget, Point, Series
 from ..can.bus_settings import BusVariation
-from .draw import COLORS, canvas, pretty
+from .canvas import canvas
+from .style import COLORS
+from .text import pretty
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

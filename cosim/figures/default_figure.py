@@ -71,6 +71,12 @@ def default_spec(results: Results) -> FigureSpec:
     return FigureSpec(shade=shade.name if shade else None, panels=chosen, note=_note(left_out))
 
 
+def title_of(results: Results) -> str:
+    """Return the names of the system and the scenario of a run, as far as its manifest says them."""
+    parts = [results.manifest.get(key) for key in ("system", "scenario")]
+    return " · ".join(part for part in parts if isinstance(part, str))
+
+
 def _note(left_out: list[str]) -> str | None:
     if not left_out:
         return None

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from ..analysis.first_order import Estimate, FirstOrder, Fit, Prediction
 from ..analysis.frequency_response import FrequencyResponse
 from ..row_store import Array
-from .draw import COLORS, canvas, pretty
+from .canvas import canvas
+from .style import COLORS
+from .text import pretty
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from ..system.system import Connection, SystemFile
-from .draw import canvas
+from .canvas import canvas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

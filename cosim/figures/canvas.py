@@ -1,0 +1,60 @@
+"""Empty figures: panels in rows and columns under a title, always equally wide.
+
+matplotlib is used through its objects alone: no display, no global state.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
+
+from .style import WIDTH, style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@contextlib.contextmanager
+def canvas(
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    height: float = 3.0,
+    title: str = "",
+    share_x: bool = False,
+    ratios: Sequence[float] | None = None,
+) -> Iterator[tuple[Figure, NDArray[Any]]]:
+    """Give an empty figure in the style of all others, for charts that are not over time.
+
+    Gives the figure and its axes, shape (rows, columns); draw inside the `with` block. `height` is that of
+    a row in inches, or with `ratios` of the rows their mean; the width is always the same.
+    """
+    with style():
+        yield grid(rows, columns, height * rows + (0.5 if title else 0.2), title, share_x, ratios)
+
+
+def grid(
+    rows: int,
+    columns: int,
+    height: float,
+    title: str,
+    share_x: bool,
+    heights: Sequence[float] | None = None,
+    widths: Sequence[float] | None = None,
+) -> tuple[Figure, NDArray[Any]]:
+    """Return a figure of `height` inches and its axes, shape (rows, columns).
+
+    `heights` and `widths` are in proportion to each other; None: all equal.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    axes = figure.subplots(
+        rows, columns, squeeze=False, sharex=share_x, height_ratios=heights, width_ratios=widths
+    )
+    if title:
+        figure.suptitle(title, fontsize=12, fontweight="bold")
+    return figure, axes
