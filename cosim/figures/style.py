@@ -24,7 +24,7 @@ DASHES: tuple[Any, ...] = (
     (0, (1.2, 3)),
 )
 NAMED_DASHES = {"solid": DASHES[0], "dashed": DASHES[1], "dotted": DASHES[2], "dashdot": DASHES[3]}
-# Backgrounds of the states: pale, of falling lightness, so that they differ in gray as well.
+# Backgrounds of the states: pale; the first three differ in gray as well.
 SHADES = ("#FFFFFF", "#FBE3C0", "#BBD7EE", "#F3CDE0", "#BFE3CF", "#D9D9D9")
 
 WIDTH = 10.0  # inches; at _DPI 1440 pixels

@@ -1,0 +1,55 @@
+"""A figure that cannot be drawn is refused before it is."""
+
+from functools import partial
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.figures.check import check_specs, panel_conversion
+from evcosim.cosim.figures.draw import draw
+from evcosim.cosim.results.results import ResultVariable
+from evcosim.cosim.system.figure_spec import FigureSpec
+from evcosim.cosim.system.scenario import load_scenario, scenario_names
+from evcosim.cosim.system.selection import figure_spec
+from evcosim.cosim.system.system import load_system, system_names
+from support.outlined_scooter import scooter
+
+WRONG = [
+    ({"signals": ["vehicle.sped"]}, r"panel 1: no variable 'vehicle.sped' .*did you mean 'vehicle.speed'"),
+    (
+        {"unit": "N", "signals": ["vehicle.speed"]},
+        r"'vehicle.speed' \[m/s\] in \[N\]: .*different quantities",
+    ),
+]
+
+
+@pytest.mark.parametrize(("panel", "message"), WRONG)
+def test_a_panel_that_cannot_be_drawn_is_refused(panel: dict, message: str) -> None:
+    spec = FigureSpec.model_validate({"panels": [panel]})
+    with pytest.raises(ConfigError, match=message):
+        draw(scooter(), spec)
+
+
+def test_only_an_enumeration_shades() -> None:
+    spec = FigureSpec.model_validate({"shade": "vehicle.speed", "panels": [{"signals": ["ecu.state"]}]})
+    with pytest.raises(ConfigError, match=r"'vehicle.speed' is not an enumeration, so it has no states"):
+        draw(scooter(), spec)
+
+
+def test_the_unit_of_a_panel_is_that_of_its_lines() -> None:
+    convert = panel_conversion(ResultVariable("a.v", "m/s"), "km/h", "here")
+    assert convert(10.0) == pytest.approx(36.0)
+    for unit in ("", "km/h"):
+        assert panel_conversion(ResultVariable("a.v", unit), "km/h", "here").identity
+
+
+@pytest.mark.parametrize("name", system_names())
+def test_every_scenario_asks_for_what_its_system_records(name: str) -> None:
+    """And for nothing else: without one of the variables, the file that asks for it is named."""
+    system = load_system(name)
+    for scenario in map(partial(load_scenario, system), scenario_names(system)):
+        spec = figure_spec(system, scenario)
+        assert spec is not None
+        shown = [signal.name for panel in spec.panels for signal in panel.signals]
+        with pytest.raises(ConfigError, match=r"\.toml"):
+            check_specs(system, scenario, [ResultVariable(shown[0])])
