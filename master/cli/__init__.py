@@ -25,10 +25,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     import os
     import sys
 
+    from ..fmi import crash
     from . import completion
     from .app import command
     from .failures import guarded
 
-    if arguments is None and (instruction := os.environ.get(completion.VARIABLE)):
-        return completion.completed(command(), instruction)
+    if arguments is None:  # the process is ours
+        if instruction := os.environ.get(completion.VARIABLE):
+            return completion.completed(command(), instruction)
+        crash.enable()
     return guarded(command(), completion.with_shell(sys.argv[1:] if arguments is None else arguments))

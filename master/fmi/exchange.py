@@ -90,7 +90,7 @@ class ModelExchange(Instance):
         self._set_continuous, self._set_discrete = (
             binding.calls(binding.transfers("Set", self._inputs[kind])) for kind in (True, False)
         )
-        self.set_inputs = self._take_inputs
+        self.set_inputs = self._noting(self._take_inputs)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
         """See `unit.Unit`."""

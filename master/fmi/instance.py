@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.unit_plan import UnitPlan
 from ..unit import UnitError
-from . import binary, folders
+from . import binary, crash, folders
 from .binding import Binding
 from .fmu import Fmu, FmuError, check_runnable
 from .library import Library
@@ -78,6 +78,7 @@ class Instance:
         self._library: Any = None
         self._initialized = False
         self._folder: Path | None = None
+        self._crash_note = self._take_part_in_crash_report()
         try:
             folder = self._folder = folders.take(fmu, name)
             self._library = self._load(folder)
@@ -98,6 +99,19 @@ class Instance:
         self.set_inputs: Call = one_after_the_other()
         self.get_feedthrough: Call = one_after_the_other()
         self.get_outputs: Call = one_after_the_other()
+
+    def _take_part_in_crash_report(self) -> Call:
+        """Return a call that notes that this unit is called; it does nothing where no one asked for that."""
+        report = crash.report()
+        if report is None:
+            return one_after_the_other()
+        note = report.add(self, self.name, self.fmu.path.name, self.fmu.holds_python)
+        note()
+        return note
+
+    def _noting(self, call: Call) -> Call:
+        """A call of a step, which notes before that this unit is called, where someone asked for that."""
+        return call if crash.report() is None else one_after_the_other(self._crash_note, call)
 
     def _listen_to_trouble(self) -> None:
         """Leave out the log categories that tell of each call: they cost more than steps, and drown the
@@ -168,9 +182,9 @@ class Instance:
             else:
                 self.outputs += binding.transfers("Get", enumerate(group.variables, group.latest))
                 self.through += binding.feedthrough(group)
-        self.set_inputs = binding.calls(self.inputs)
+        self.set_inputs = self._noting(binding.calls(self.inputs))  # with which the turn of a unit begins
         self.get_feedthrough = binding.calls(self.through)
-        self.get_outputs = binding.calls(self.outputs)
+        self.get_outputs = self._noting(binding.calls(self.outputs))
 
     def judge_transfer(self, transfer: Transfer, status: int) -> None:
         """Count the warning, or raise the UnitError, that the status of a transfer is."""
@@ -286,12 +300,15 @@ class Instance:
         """See `unit.Unit`."""
         component, self._component = self._component, None
         library, self._library = self._library, None
+        self._crash_note()
         if library is not None:
             if component is not None and component.value:
                 with contextlib.suppress(AttributeError):  # a library that lacks the function frees nothing
                     self._free_instance(library, component)
             library.close()
         self.log.close()
+        if (report := crash.report()) is not None:
+            report.remove(self)
         folder, self._folder = self._folder, None
         if folder is not None:
             folders.give_back(self.fmu, self.name)
@@ -303,6 +320,7 @@ class Instance:
 
     def _call(self, name: str, *arguments: Any, of: str = "") -> None:
         """Call a C function and judge its status; `of` is the variable that it is about."""
+        self._crash_note()
         status = self.function(name)(*arguments)
         if status:
             self._judge(f"{name} of {of}" if of else name, status)

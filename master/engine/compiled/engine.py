@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import sys
 import time
+from collections.abc import Iterator
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....cosim.can.quantization import ChannelError
+from ...fmi import crash
 from ..engine import CHUNK_SECONDS, Act, Engine
 from . import tables as L
 from .cache import compiled
@@ -46,7 +49,8 @@ class CompiledEngine(Engine):
         # the steps, in machine code
         self._raised: BaseException | None = None
         try:
-            result = self._kernel(addresses.ctypes.data)
+            with self._crash_report(program):
+                result = self._kernel(addresses.ctypes.data)
         finally:  # also when Ctrl-C comes within
             self.k = first + int(state[L.STEPS_DONE])
             self._collect(log, starts)
@@ -62,6 +66,21 @@ class CompiledEngine(Engine):
         recheck = program.rechecks[at] if called < 0 else program.call_rechecks[called]
         recheck(result, int(self._state[L.DETAIL]))
         raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+
+    @contextlib.contextmanager
+    def _crash_report(self, program: Program) -> Iterator[None]:
+        """While the kernel runs, the report of a crash, if one is asked for, names the operation's unit."""
+        report = crash.report()
+        if report is None:
+            yield
+            return
+        texts = np.array([report.row(unit) for unit in program.units_of(self._places)], dtype=np.int64)
+        place = self._state[L.AT : L.AT + 1]
+        report.follow(texts.ctypes.data, place.ctypes.data)
+        try:
+            yield
+        finally:
+            report.rest()
 
     # ---- made once
 

@@ -331,6 +331,7 @@ def follow(t, timed):
             moment = clock(t)
         for i in range(word(state, L.OPERATIONS)):
             if k == word(o, L.DUE):
+                put_word(state, L.AT, i)
                 put_word(o, L.DUE, k + word(o, L.EVERY))
                 result = operate(t, m, o, s, k, time)
                 if timed:
@@ -338,7 +339,6 @@ def follow(t, timed):
                     put_number(word(t, L.TIMES_OF_OPS), i, number(word(t, L.TIMES_OF_OPS), i) + now - moment)
                     moment = now
                 if result != L.DONE:
-                    put_word(state, L.AT, i)
                     return result
             o += 8 * L.OPERATION
         # the step is done: an error in a later one leaves its row

@@ -17,6 +17,7 @@ from ...fmi.fmi2 import Fmi2Unit
 from ...fmi.fmi3 import Fmi3Unit
 from ...fmi.instance import Instance
 from ...fmi.transfer import Copy, Transfer
+from ...unit import Unit
 from ..engine import Engine, Sender, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
@@ -122,6 +123,14 @@ class Program:
                 what = "step" if kind == L.STEP else "set"
             found.append(part_of(action, self._engine.plan, what))
         return found
+
+    def units_of(self, places: list[int]) -> list[Unit | None]:
+        """The unit that each of these operations calls; None for one that calls none."""
+        actions = [self._engine.schedule[self.actions[place]] for place in places]
+        return [
+            self._engine.turns[action.index].unit if action.kind in ("begin", "end") else None
+            for action in actions
+        ]
 
     # ---- operations
 

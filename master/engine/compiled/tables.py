@@ -80,7 +80,7 @@ WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = r
 CLOCK, CLOCK_A, CLOCK_B, NOTED = range(9, 13)
 STATE_SIZE = 13
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
-of stimuli; the operation at which the kernel stopped, the row of CALLS within it (-1: none), and a detail;
+of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
 of TICKS; 1 if any column WARNINGS or TIMES is not 0."""
 START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)

@@ -91,16 +91,6 @@ def test_however_a_unit_ends_the_rows_are_kept(tmp_path: Path, fmi: int, behavio
     assert time.monotonic() - begin < 20.0
 
 
-@pytest.mark.parametrize("engine", ["compiled", "python"])
-def test_without_isolation_a_crash_takes_the_run_with_it(tmp_path: Path, engine: str) -> None:
-    """What docs/isolation.md says of it: should rows be kept one day, the page must say so."""
-    options = ["--isolation", "none", "--engine", engine, "--no-plot", "--output", tmp_path / "out"]
-    command = [sys.executable, "-m", "evcosim", "run", pair(tmp_path, 50), *options]
-    ended = subprocess.run(command, capture_output=True)
-    assert ended.returncode == -signal.SIGSEGV
-    assert list((tmp_path / "out").iterdir()) == []
-
-
 def test_a_unit_that_ends_before_the_first_step(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"unit 'a': its process was killed by SIGSEGV .*, asked for load"):
         simulate(pair(tmp_path, 60))
