@@ -72,7 +72,7 @@ class CsvFile:
         return self._line_by_line(wanted, empty_lines) if table is None else table
 
     def _by_numpy(self, columns: Sequence[int], empty_lines: bool) -> Array | None:
-        """Return the numbers as `numbers` does, or None where not every value of the file is a number."""
+        """Return the numbers as `numbers` does, shape (n, len(columns)), or None where a value is none."""
         with _opened(self.path, self.header_lines) as file:
             table = _all_numbers(file, len(self.names))
         if table is None:
@@ -86,7 +86,7 @@ class CsvFile:
         return table
 
     def _line_by_line(self, columns: Sequence[int], empty_lines: bool) -> Array:
-        """Return the numbers as `numbers` does. Raises ConfigError for the first mistake in the file."""
+        """Return the numbers, shape (n, len(columns)). Raises ConfigError for the file's first mistake."""
         found = array.array("d")
         empty = 0  # the first empty line
         with _opened(self.path, self.header_lines) as file:

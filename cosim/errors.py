@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 
 class Recorded(Protocol):
-    """What is recorded of a failed run: n rows of m variables.
+    """The recording of a failed run: n rows of m variables.
 
     It is an `evcosim.Results`, which stands above this module, as do the types of arrays and figures.
     """
@@ -52,7 +52,7 @@ class ConfigError(ValueError):
 class RunError(RuntimeError):
     """A run that failed: the message names the unit, the time and the reason.
 
-    `results` is what was recorded up to then, where the run got as far as recording.
+    `results` has the rows up to then; None where the run failed before it recorded any.
     """
 
     results: Recorded | None = None

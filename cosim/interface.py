@@ -1,4 +1,4 @@
-"""What a unit offers to the others: its variables, as an FMU's model description declares them."""
+"""The interface of a unit to the others: its variables, as an FMU's model description declares them."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class VariableInfo:
 class UnitInterface:
     """The variables of a unit by name, and the units of measure that it defines by name.
 
-    `place` says where the description comes from (a file) for error messages. `unusable` are the variables
-    that it declares and no one can ask for, with the reason.
+    `place` names the file of the description for error messages. `unusable` are declared variables that
+    cannot be used, with the reason.
     """
 
     place: str
@@ -61,11 +61,14 @@ class UnitInterface:
     unusable: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def of_causality(self, *causalities: str) -> tuple[VariableInfo, ...]:
-        """The variables of these causalities, in declared order."""
+        """Return the variables of these causalities, in declared order."""
         return tuple(v for v in self.variables.values() if v.causality in causalities)
 
     def require(self, unit: str, name: str, causalities: Iterable[str], place: str) -> VariableInfo:
-        """The variable `name`, or ConfigError naming `place`, the unit and the nearest name there is."""
+        """Return the variable `name`, which must be of one of the causalities.
+
+        Raises ConfigError naming `place`, the unit and the nearest name there is.
+        """
         wanted = tuple(causalities)
         if name in self.unusable:
             raise ConfigError(f"{place}: unit '{unit}': {name} {self.unusable[name]} ({self.place})")

@@ -1,7 +1,7 @@
 """Rows of numbers that a run appends: in memory while they are few, in a temporary file beyond that.
 
-A run of 8 hours at 100 Hz records a gigabyte. What looks at its results takes a stretch of rows at a time, so
-that is all that is in memory of a Table in a file. The times of equal steps are not kept at all (Grid).
+A run of 8 hours at 100 Hz records a gigabyte. Its results are read a stretch of rows at a time, so that is
+all that is in memory of a Table in a file. The times of equal steps are not kept at all (Grid).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from .errors import RunError
 
 Array = NDArray[np.float64]
+"""Numbers in memory; what is declared with it says its shape."""
 
 MEMORY = 16 * 2**20  # bytes of rows that stay in memory: nine minutes of 40 variables at 100 Hz
 _STRETCH = 2**20  # bytes that are read at a time to take some of the columns
@@ -36,53 +37,53 @@ class Grid:
         return self.count
 
     def __getitem__(self, rows: slice) -> Array:
-        """The times of some rows, shape (n,)."""
+        """Return the times [s] of some rows, shape (rows,)."""
         steps = np.arange(*rows.indices(self.count), dtype=np.float64)
         return self.start + self.step * steps
 
 
 @runtime_checkable
 class Table(Protocol):
-    """Numbers in rows and columns."""
+    """Numbers in n rows and m columns."""
 
     @property
     def shape(self) -> tuple[int, int]:
-        """The numbers of rows and of columns."""
+        """The numbers of rows and of columns, (n, m)."""
 
     def rows(self, start: int, stop: int) -> Array:
-        """The rows from `start` to before `stop`, or to the end, shape (n, columns)."""
+        """Return the rows from `start` to before `stop`, or to the end, shape (rows, m)."""
 
     def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
-        """Some columns of the rows from `start` to before `stop`, or to the end, shape (n, len(columns))."""
+        """Return some columns of these rows, shape (rows, len(columns))."""
 
     def column(self, j: int) -> Array:
-        """Column j, shape (rows,)."""
+        """Return column j, shape (n,)."""
 
     def whole(self) -> Array:
-        """All of it, in memory."""
+        """Return all of it, shape (n, m), in memory."""
 
 
 class MemoryTable:
-    """A Table that is an array; rows and columns are views of it."""
+    """A Table that is an array of shape (n, m); rows and columns are views of it."""
 
     def __init__(self, array: Array) -> None:
         self._array = array
         self.shape: tuple[int, int] = (array.shape[0], array.shape[1])
 
     def rows(self, start: int, stop: int) -> Array:
-        """See `Table`."""
+        """Return a view of some rows, shape (rows, m)."""
         return self._array[start:stop]
 
     def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
-        """See `Table`."""
+        """Return a copy of some columns of some rows, shape (rows, len(columns))."""
         return self._array[start:stop, list(columns)]
 
     def column(self, j: int) -> Array:
-        """See `Table`."""
+        """Return a view of column j, shape (n,)."""
         return self._array[:, j]
 
     def whole(self) -> Array:
-        """See `Table`."""
+        """Return the array itself, shape (n, m)."""
         return self._array
 
 
@@ -95,6 +96,7 @@ class _TemporaryFile:
         weakref.finalize(self, file.close)
 
     def read(self, place: int, into: memoryview[int]) -> None:
+        """Fill `into` from byte `place` on. Raises RunError where the file has fewer bytes."""
         self._file.seek(place)
         while into:  # one call reads 2 GiB at most
             count = self._file.readinto(into)
@@ -103,20 +105,21 @@ class _TemporaryFile:
             into = into[count:]
 
     def write(self, place: int, data: memoryview[int]) -> None:
+        """Write bytes from byte `place` on. Raises OSError where the disk refuses."""
         self._file.seek(place)
         while data:
             data = data[self._file.write(data) :]
 
 
 class _FileTable:
-    """The first rows of a file, and then those of `last`."""
+    """A Table of the first `count` rows of a file, and then those of `last`, shape (rows, m)."""
 
     def __init__(self, file: _TemporaryFile, count: int, last: Array) -> None:
         self._file, self._count, self._last = file, count, last
         self.shape: tuple[int, int] = (count + len(last), last.shape[1])
 
     def rows(self, start: int, stop: int) -> Array:
-        """See `Table`."""
+        """Return some rows, shape (rows, m), read from the file."""
         start, stop, _ = slice(start, stop).indices(self.shape[0])
         count, width = max(0, min(stop, self._count) - start), self.shape[1]
         found = np.empty((max(0, stop - start), width))
@@ -126,7 +129,7 @@ class _FileTable:
         return found
 
     def part(self, start: int, stop: int, columns: Sequence[int]) -> Array:
-        """See `Table`."""
+        """Return some columns of some rows, shape (rows, len(columns)), read a stretch of rows at a time."""
         start, stop, _ = slice(start, stop).indices(self.shape[0])
         found = np.empty((max(0, stop - start), len(columns)))
         step = max(1, _STRETCH // (8 * self.shape[1]))
@@ -135,11 +138,11 @@ class _FileTable:
         return found
 
     def column(self, j: int) -> Array:
-        """See `Table`."""
+        """Return column j, shape (n,), read a stretch of rows at a time."""
         return self.part(0, self.shape[0], [j])[:, 0]
 
     def whole(self) -> Array:
-        """See `Table`."""
+        """Return all rows, shape (n, m), read from the file."""
         return self.rows(0, self.shape[0])
 
 
@@ -148,7 +151,7 @@ class RowStore:
 
     Beyond `memory` bytes they are in a temporary file without a name in `folder` (default: the system's,
     which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. An error
-    says `what` cannot be kept there, and with what `advice` it could.
+    names `what` cannot be kept there, and the `advice` with which it could.
     """
 
     def __init__(
@@ -199,7 +202,10 @@ class RowStore:
         self._chunks, self._in_memory = [], 0
 
     def table(self, last: Array | None = None) -> Table:
-        """What is there by now, and `last` rows after it; what is appended later does not change it."""
+        """Return the rows up to now and after them `last`, shape (rows, width).
+
+        Rows that are appended later do not change it.
+        """
         tail = [*self._chunks, *([] if last is None else [last])]
         rows = np.vstack([np.empty((0, self._width)), *tail])
         if self._file is None:

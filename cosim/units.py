@@ -31,15 +31,15 @@ class Affine:
 
     @property
     def identity(self) -> bool:
-        """Whether it maps every value to itself."""
+        """True where it maps every value to itself."""
         return self.scale == 1.0 and self.offset == 0.0
 
     def inverse(self) -> Affine:
-        """The map back."""
+        """Return the map back. Raises ZeroDivisionError for a map that sends all values to one."""
         return Affine(1.0 / self.scale, -self.offset / self.scale)
 
     def expression(self, x: str) -> str:
-        """The map as Python source over the expression `x`, without the terms that do nothing."""
+        """Return the map as Python source over the expression `x`, without the terms that do nothing."""
         if self.scale != 1.0:
             x = f"{self.scale!r} * {x}"
         return f"{x} + {self.offset!r}" if self.offset != 0.0 else x
@@ -53,11 +53,11 @@ class UnitOfMeasure:
     exponents: tuple[int, ...] | None = None
     factor: float = 1.0
     offset: float = 0.0
-    angle_known: bool = True  # False for pint's units, which do not tell rad from 1
+    angle_known: bool = True  # False for pint's units, in which rad is 1
 
 
 def _usual() -> dict[str, UnitOfMeasure]:
-    """The units of DBC files, figures and metrics that most runs need; the tests compare them with pint's."""
+    """Return the units of DBC files, figures and metrics that most runs need; tests compare pint's."""
     none, length, speed = (0,) * 8, (0, 1, 0, 0, 0, 0, 0, 0), (0, 1, -1, 0, 0, 0, 0, 0)
     force, energy, power = (1, 1, -2, 0, 0, 0, 0, 0), (1, 2, -2, 0, 0, 0, 0, 0), (1, 2, -3, 0, 0, 0, 0, 0)
     second, ampere, volt = (0, 0, 1, 0, 0, 0, 0, 0), (0, 0, 0, 1, 0, 0, 0, 0), (1, 2, -3, -1, 0, 0, 0, 0)
@@ -99,7 +99,7 @@ _ALIASES = {
 
 
 def defined(name: str, *sources: Mapping[str, UnitOfMeasure]) -> UnitOfMeasure:
-    """The definition of a unit name: the first of `sources` that has it, else the usual one, else pint's.
+    """Return the definition of a unit name: by the first of `sources` that has it, the usual units, or pint.
 
     Raises ConfigError when nobody knows the name.
     """
@@ -112,7 +112,7 @@ def defined(name: str, *sources: Mapping[str, UnitOfMeasure]) -> UnitOfMeasure:
 
 @functools.cache
 def by_pint(name: str) -> UnitOfMeasure:
-    """What pint knows of a unit name. Raises ConfigError when it knows nothing."""
+    """Return pint's definition of a unit name. Raises ConfigError when it has none."""
     import pint  # 0.3 s, and only names without a definition need it
 
     registry = _pint_registry()
@@ -145,6 +145,7 @@ def _pint_registry():  # type: ignore[no-untyped-def] # pint is imported lazily,
 
 
 def _spell_out(name: str) -> str:
+    """Return a unit name of FMI or Modelica as pint has it: "kg.m2" as "kg*m**2"."""
     import re
 
     with_powers = re.sub(r"(?<=[A-Za-z])(-?\d+)", r"**\1", name)
@@ -152,7 +153,7 @@ def _spell_out(name: str) -> str:
 
 
 def conversion(source: UnitOfMeasure, target: UnitOfMeasure) -> Affine:
-    """The map from values in `source` to values in `target`.
+    """Return the map from values in `source` to values in `target`.
 
     Raises ConfigError when they do not measure the same quantity.
     """
@@ -164,7 +165,7 @@ def conversion(source: UnitOfMeasure, target: UnitOfMeasure) -> Affine:
 
 
 def _ratio(a: float, b: float) -> float:
-    """a / b, rounded once: 1 / (1/3.6) is 3.6 here, where plain division gives 3.5999999999999996."""
+    """Return a / b, rounded once: 1 / (1/3.6) is 3.6 here, where division gives 3.5999999999999996."""
     exact = [Fraction(x).limit_denominator(1_000_000) for x in (a, b)]
     if float(exact[0]) == a and float(exact[1]) == b:
         return float(exact[0] / exact[1])
@@ -172,8 +173,9 @@ def _ratio(a: float, b: float) -> float:
 
 
 def _same_quantity(a: UnitOfMeasure, b: UnitOfMeasure) -> bool:
+    """Return whether both are defined and have the same exponents."""
     if a.exponents is None or b.exponents is None:
         return False
     if a.angle_known and b.angle_known:
         return a.exponents == b.exponents
-    return a.exponents[:-1] == b.exponents[:-1]  # one side does not tell rad from 1
+    return a.exponents[:-1] == b.exponents[:-1]  # rad is 1 on one side

@@ -13,9 +13,10 @@ from .errors import ConfigError
 
 @contextlib.contextmanager
 def in_place_of(path: Path) -> Iterator[Path]:
-    """The name of a file to write, which takes the place of `path` once it is whole, or leaves no trace.
+    """Give the name of a file to write, which takes the place of `path` at the end of the `with` block.
 
-    Raises ConfigError naming the path and the reason when the folder or the disk refuses.
+    Where the block raises, the file is removed and `path` is as it was. The folder is made if needed. Raises
+    ConfigError naming the path and the reason when the folder or the disk refuses, within the block too.
     """
     # beside it: a rename must not cross disks
     partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
@@ -33,6 +34,6 @@ def in_place_of(path: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
-    """The same, as a binary file that is open."""
+    """Give a binary file, open for writing, which takes the place of `path` as `in_place_of` says."""
     with in_place_of(path) as partial, partial.open("wb") as file:
         yield file

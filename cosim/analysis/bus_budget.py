@@ -1,4 +1,4 @@
-"""How much a system's buses may cost it: its own metric over delay, resolution and cycle, each by itself.
+"""The bus budget of a system: its own metric over delay, resolution and cycle of its buses, each by itself.
 
 A point is one run with a variation of all buses (`bus_settings.BusVariation`); the nominal point, the system
 as its file says, is one of each series. A point is broken when the metric is beyond the limit, or when there
@@ -18,7 +18,7 @@ from ..results.metrics import Metric
 
 @dataclasses.dataclass(frozen=True)
 class Point:
-    """One run: what was changed, in words and as it is; the metric, or NaN and the `reason` why."""
+    """One run: the change of the buses, in words and as it is; the metric, or NaN and the `reason` why."""
 
     label: str
     bus: BusVariation
@@ -35,13 +35,16 @@ class Series:
 
     @property
     def nominal(self) -> int:
-        """The place of the system as it is."""
+        """The index of the point at which the system is as it is."""
         return next(i for i, point in enumerate(self.points) if point.bus == BusVariation())
 
 
 def series(step_size: float) -> tuple[Series, ...]:
-    """What is run: 0 to 3 steps of `step_size` [s] more delay; signals not quantized, as in the DBC, 2, 4 and
-    8 times as coarse; messages 1, 2, 4 and 8 times as seldom."""
+    """Return the points to run, without values.
+
+    They are 0 to 3 steps of `step_size` [s] more delay; signals not quantized, as in the DBC, 2, 4 and 8
+    times as coarse; messages 1, 2, 4 and 8 times as seldom.
+    """
     times = (1, 2, 4, 8)
     return (
         Series(
@@ -66,7 +69,7 @@ def _delay(steps: int, step_size: float) -> str:
 
 @dataclasses.dataclass(frozen=True)
 class Budget:
-    """The outcome: the series, and what judges them: a metric in `unit` and its limit, upper or lower."""
+    """The outcome: the series, and the metric in `unit` that judges them with its limit, upper or lower."""
 
     system: str
     scenario: str
@@ -77,15 +80,15 @@ class Budget:
     series: tuple[Series, ...]
 
     def broken(self, point: Point) -> bool:
-        """Whether the metric is beyond the limit, or there is none."""
+        """Return whether the metric is beyond the limit, or there is none."""
         return not (point.value <= self.limit if self.kind == "max" else point.value >= self.limit)
 
     def first_broken(self, series: Series) -> Point | None:
-        """The first broken point from the nominal one on."""
+        """Return the first broken point from the nominal one on, or None."""
         return next((p for p in series.points[series.nominal :] if self.broken(p)), None)
 
     def summary(self, series: Series) -> str:
-        """Where this series breaks, in a few words."""
+        """Return in a few words at which point a series breaks."""
         first, nominal = self.first_broken(series), series.points[series.nominal]
         if first is nominal:
             said = "broken as it is"
@@ -98,23 +101,23 @@ class Budget:
 
     @property
     def rule(self) -> str:
-        """What is required, in words."""
+        """The requirement, in words."""
         limit = Metric("", self.limit, self.unit).text
         return f"{self.metric}: at {'most' if self.kind == 'max' else 'least'} {limit}"
 
     def text(self, point: Point) -> str:
-        """The value of a point with its unit."""
+        """Return the value of a point with its unit."""
         return "-" if math.isnan(point.value) else Metric("", point.value, self.unit).text
 
     def verdict(self, point: Point) -> str:
-        """What a point comes to; a failed run with the first line of its reason."""
+        """Return "holds" or "broken"; for a failed run with the first line of its reason."""
         if not self.broken(point):
             return "holds"
         reason = point.reason.strip().splitlines()
         return f"broken: {reason[0]}" if reason else "broken"
 
     def rows(self) -> list[tuple[str, str, str, str]]:
-        """Series, point (* the nominal one), value and verdict of every point."""
+        """Return series, point (* the nominal one), value and verdict of every point."""
         return [
             (
                 each.name if i == 0 else "",
@@ -128,7 +131,7 @@ class Budget:
 
 
 def as_data(budget: Budget) -> dict[str, Any]:
-    """The budget for JSON: a value that there is not is None."""
+    """Return the budget for JSON: a value that there is not is None."""
     keys = ("system", "scenario", "metric", "unit", "limit", "kind")
     return {key: getattr(budget, key) for key in keys} | {
         "series": [
@@ -159,7 +162,7 @@ def _point(budget: Budget, point: Point) -> dict[str, Any]:
 
 
 def as_markdown(budget: Budget, figure: str) -> str:
-    """A page: what was asked, where it breaks, the table, and the figure in the file `figure`."""
+    """Return a page: the requirement, where each series breaks, the table, the figure in file `figure`."""
     name = " ".join(part for part in (budget.system, budget.scenario) if part)
     return "\n".join(
         [
@@ -178,7 +181,7 @@ def as_markdown(budget: Budget, figure: str) -> str:
 
 
 def table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """A Markdown table as lines."""
+    """Return a Markdown table as lines."""
     escaped = [[cell.replace("|", "\\|").replace("*", "\\*") for cell in row] for row in (headers, *rows)]
     first, *others = (f"| {' | '.join(cells)} |" for cells in escaped)
     return [first, "|---" * len(headers) + "|", *others]

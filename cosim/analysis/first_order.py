@@ -21,7 +21,7 @@ each side), which count as independent otherwise. Intervals are Student's, in lo
 (noise, quantization), not what is systematic: nonlinearity, or dynamics that (1) does not have.
 
 Conditioning. Far above its pole, G is mu f_p/(j f) and any gain fits with its pole: only their product is
-known. Far below, G is mu and says nothing of the pole. So gain and pole can be told apart when the pole lies
+known. Far below, G is mu and says nothing of the pole. So gain and pole are separable when the pole lies
 inside the band.
 
 Prediction. ESR(t) = |v_m - v_id|/v_m 100 % over accelerations, v_m measured, v_id of the model          (4)
@@ -74,11 +74,14 @@ class FirstOrder:
         return 1.0 / (2.0 * math.pi * self.pole)
 
     def response(self, frequency: Array) -> NDArray[np.complex128]:
-        """G at frequencies [Hz], any shape. (1)"""
+        """Return G at frequencies [Hz], any shape. (1)"""
         return np.asarray(self.gain / (1.0 + 1j * frequency / self.pole), dtype=np.complex128)
 
     def simulated(self, u: Array, step: float, start: float = 0.0) -> Array:
-        """x of T x' = gain u - x, x(0) = `start`, for inputs held over `step` [s]: shape (n + 1,)."""
+        """Return x of T x' = gain u - x, x(0) = `start`, shape (n + 1,).
+
+        The inputs `u`, shape (n,), are held over `step` [s] each.
+        """
         from scipy import signal
 
         decay = math.exp(-step / self.time_constant)
@@ -105,17 +108,17 @@ class Fit:
 
     @property
     def model(self) -> FirstOrder:
-        """The model alone."""
+        """The model without its intervals."""
         return FirstOrder(self.gain.value, self.pole.value)
 
     @property
     def separable(self) -> bool:
-        """Whether the band tells gain and pole apart: the pole lies inside it."""
+        """True where the band separates gain and pole: the pole lies inside it."""
         return self.band[0] < self.pole.value < self.band[1]
 
     @property
     def warnings(self) -> list[str]:
-        """What the numbers cannot be trusted for, one sentence each."""
+        """A sentence for each reason not to trust the numbers."""
         said = [] if self.separable else [self._conditioning()]
         if self.coherence < POOR_COHERENCE:
             said.append(
@@ -145,7 +148,7 @@ class Fit:
 
 
 def fit_first_order(measured: FrequencyResponse, band: tuple[float, float], confidence: float = 0.95) -> Fit:
-    """The first-order model that fits `measured` best in `band` [Hz]. (2), (3)
+    """Return the first-order model that fits `measured` best in `band` [Hz]. (2), (3)
 
     Raises ConfigError when the band holds fewer than three points, or the response is zero or not finite.
     """
@@ -159,6 +162,7 @@ def fit_first_order(measured: FrequencyResponse, band: tuple[float, float], conf
     limits = (np.log(band[0] / _FAR), np.log(band[1] * _FAR))
 
     def residuals(q: Array) -> Array:
+        """Return the weighted errors (2), shape (2 n,), for q = (ln|mu|, ln f_p), shape (2,)."""
         model = FirstOrder(sign * math.exp(q[0]), math.exp(q[1]))
         error = weight * (1.0 - model.response(data.frequency) / data.response)  # (2)
         return np.concatenate((error.real, error.imag))
@@ -186,7 +190,7 @@ def fit_first_order(measured: FrequencyResponse, band: tuple[float, float], conf
 
 
 def _levy(data: FrequencyResponse, band: tuple[float, float]) -> tuple[float, list[float]]:
-    """Where the search begins: the gain's sign, and (ln|gain|, ln pole)."""
+    """Return the gain's sign, and the (ln|gain|, ln pole) at which the search begins."""
     w = 2.0 * np.pi * data.frequency
     size = np.abs(data.response)
     columns = np.stack([np.ones_like(w, dtype=np.complex128), -1j * w * data.response]) / size
@@ -204,32 +208,36 @@ def _levy(data: FrequencyResponse, band: tuple[float, float]) -> tuple[float, li
 
 
 def _covariance(jacobian: Array, variance: float) -> Array:
+    """Return C, shape (2, 2), of a Jacobian of shape (2 n, 2) and the variance of the residuals."""
     normal = jacobian.T @ jacobian
     return np.asarray(_NEIGHBORS * variance * np.linalg.pinv(normal), dtype=np.float64)  # (3)
 
 
 def _correlation(covariance: Array) -> float:
+    """Return the correlation of two estimates, from -1 to 1, by their covariance, shape (2, 2)."""
     scale = math.sqrt(covariance[0, 0] * covariance[1, 1])
     return float(covariance[0, 1] / scale) if scale > 0.0 else 0.0
 
 
 def _student(confidence: float, freedom: int) -> float:
+    """Return the half width of a confidence interval in standard deviations, by Student's distribution."""
     from scipy import special
 
     return float(special.stdtrit(freedom, 0.5 + 0.5 * confidence))
 
 
 def _estimate(log_value: float, spread: float, sign: float) -> Estimate:
+    """Return the estimate whose logarithm is `log_value` give or take `spread`."""
     spread = min(spread, 300.0)  # exp of more is no number; so wide an interval says nothing anyway
     ends = sorted(sign * math.exp(log_value + s) for s in (-spread, spread))
     return Estimate(sign * math.exp(log_value), ends[0], ends[1])
 
 
 def curvature(x: Array, y: Array) -> float:
-    """How far `y` bends from a straight line in `x`, the output of the linear model; both shape (n,).
+    """Return the bend of `y` over `x`, the output of the linear model, from a straight line; both shape (n,).
 
-    The largest distance between the cubic and the line that fit best, as a share of the line's range: 0 where
-    the unit is linear, large where an input or an output is cut off.
+    It is the largest distance between the cubic and the line that fit best, as a share of the line's range: 0
+    where the unit is linear, large where an input or an output is cut off.
     """
     scale = float(np.abs(x).max())
     cubic, line = np.polyfit(x / scale, y, 3), np.polyfit(x / scale, y, 1)
@@ -240,7 +248,7 @@ def curvature(x: Array, y: Array) -> float:
 
 
 def flat_share(y: Array, sweep_frequency: Array, rate: float) -> float:
-    """The longest time that `y` stays at one of its extremes, in periods of the sweep at that time.
+    """Return the longest time that `y` stays at one of its extremes, in periods of the sweep at that time.
 
     `y` and `sweep_frequency` [Hz] have shape (n,), sampled at `rate` [Hz]. At an extreme is within 1 % of the
     range: a sine is there for 0.06 periods at a time, one that is cut off for much longer.
@@ -251,7 +259,7 @@ def flat_share(y: Array, sweep_frequency: Array, rate: float) -> float:
 
 
 def _longest(inside: NDArray[np.bool_], amount: Array) -> float:
-    """The largest sum of `amount` over a stretch of neighbors that are `inside`."""
+    """Return the largest sum of `amount` over a stretch of neighbors that are `inside`, both shape (n,)."""
     total = np.concatenate(([0.0], np.cumsum(amount)))
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(np.int8)))
     return max(
@@ -277,10 +285,11 @@ class Prediction:
 def predict(
     model: FirstOrder, time: Array, u: Array, y: Array, working_point: tuple[float, float]
 ) -> Prediction:
-    """The model beside the measurement, re-initialized in decelerations; all shapes (n,). (4)
+    """Return the model beside the measurement, re-initialized in decelerations. (4)
 
-    `u` is held from each `time` [s] on; the steps are equal. `working_point` is an input and its steady
-    output. Accelerating is a mean slope over T/5 of more than 1 % of the range of `y` in T.
+    `time` [s], input `u` and output `y` have shape (n,). `u` is held from each time on; the steps are equal.
+    `working_point` is an input and its steady output. Accelerating is a mean slope over T/5 of more than 1 %
+    of the range of `y` in T.
     """
     step = float(time[1] - time[0])
     slope = _slope(y, step, 0.1 * model.time_constant)
@@ -304,7 +313,7 @@ def predict(
 
 
 def _slope(y: Array, step: float, half: float) -> Array:
-    """The mean slope over `half` [s] on each side, shape (n,)."""
+    """Return the mean slope of `y` per s, over `half` [s] on each side of a point; both shape (n,)."""
     reach = max(1, round(half / step))
     at = np.arange(len(y))
     after, before = np.minimum(at + reach, len(y) - 1), np.maximum(at - reach, 0)

@@ -42,7 +42,7 @@ class FrequencyResponse:
         return float(self.frequency[1] - self.frequency[0]) if len(self.frequency) > 1 else 0.0
 
     def within(self, band: tuple[float, float]) -> FrequencyResponse:
-        """The points in `band` [Hz]. Raises ConfigError when there are fewer than three."""
+        """Return the points in `band` [Hz]. Raises ConfigError when there are fewer than three."""
         keep = (self.frequency >= band[0]) & (self.frequency <= band[1])
         if np.count_nonzero(keep) < 3:
             raise ConfigError(
@@ -53,24 +53,27 @@ class FrequencyResponse:
 
 
 def block_length(highest: float, step_size: float) -> int:
-    """Into how many steps of `step_size` [s] a block is divided, for a sweep up to `highest` [Hz]."""
+    """Return how many steps of `step_size` [s] a block takes, for a sweep up to `highest` [Hz]."""
     return max(1, int(1.0 / (RATE * highest * step_size) + 1e-9))
 
 
 def averaged(values: Array, block: int) -> Array:
-    """Means over blocks of `block` values, shape (len(values) // block,)."""
+    """Return the means over blocks of `block` of the n values, shape (n // block,)."""
     whole = len(values) // block * block
     return np.asarray(values[:whole].reshape(-1, block).mean(axis=1), dtype=np.float64)
 
 
 def midpoints(values: Array) -> Array:
-    """Means of neighbors, shape (n - 1,): what is valid at t_k, put where the input held from t_k on has its
-    center of mass; without it the output would seem half a step early."""
+    """Return the means of neighbors of n values, shape (n - 1,).
+
+    They put what is valid at t_k where the input held from t_k on has its center of mass; without it the
+    output would seem half a step early.
+    """
     return np.asarray(0.5 * (values[1:] + values[:-1]), dtype=np.float64)
 
 
 def frequency_response(u: Array, y: Array, rate: float, length: int | None = None) -> FrequencyResponse:
-    """(1), (2) between the input `u` and the output `y`, both shape (n,), sampled at `rate` [Hz].
+    """Return (1), (2) between the input `u` and the output `y`, both shape (n,), sampled at `rate` [Hz].
 
     `length` samples make a segment (default: a power of two, at most a quarter of the signal). The
     frequency 0 is left out. Raises ConfigError for signals that do not vary, are not finite, or too short.
@@ -97,6 +100,7 @@ def frequency_response(u: Array, y: Array, rate: float, length: int | None = Non
 
 
 def _check_signals(u: Array, y: Array) -> None:
+    """Raise ConfigError unless both have the same shape (n,), are finite, and vary."""
     if u.shape != y.shape or u.ndim != 1:
         raise ConfigError(f"input {u.shape} and output {y.shape}: two signals of the same length are needed")
     for name, values in (("input", u), ("output", y)):

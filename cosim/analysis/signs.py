@@ -1,4 +1,4 @@
-"""How outputs react to inputs, and which signs must be turned so that two units react alike. Arrays alone."""
+"""Reactions of outputs to inputs, and the signs to turn so that two units react alike. Arrays alone."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ Pair = tuple[str, str]
 
 
 def direction(change: Array) -> int:
-    """1 where a change raises an output, -1 where it lowers it, 0 where it does both or nothing."""
+    """Return 1 for a change of an output, shape (n,), that raises it, -1 for one that lowers it, 0 otherwise.
+
+    Raised or lowered is an output whose changes add up to more than half of the sum of their sizes.
+    """
     whole, size = float(np.sum(change)), float(np.sum(np.abs(change)))
     if abs(whole) <= 0.5 * size:
         return 0
@@ -23,7 +26,7 @@ def direction(change: Array) -> int:
 
 
 def alike(theirs: Array, ours: Array) -> tuple[float, float]:
-    """(ratio, agreement) of two changes over the same times.
+    """Return (ratio, agreement) of two changes over the same times, both shape (n,).
 
     `ratio` is the factor k for which k ours is nearest to theirs (least squares), `agreement` the cosine of
     the angle between them: 1 for the same course, -1 for that with the other sign. 0, 0 where one is 0.
@@ -38,7 +41,7 @@ def alike(theirs: Array, ours: Array) -> tuple[float, float]:
 
 
 def turned(signs: Mapping[Pair, int]) -> tuple[set[str], set[str]] | None:
-    """The fewest inputs and outputs whose sign must be turned so that all pairs have sign 1.
+    """Return the fewest inputs and outputs whose sign must be turned so that all pairs have sign 1.
 
     `signs` are 1 for pairs that react as they should, -1 for those with the other sign. Where an input or an
     output alone would do, it is the input. None: no choice of signs makes all pairs right.

@@ -65,14 +65,14 @@ class Sweep:
         return self.repeats * self.duration
 
     def __call__(self, time: Array) -> Array:
-        """The deviation from the working point at times [s] since the start, any shape. (1), (2)"""
+        """Return the deviation from the working point at times [s] since the start, any shape. (1), (2)"""
         ratio = self.stop / self.start
         along = np.mod(time, self.duration) / self.duration
         phase = 2.0 * np.pi * self.start * self.duration / np.log(ratio) * (ratio**along - 1.0)
         return np.asarray(self.amplitude * np.sin(phase), dtype=np.float64)
 
     def frequency(self, time: Array) -> Array:
-        """The frequency [Hz] at times [s] since the start, any shape. (3)"""
+        """Return the frequency [Hz] at times [s] since the start, any shape. (3)"""
         along = np.mod(time, self.duration) / self.duration
         return np.asarray(self.start * (self.stop / self.start) ** along, dtype=np.float64)
 
@@ -106,7 +106,10 @@ class Sweep:
 
 
 def sweep_of(spec: IdentificationSpec) -> Sweep:
-    """The sweep of a specification. Raises ConfigError for numbers that make none, or a band outside it."""
+    """Return the sweep of a specification.
+
+    Raises ConfigError for numbers that make none, or a band outside it.
+    """
     sweep = Sweep(*spec.sweep, spec.duration, spec.amplitude, spec.repeats)
     sweep.check_band(spec.fit_band)
     return sweep

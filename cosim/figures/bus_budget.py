@@ -21,7 +21,7 @@ _ROOM = 5.0  # what lies farther from the limit than so many times the nominal p
 
 
 def draw_budget(budget: Budget) -> Figure:
-    """A panel for each series, over one scale: the limit dashed, the side beyond it shaded and hatched.
+    """Draw a panel for each series, over one scale: the limit dashed, the side beyond it shaded and hatched.
 
     A point that holds is a disk, a broken one a cross; one off the scale or without a value is a triangle at
     the edge, with its value or "no value". The nominal point has a ring.
@@ -44,7 +44,7 @@ def draw_budget(budget: Budget) -> Figure:
 
 
 def _scale(budget: Budget) -> tuple[float, float]:
-    """The ends of the axis: the limit, and what is near enough to leave the nominal point readable."""
+    """Return the ends of the axis, between which the limit and the points near it have room."""
     points = [point for each in budget.series for point in each.points]
     nominal = next(p.value for p in points if p.bus == BusVariation())
     span = abs(nominal - budget.limit) if math.isfinite(nominal) and nominal != budget.limit else 0.0
@@ -87,7 +87,7 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
 
 
 def _place(point: Point, budget: Budget, low: float, high: float) -> tuple[float, str]:
-    """Where a point is drawn, and its marker."""
+    """Return the height at which a point is drawn, and its marker."""
     if low <= point.value <= high:
         return point.value, "X" if budget.broken(point) else "o"
     up = budget.kind == "max" if math.isnan(point.value) else point.value > high

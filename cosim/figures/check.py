@@ -1,4 +1,4 @@
-"""Whether a figure, and what else a system and a scenario ask for, can be made of what a run records."""
+"""Checks before a run that it records all that the figure and metrics of its system and scenario need."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> Re
 
 
 def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.Affine:
-    """From the variable's unit to the panel's. Without a declared unit nothing is converted."""
+    """Return the map from the variable's unit to the panel's. Without a declared unit nothing is converted.
+
+    Raises ConfigError naming `place` where they measure different quantities.
+    """
     if variable.unit in ("", unit):
         return units.Affine()
     try:
@@ -41,7 +44,7 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.A
 
 
 def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:
-    """Find before the run what would be wrong after it: a figure or metric of what is not recorded.
+    """Check before the run what would be wrong after it: a figure or metric of what is not recorded.
 
     Raises ConfigError naming the files.
     """

@@ -12,7 +12,7 @@ from ..results.results import Results, ResultVariable
 from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from .check import panel_conversion
 
-# What the units that this field uses measure, for axes that nobody has named.
+# Quantities that the units of this field measure, for axes that nobody has named.
 _QUANTITIES = {
     "m/s": "speed",
     "km/h": "speed",
@@ -45,11 +45,11 @@ MAX_SIGNALS = 8
 
 
 def default_spec(results: Results) -> FigureSpec:
-    """A figure for any results: signals that measure the same quantity together.
+    """Return a figure for any results: signals that measure the same quantity together.
 
     Inputs that repeat an output are left out (see `_repeats`). The enumeration that changes first shades
     the panels, the others have a panel. Of more than six panels or eight signals in one, those
-    that change stay, outputs first, and the note names the others.
+    that change stay, outputs first, and the note names the others. Raises ConfigError without a variable.
     """
     shade = _shading(results)
     shown = [v for v in _distinct(results) if v is not shade]
@@ -95,7 +95,7 @@ def _shading(results: Results) -> ResultVariable | None:
 
 
 def _distinct(results: Results) -> list[ResultVariable]:
-    """The variables but for parameters, the time, and inputs that repeat what another one shows."""
+    """Return all variables but parameters, the time, and inputs that repeat what another one shows."""
     wanted = [v for v in results.variables if "arameter" not in v.causality and v.causality != "independent"]
     kept = [v for v in wanted if v.causality != "input"]
     for v in wanted:
@@ -114,7 +114,7 @@ def _is_time(results: Results, variable: ResultVariable) -> bool:
 
 
 def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) -> bool:
-    """Whether two variables would draw the same line: they differ by 0.5 % (rms) of the range.
+    """Return whether two variables would draw the same line: they differ by 0.5 % (rms) of the range.
 
     The quantization of a throttle of 0.4 % is below that, that of a speed of 1 km/h above it.
     """
@@ -134,7 +134,7 @@ def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) 
 
 
 def _group(results: Results, variable: ResultVariable) -> object:
-    """What variables must share to stand in one panel."""
+    """Return the key that variables in one panel share."""
     if variable.items:
         return variable.items
     if variable.type != "Real":

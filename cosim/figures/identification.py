@@ -31,7 +31,7 @@ def bode(
     title: str,
     published: tuple[float, float] | None = None,
 ) -> Figure:
-    """Magnitude, phase and coherence over the swept frequencies [Hz], the band of the fit shaded.
+    """Draw magnitude, phase and coherence over the swept frequencies [Hz], the band of the fit shaded.
 
     `published` is a gain and a pole [Hz] to be drawn beside the fitted model.
     """
@@ -67,6 +67,7 @@ def bode(
 
 
 def _points(axes: Axes, x: Array, y: Array, trusted: NDArray[np.bool_]) -> None:
+    """Draw points, all shapes (n,); those that are not trusted are hollow."""
     axes.plot(x[trusted], y[trusted], "o", ms=3.5, color=COLORS[0], label="measured")
     if not trusted.all():
         label = f"measured, coherence\nbelow {_TRUSTED:g}"
@@ -92,7 +93,7 @@ def _models(
 
 
 def _plain_ticks(axes: Axes) -> None:
-    """Numbers as they are read aloud, and enough of them where a log axis has less than two decades."""
+    """Write numbers as they are read aloud, and enough of them where a log axis has less than two decades."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -101,7 +102,7 @@ def _plain_ticks(axes: Axes) -> None:
 
 
 def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
-    """Measured and predicted output, and ESR(t) over the accelerations."""
+    """Draw measured and predicted output over time [s], and ESR(t) [%] in the accelerations."""
     shown = np.isfinite(found.esr).any()
     rows, height = (2, 2.35) if shown else (1, 3.1)
     with canvas(rows, height=height, title=title, share_x=True) as (figure, grid):
@@ -136,9 +137,9 @@ def over_working_points(
     title: str,
     published: tuple[float, float, float] | None = None,
 ) -> Figure:
-    """Gain and pole over the working points (`axis` says what they are), with confidence intervals.
+    """Draw gain and pole [Hz] over the working points, with confidence intervals.
 
-    `published` is a working point with its gain and its pole [Hz].
+    `axis` names the quantity of the points and its unit. `published` is such a point, its gain and pole.
     """
     with canvas(2, height=2.35, title=title, share_x=True) as (figure, grid):
         gain, pole = grid[:, 0]

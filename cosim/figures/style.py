@@ -1,6 +1,6 @@
 """The look of all figures: colors, dash patterns, and settings of matplotlib.
 
-Colors are those of Okabe and Ito (Color Universal Design, 2008), which color-blind readers tell apart; the
+Colors are those of Okabe and Ito (Color Universal Design, 2008), which color-blind readers distinguish; the
 lines of a panel also differ in dash pattern and width, for print in black and white. The user's matplotlibrc
 is ignored, so that equal results give equal bytes.
 """

@@ -21,7 +21,7 @@ _INK, _DIRECT, _BUS = "#1a1a1a", "#0072B2", "#D55E00"
 
 @dataclasses.dataclass(frozen=True)
 class _Place:
-    """Where a unit stands: the middle of its box, and the free room beside it."""
+    """The place of a unit's box: the middle `x`, the `top` and the `bottom`."""
 
     x: float
     top: float
@@ -29,7 +29,7 @@ class _Place:
 
 
 def draw_diagram(system: SystemFile) -> Figure:
-    """The units and connections of a system: direct connections as arrows above the units, messages below.
+    """Draw the units and connections of a system: direct ones as arrows above the units, messages below.
 
     A connection is named by the sender's variable, `variable > receiver's` where the names differ.
     """
@@ -54,7 +54,7 @@ def draw_diagram(system: SystemFile) -> Figure:
 
 
 def _arcs(system: SystemFile) -> dict[tuple[str, str], list[str]]:
-    """The texts of the direct connections of each pair of units, nearest pairs first."""
+    """Return the texts of the direct connections of each pair of units, nearest pairs first."""
     order = list(system.units)
     texts = defaultdict(list)
     for connection in system.connect:
@@ -75,7 +75,7 @@ def _depth(system: SystemFile) -> float:
 
 
 def _lines(ends: dict[tuple[str, bool], list[str]]) -> tuple[int, int]:
-    """How many lines the longest list of sent signals has, and of received ones: these stand below those."""
+    """Return the lengths of the longest list of sent signals, and of received ones, which stand below."""
     sent, received = (
         max((len(texts) for (_, sends), texts in ends.items() if sends is way), default=0)
         for way in (True, False)
@@ -84,7 +84,7 @@ def _lines(ends: dict[tuple[str, bool], list[str]]) -> tuple[int, int]:
 
 
 def _bus_ends(system: SystemFile, bus: str) -> dict[tuple[str, bool], list[str]]:
-    """What each unit sends to (True) and receives from (False) a bus: the names of the signals."""
+    """Return the names of the signals that each unit sends to (True) and receives from (False) a bus."""
     ends: dict[tuple[str, bool], list[str]] = defaultdict(list)
     for connection in system.connect:
         if connection.via is None or connection.via.split(".")[0] != bus:
@@ -131,7 +131,7 @@ def _draw_arcs(axes: Axes, places: dict[str, _Place], arcs: dict[tuple[str, str]
 
 
 def _spread(fans: dict[tuple[str, bool], int], unit: str, right: bool) -> float:
-    """Where on the edge of a box the next line ends, so that no two lie on each other."""
+    """Return the place on the edge of a box at which the next line ends, so that no two coincide."""
     fans[unit, right] += 1
     offset = _BOX[0] / 2 - 0.24 * fans[unit, right]
     return offset if right else -offset

@@ -1,1 +1,1 @@
-"""What a run recorded, its metrics, and the comparison of two."""
+"""Results of runs: the recorded rows, their files, their metrics, and the comparison of two."""

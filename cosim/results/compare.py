@@ -1,4 +1,4 @@
-"""Comparing two runs: how far apart is each variable, and when.
+"""Comparison of two runs: how far apart each variable is, and when.
 
 Two values are equal when
 
@@ -27,11 +27,11 @@ _SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004
 
 
 @dataclasses.dataclass(frozen=True)
-class Row:
-    """How far a variable of `b` is from that of `a`, in `unit` (that of `a`).
+class VariableDifference:
+    """The difference of a variable of `b` from that of `a`, in `unit` (that of `a`).
 
-    `difference` is the largest, at `time` [s]; `rms` over all compared points; `range` max - min in `a`.
-    Infinite where one side is not a number; NaN where nothing could be compared, which `remark` explains.
+    `difference` is the largest, at `time` [s]; `rms` is over all compared points, `range` max - min in `a`.
+    It is infinite where one side is not a number, and NaN where nothing could be compared: `remark` says why.
     """
 
     name: str
@@ -55,12 +55,12 @@ class Row:
 
 @dataclasses.dataclass(frozen=True)
 class Comparison:
-    """The outcome: a row for each common variable, what is on one side alone, and what else to know.
+    """The outcome: a row for each common variable, the names on one side alone, and remarks.
 
-    `points` is the number of compared times; `same_span` says whether both runs begin and end together.
+    `points` is the number of compared times; `same_span` is true where both runs begin and end together.
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[VariableDifference, ...]
     only_a: tuple[str, ...]
     only_b: tuple[str, ...]
     points: int
@@ -71,20 +71,20 @@ class Comparison:
 
     @property
     def equal(self) -> bool:
-        """Whether every common variable is equal at every time of both runs.
+        """True where every common variable is equal at every time of both runs.
 
-        Variables on one side alone do not count: they are listed. Runs with nothing in common, or of
-        which one goes on longer, are not equal.
+        Variables on one side alone do not count: they are listed. Runs with nothing in common, or of which
+        one goes on longer, are not equal.
         """
         return bool(self.rows) and self.points > 0 and self.same_span and all(row.equal for row in self.rows)
 
     def table(self, all_rows: bool = True) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """The header and the rows as text; without `all_rows`, of the variables that differ."""
+        """Return the header and the rows as text; without `all_rows`, only of variables that differ."""
         header = ("variable", "unit", "largest difference", "at t [s]", "rms", "of the range", "")
         return header, [_cells(row) for row in self.rows if all_rows or not row.equal]
 
     def summary(self) -> str:
-        """The outcome in a few lines."""
+        """Return the outcome in a few lines."""
         different = [row for row in self.rows if not row.equal]
         rule = f"tolerance {self.tolerance:g}" + (
             f" + {100 * self.relative:g} % of the range" if self.relative else ""
@@ -97,7 +97,7 @@ class Comparison:
         return "\n".join([*lines, *self.remarks])
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: VariableDifference) -> tuple[str, ...]:
     share = f"{100 * row.relative:.3g} %" if math.isfinite(row.relative) else "-"
     verdict = row.remark or ("" if row.equal else "differs")
     numbers = (f"{row.difference:.4g}", f"{row.time:.10g}", f"{row.rms:.4g}")
@@ -113,7 +113,7 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
     if not (tolerance >= 0.0 and relative >= 0.0):
         raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
     grid = _Grid.of(a, b)
-    rows = [_row(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b]
+    rows = [_compared(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b]
     return Comparison(
         rows=tuple(rows),
         only_a=tuple(name for name in a.names if name not in b),
@@ -127,9 +127,10 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
 
 
 def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
-    """Time [s] and b - a of a common variable, in its unit in `a`, at the times at which they are compared.
+    """Return times [s] and b - a of a common variable, in its unit in `a`, shapes (n,).
 
-    Raises ConfigError where the two measure different quantities.
+    The times are those at which the two are compared. Raises ConfigError where they measure different
+    quantities, or one of them lacks the variable.
     """
     grid = _Grid.of(a, b)
     variable, other = a.variable(name), b.variable(name)
@@ -140,7 +141,10 @@ def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
 
 @dataclasses.dataclass(frozen=True)
 class _Grid:
-    """The times at which two runs are compared: rows `first` to `last` of `a`."""
+    """The times [s] at which two runs are compared, shape (n,), and the `rows` of `a` that have them.
+
+    `exact` is true where these are all rows of both; else `b` is interpolated.
+    """
 
     time: Array
     rows: slice
@@ -150,6 +154,7 @@ class _Grid:
 
     @classmethod
     def of(cls, a: Results, b: Results) -> _Grid:
+        """Return the grid of two runs: the times of `a` that `b` covers too."""
         ta, tb = a.time, b.time
         if not len(ta) or not len(tb):
             both = not len(ta) and not len(tb)
@@ -166,7 +171,7 @@ class _Grid:
         return cls(ta[rows], rows, False, not apart, tuple(remarks))
 
     def values_of(self, b: Results, variable: ResultVariable) -> Array:
-        """The values of a variable of `b` at the times of the grid."""
+        """Return the values of a variable of `b` at the times of the grid, shape (n,)."""
         values = b.column(variable.name)
         if self.exact:
             return values[: len(self.time)]
@@ -176,9 +181,9 @@ class _Grid:
         return values[np.clip(previous, 0, len(values) - 1)]
 
 
-def _row(
+def _compared(
     a: Results, b: Results, variable: ResultVariable, grid: _Grid, tolerance: float, relative: float
-) -> Row:
+) -> VariableDifference:
     other = b.variable(variable.name)
     unit = variable.unit or other.unit
     try:
@@ -196,14 +201,15 @@ def _row(
     largest, span = float(apart[worst]), _range(x)
     equal = math.isfinite(largest) and largest <= tolerance + relative * span
     rms = float(np.sqrt(np.mean(apart**2))) if math.isfinite(largest) else math.inf
-    return Row(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
+    return VariableDifference(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
 
 
-def _without_values(name: str, unit: str, remark: str) -> Row:
-    return Row(name, unit, math.nan, math.nan, math.nan, math.nan, equal=False, remark=remark)
+def _without_values(name: str, unit: str, remark: str) -> VariableDifference:
+    return VariableDifference(name, unit, math.nan, math.nan, math.nan, math.nan, equal=False, remark=remark)
 
 
 def _conversion(source: str, target: str) -> tuple[units.Affine, str]:
+    """Return the map between two names of units, and a remark where one side declares none."""
     if source == target:
         return units.Affine(), ""
     if not source or not target:
@@ -212,21 +218,23 @@ def _conversion(source: str, target: str) -> tuple[units.Affine, str]:
 
 
 def _differences(x: Array, y: Array) -> Array:
-    """|y - x|, infinite where either is NaN."""
+    """Return |y - x|, infinite where either is NaN; all shapes (n,)."""
     with np.errstate(invalid="ignore", over="ignore"):
         apart = np.where(x == y, 0.0, np.abs(y - x))  # equal infinities differ by nothing
     return np.where(np.isnan(apart), np.inf, apart)
 
 
 def _range(values: Array) -> float:
+    """Return max - min of the finite values, shape (n,); 0 where there is none."""
     finite = values[np.isfinite(values)]
     return float(finite.max() - finite.min()) if len(finite) else 0.0
 
 
-def worst(rows: Sequence[Row], count: int) -> list[str]:
-    """The names of the variables that differ most, by their share of the range; of all if none does.
+def worst(rows: Sequence[VariableDifference], count: int) -> list[str]:
+    """Return the names of the `count` variables that differ most, by their share of the range.
 
-    Those that could not be compared, as a speed with a force, are left out.
+    Where none differs they are the first of all. Those that could not be compared, as a speed with a force,
+    are left out.
     """
     compared = [row for row in rows if not math.isnan(row.difference)]
     different = [row for row in compared if row.relative > 0.0] or compared

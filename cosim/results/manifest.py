@@ -1,4 +1,4 @@
-"""run.json, which stands beside results.csv: what it says of the run as a whole, and of each variable."""
+"""run.json, which stands beside results.csv: facts of the run as a whole, and of each variable."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .variable import ResultVariable
 
 
 def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
-    """Write a manifest, and under "variables" what is known of each variable.
+    """Write a manifest, and under "variables" the description of each variable.
 
     Numbers that are not finite become null: JSON has no name for them. Raises ConfigError where the file
     cannot be written; then none is left half-done.
@@ -31,7 +31,7 @@ def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[
 
 
 def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]]:
-    """Return what a run.json says of the run, and by name the variables that it describes.
+    """Return the manifest in a run.json, and by name the variables that it describes.
 
     Both are empty where there is no file. Raises ConfigError naming a file that cannot be read, is no JSON,
     or does not describe variables.

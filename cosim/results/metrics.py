@@ -45,7 +45,7 @@ _NEEDS_DURATION = ("mean", "rms", *_SHARES)
 
 @dataclasses.dataclass(frozen=True)
 class Metric:
-    """The outcome: a number in a unit of measure, or NaN and the reason why there is none."""
+    """A named number in a unit of measure, or NaN and the reason why there is none."""
 
     name: str
     value: float
@@ -64,8 +64,8 @@ def check(specs: Sequence[MetricSpec], variables: Mapping[str, ResultVariable], 
     """Check metrics against the variables that a run will record.
 
     Raises ConfigError naming `place` for an unknown variable or state (with the nearest there is), a unit
-    of measure that cannot come out, and a name given twice. A variable that declares no unit is no error
-    here: what needs its unit then has no value, and says so.
+    of measure that cannot result, and a name given twice. A variable that declares no unit is no error here:
+    a metric that needs its unit then has no value, and gives the reason.
     """
     seen: set[str] = set()
     for spec in specs:
@@ -97,7 +97,7 @@ def _check_reduction(part: Reduction, variables: Mapping[str, ResultVariable], p
 
 
 def evaluate(results: Results, specs: Sequence[MetricSpec]) -> list[Metric]:
-    """The metrics of a run, in the order of the specs. Raises ConfigError as `check` does."""
+    """Return the metrics of a run, in the order of the specs. Raises ConfigError as `check` does."""
     variables = {v.name: v for v in results.variables}
     check(specs, variables, "metrics")
     return [_evaluate(results, spec, variables) for spec in specs]
@@ -125,7 +125,7 @@ def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, Result
 
 
 class _NoValueError(ConfigError):
-    """Why this run gives a metric no value, though the metric itself is in order."""
+    """A metric that is in order has no value for this run; the message is the reason."""
 
 
 def _unit(variable: ResultVariable) -> UnitOfMeasure:
@@ -137,7 +137,7 @@ def _unit(variable: ResultVariable) -> UnitOfMeasure:
 
 
 def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> units.Affine:
-    """From what the reductions give, in the signals' units, to the metric's unit."""
+    """Return the map from the reductions' numbers, in the signals' units, to the metric's unit."""
     if spec.per is None and spec.reduce in _VALUES and _same(spec.unit, variables[spec.signal].unit):
         _to_signal(spec, variables)  # raises where they measure different quantities
         return units.Affine()  # nothing to convert, so the unit may be one that nobody defines
@@ -158,7 +158,7 @@ def _same(a: str, b: str) -> bool:
 
 
 def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOfMeasure:
-    """The unit of measure of a reduction."""
+    """Return the unit of measure of a reduction's number."""
     _to_signal(part, variables)  # raises where they measure different quantities
     if part.reduce in _SHARES or part.reduce == "changes":
         return units.defined("1")
@@ -173,7 +173,7 @@ def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOf
 
 
 def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[units.Affine, float]:
-    """From the unit of `minus` to that of the signal, and the threshold (0 if none) in the signal's unit."""
+    """Return the map from the unit of `minus` to the signal's, and the threshold (0: none) in the latter."""
     signal = variables[part.signal]
     other, threshold = units.Affine(), part.threshold or 0.0
     if part.minus is not None and variables[part.minus].unit != signal.unit:
@@ -193,7 +193,7 @@ def _quotient(a: UnitOfMeasure, b: UnitOfMeasure) -> UnitOfMeasure:
 
 
 def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitOfMeasure:
-    """The unit a * b (sign 1) or a / b (sign -1)."""
+    """Return the unit a * b (sign 1) or a / b (sign -1)."""
     nothing = (0,) * len(BASE_UNITS)
     pairs = zip(a.exponents or nothing, b.exponents or nothing, strict=True)
     return UnitOfMeasure(
@@ -205,7 +205,10 @@ def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitO
 
 
 def _reduce(results: Results, part: Reduction) -> float:
-    """The number of a reduction, in the unit of the signal and s; one piece of the run is in memory."""
+    """Return the number of a reduction, in the unit of the signal and s.
+
+    One piece of the run is in memory at a time. Raises _NoValueError where the run gives it no value.
+    """
     variables = {name: results.variable(name) for name in part.signals}
     first = _first_row(results, part)
     duration = results.span[1] - float(results.times(first, first + 1)[0])
@@ -226,7 +229,7 @@ def _reduce(results: Results, part: Reduction) -> float:
 
 
 def _first_row(results: Results, part: Reduction) -> int:
-    """Where what is reduced begins."""
+    """Return the row at which the reduced part begins. Raises _NoValueError where the run ends before it."""
     if part.after is None:
         return 0
     rows = range(len(results))
@@ -236,14 +239,12 @@ def _first_row(results: Results, part: Reduction) -> int:
     return first
 
 
-Pieces = Iterable[tuple[Array, Array]]
-"""Times and values of a signal, shapes (n,); each piece begins with the last row of the one before."""
+Piece = tuple[Array, Array]
+"""Times [s] and values of a signal, shapes (n,); it begins with the last row of the piece before."""
 
 
-def _pieces(
-    results: Results, part: Reduction, first: int, other: units.Affine
-) -> Iterator[tuple[Array, Array]]:
-    """What is reduced. Raises _NoValueError for a value that is not finite."""
+def _pieces(results: Results, part: Reduction, first: int, other: units.Affine) -> Iterator[Piece]:
+    """Yield the pieces of the reduced signal. Raises _NoValueError for a value that is not finite."""
     for time, values in results.pieces(part.signals, first, overlap=1):
         x = values[:, 0]
         if part.minus is not None:
@@ -254,6 +255,7 @@ def _pieces(
 
 
 def _final(xs: Iterable[Array]) -> float:
+    """Return the last value of all pieces, shapes (n,)."""
     last = math.nan
     for x in xs:
         last = float(x[-1])
@@ -261,6 +263,7 @@ def _final(xs: Iterable[Array]) -> float:
 
 
 def _range(xs: Iterable[Array]) -> float:
+    """Return max - min over all pieces, shapes (n,)."""
     ends = [(float(np.min(x)), float(np.max(x))) for x in xs]
     return max(high for _, high in ends) - min(low for low, _ in ends)
 
@@ -280,7 +283,11 @@ def _state(part: Reduction, variable: ResultVariable) -> float:
     return float(part.value or 0)
 
 
-def _settling(pieces: Pieces, threshold: float) -> float:
+def _settling(pieces: Iterable[Piece], threshold: float) -> float:
+    """Return the time [s] from leaving the threshold first to staying within it.
+
+    Raises _NoValueError where the signal does not stay within it.
+    """
     begin, end = math.nan, 0.0
     for time, x in pieces:
         at = np.flatnonzero(np.abs(x) > threshold)
@@ -293,7 +300,7 @@ def _settling(pieces: Pieces, threshold: float) -> float:
 
 
 def _integrand(part: Reduction, variable: ResultVariable, threshold: float) -> Callable[[Array], Array]:
-    """What is integrated of a signal."""
+    """Return the function of a signal's values, shape (n,) to (n,), that is integrated."""
     if part.reduce in ("share_above", "time_above"):
         return lambda x: (x > threshold).astype(np.float64)
     if part.reduce in ("share_equal", "time_equal"):
@@ -305,5 +312,6 @@ def _integrand(part: Reduction, variable: ResultVariable, threshold: float) -> C
 
 
 def _integral(time: Array, x: Array, held: bool) -> float:
+    """Return the integral of x over time [s], both shape (n,): by steps if it is held, else trapezoids."""
     at = x[:-1] if held else 0.5 * (x[1:] + x[:-1])
     return float(np.sum(at * np.diff(time)))

@@ -39,12 +39,12 @@ PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each va
 
 
 class Results:
-    """What a run recorded.
+    """The recording of a run: n rows of m variables.
 
     `time` [s], shape (n,), and `data`, shape (n, m), hold row k of communication point k; `variables`
     describes the m columns. `results["vehicle.speed"]` is one column, `len(results)` is n.
     `data` may be given as a Table that is not in memory, and `time` as a Grid: then `results.data` and
-    `results.time` make all of it, while `pieces`, a column or `part` take no more than is asked for.
+    `results.time` make all of it, while `pieces`, a column or `part` take no more than they return.
     `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
     scenario (None and none for results that were read from a file).
 
@@ -90,7 +90,7 @@ class Results:
         return self._time
 
     def times(self, start: int, stop: int) -> Array:
-        """The times [s] of the rows from `start` to before `stop`, or to the end."""
+        """Return the times [s] of the rows from `start` to before `stop`, or to the end, shape (n,)."""
         if self._time is not None:
             return self._time[start:stop]
         assert self._grid is not None  # one of the two was given
@@ -110,11 +110,10 @@ class Results:
     def pieces(
         self, names: Sequence[str], first: int = 0, overlap: int = 0, rows: int | None = None
     ) -> Iterator[tuple[Array, Array]]:
-        """Times, shape (n,), and values, shape (n, len(names)), from row `first` on, `rows` at a time
-        (default: PIECE).
+        """Yield times [s], shape (n,), and values, shape (n, len(names)), from row `first` on.
 
-        Before them each piece but the first repeats `overlap` rows of the one before. Raises ConfigError as
-        `variable` does.
+        A piece has `rows` rows (default: PIECE); before them each but the first repeats the last `overlap`
+        rows of the piece before. Raises ConfigError as `variable` does.
         """
         rows = rows or PIECE
         columns = [self._columns[self.variable(name).name] for name in names]
@@ -132,7 +131,7 @@ class Results:
         return name in self._columns
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """The values of a variable, shape (n,): float64, int64 (Integer, Enumeration) or bool.
+        """Return the values of a variable, shape (n,): float64, int64 (Integer, Enumeration) or bool.
 
         `time` is accepted as a name. Raises ConfigError naming the nearest variable there is.
         """
@@ -159,18 +158,18 @@ class Results:
         return {v.name: v.unit for v in self.variables}
 
     def variable(self, name: str) -> ResultVariable:
-        """What is known of a variable. Raises ConfigError naming the nearest one there is."""
+        """Return the description of a variable. Raises ConfigError naming the nearest one there is."""
         if name not in self._columns:
             raise ConfigError(f"the results have no variable '{name}'{nearest(name, self.names)}")
         return self.variables[self._columns[name]]
 
     def column(self, name: str) -> Array:
-        """The values of a variable as float64, whatever its type, shape (n,): a view if it is in memory."""
+        """Return the values of a variable as float64, whatever its type, shape (n,): a view if in memory."""
         self.variable(name)
         return self._table.column(self._columns[name])
 
     def final(self) -> dict[str, float | int | bool]:
-        """The last value of each variable, as the type that it has; empty without a row."""
+        """Return the last value of each variable, as the type that it has; nothing without a row."""
         if not len(self):
             return {}
         last = self._table.rows(len(self) - 1, len(self))[0].tolist()
@@ -178,7 +177,10 @@ class Results:
         return {v.name: kinds.get(v.type, int)(x) for v, x in zip(self.variables, last, strict=True)}
 
     def part(self, rows: NDArray[np.bool_] | slice, names: Sequence[str]) -> Results:
-        """The results of some rows and variables, in memory. Raises ConfigError as `variable` does."""
+        """Return the results of some rows and variables, in memory.
+
+        `rows` is a slice, or a choice of shape (n,). Raises ConfigError as `variable` does.
+        """
         variables = [self.variable(name) for name in names]
         if isinstance(rows, slice) and rows.step is None:
             start, stop, _ = rows.indices(len(self))
@@ -236,7 +238,10 @@ class Results:
         return cls(held.time, held.data, variables, manifest)
 
     def metrics(self) -> list[Metric]:
-        """The numbers that the run's system and scenario name."""
+        """Return the numbers that the run's system and scenario name.
+
+        Raises ConfigError for one whose variable is not recorded or whose unit of measure does not fit.
+        """
         from . import metrics  # knows units of measure; reading and writing results does without
 
         return metrics.evaluate(self, self.metric_specs)
@@ -249,7 +254,8 @@ class Results:
     ) -> Figure:
         """Draw the figure of the run's system, another `spec`, or else signals grouped by unit of measure.
 
-        Saved where a path (.png, .svg, .pdf) is given. Raises ConfigError for a spec that does not fit.
+        It is written where a path (.png, .svg, .pdf) is given. Raises ConfigError for a spec that does not
+        fit, and where the file cannot be written.
         """
         from ..figures import draw as figures  # matplotlib: 0.5 s that only figures need
 
@@ -267,7 +273,10 @@ def _table(data: ArrayLike) -> Table:
 
 
 def to_nanoseconds(time: Array) -> Array:
-    """The times [s] with those that miss a whole nanosecond by rounding alone put there (see Results)."""
+    """Return times [s], any shape, with those that miss a whole nanosecond by rounding alone put there.
+
+    `Results` says which these are.
+    """
     with np.errstate(invalid="ignore", over="ignore"):  # inf and nan fail the comparison and stay
         decimal = np.rint(time * 1e9) / 1e9
         return np.where(np.abs(decimal - time) <= 1e-12 + 4 * np.spacing(np.abs(time)), decimal, time)

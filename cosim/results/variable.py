@@ -1,4 +1,4 @@
-"""What is known of a recorded variable."""
+"""A recorded variable: its name, unit of measure, type and states."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import dataclasses
 
 @dataclasses.dataclass(frozen=True)
 class ResultVariable:
-    """A recorded variable: its name `unit.variable` and what its FMU declares of it.
+    """A column of results: its name `unit.variable` and what its FMU declares of it.
 
     `type` is Real, Integer, Boolean or Enumeration; `unit` a name of a unit of measure ("" for none);
     `items` the (value, name) pairs of an enumeration.

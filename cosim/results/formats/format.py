@@ -1,4 +1,4 @@
-"""What a file format of results is: a writer of rows, and a reader that returns what a file holds."""
+"""A file format of results: a writer of a recording, and a reader that returns the contents of a file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..variable import ResultVariable
 
 
 class Recording(Protocol):
-    """What a writer knows of `Results`: the rows, a piece at a time, and what the columns mean."""
+    """The part of `Results` that a writer knows: the rows, a piece at a time, and what the columns mean."""
 
     @property
     def variables(self) -> Sequence[ResultVariable]:
@@ -24,7 +24,7 @@ class Recording(Protocol):
 
     @property
     def manifest(self) -> Mapping[str, Any]:
-        """What is said of the run as a whole; a format without a place for it leaves it out."""
+        """Facts of the run as a whole; a format without a place for them leaves them out."""
 
     def __len__(self) -> int: ...
 
@@ -36,10 +36,10 @@ class Recording(Protocol):
 
 @dataclasses.dataclass(frozen=True)
 class Contents:
-    """What a file holds: `time` [s], shape (n,), `data`, shape (n, m), and the m `variables`.
+    """The contents of a file: `time` [s], shape (n,), `data`, shape (n, m), and the m `variables`.
 
-    The time does not decrease. `manifest` is what the file says of the run as a whole, where the format has a
-    place for it.
+    The time does not decrease. `manifest` holds the facts of the run as a whole, where the format has a place
+    for them.
     """
 
     time: Array
