@@ -1,10 +1,10 @@
-"""Writing result files so that the name they end under never stands for half a file."""
+"""Writing result files so that the name they end under never stands for half a file, and tables in pages."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
@@ -37,3 +37,10 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     """Give a binary file, open for writing, which takes the place of `path` as `in_place_of` says."""
     with in_place_of(path) as partial, partial.open("wb") as file:
         yield file
+
+
+def markdown_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a Markdown table; `|` and line ends in a cell are escaped, other marks are not."""
+    escaped = [[cell.replace("|", "\\|").replace("\n", " ") for cell in cells] for cells in (headers, *rows)]
+    head, *body = (f"| {' | '.join(cells)} |" for cells in escaped)
+    return [head, "|---" * len(headers) + "|", *body]

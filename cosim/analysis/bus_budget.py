@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 from ..can.bus_settings import BusVariation
 from ..results.metrics import Metric
+from ..writing import markdown_table
 
 
 @dataclasses.dataclass(frozen=True)
@@ -172,7 +173,7 @@ def as_markdown(budget: Budget, figure: str) -> str:
             "",
             *(f"- {each.name}: {budget.summary(each)}" for each in budget.series),
             "",
-            *table(("variation", "", budget.metric, "verdict"), budget.rows()),
+            *markdown_table(("variation", "", budget.metric, "verdict"), _without_emphasis(budget.rows())),
             "",
             f"![{budget.metric} over each variation]({figure})",
             "",
@@ -180,8 +181,5 @@ def as_markdown(budget: Budget, figure: str) -> str:
     )
 
 
-def table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return a Markdown table as lines."""
-    escaped = [[cell.replace("|", "\\|").replace("*", "\\*") for cell in row] for row in (headers, *rows)]
-    first, *others = (f"| {' | '.join(cells)} |" for cells in escaped)
-    return [first, "|---" * len(headers) + "|", *others]
+def _without_emphasis(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    return [[cell.replace("*", "\\*") for cell in row] for row in rows]

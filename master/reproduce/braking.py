@@ -27,7 +27,7 @@ from .braking_runs import (
     stop_of,
     stops,
 )
-from .page import Page, Paper, Row, at_most, holds, near
+from .page import Page, Paper, PublishedNumber, at_most, holds, near
 
 _SOURCE = (
     "M. Tanelli, M. Prandini, F. Codecà, A. Moia, S. M. Savaresi, Analysing the interaction between braking "
@@ -98,7 +98,7 @@ def _page(found: dict[str, Any]) -> Page:
     )
 
 
-def _table_rows(found: dict[str, Any]) -> list[Row]:
+def _table_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for variant, suffix in (("over the bus", ""), ("ideal signals", ", ideal")):
         a, c, d = (stop_of(found[name + suffix]).distance for name in CONTROLLED)
@@ -115,17 +115,17 @@ def _table_rows(found: dict[str, Any]) -> list[Row]:
 
 def _stop_row(
     name: str, variant: str, published: str, distance: float, target: float, tolerance: float
-) -> Row:
+) -> PublishedNumber:
     what = f"{_NAMES[name]}: stopping distance, {variant}"
     return near(what, published, distance, target, tolerance, "m", calibrated=_FITTED)
 
 
-def _longer_row(name: str, variant: str, published: str, ratio: float, target: float) -> Row:
+def _longer_row(name: str, variant: str, published: str, ratio: float, target: float) -> PublishedNumber:
     what = f"{_NAMES[name]}: longer than (a), {variant}"
     return near(what, published, 100.0 * (ratio - 1.0), target, 1.5, "%", digits=3, calibrated=_FITTED)
 
 
-def _lock_row(results: Any, variant: str) -> Row:
+def _lock_row(results: Any, variant: str) -> PublishedNumber:
     lock = lock_of(results)
     return holds(
         f"{_NAMES['estimated_speed']}: {variant}",
@@ -136,7 +136,7 @@ def _lock_row(results: Any, variant: str) -> Row:
     )
 
 
-def _proposition_rows(found: dict[str, Any]) -> list[Row]:
+def _proposition_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     k = analysis.k_bar(NOMINAL)
     by_road: dict[str, Propositions] = {road.name.lower(): found[_on(road)] for road in Road}
     rows = [
@@ -173,7 +173,7 @@ def _proposition_rows(found: dict[str, Any]) -> list[Row]:
     return rows
 
 
-def _delay_rows(found: dict[str, Any]) -> list[Row]:
+def _delay_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     one, two = (stop_of(found[f"{steps} late"]).distance for steps in (1, 2))
     rows = [
         near("(a), brakes one step of 10 ms later: stopping distance", "-", one, 33.85, 0.1, "m"),
@@ -182,7 +182,7 @@ def _delay_rows(found: dict[str, Any]) -> list[Row]:
     return [*rows, *(_late_lock_row(name, found) for name in CONTROLLED[1:])]
 
 
-def _late_lock_row(name: str, found: dict[str, Any]) -> Row:
+def _late_lock_row(name: str, found: dict[str, Any]) -> PublishedNumber:
     soon, late_stop = (found[f"delay {name}"][_EXTRA.index(x)] for x in (0.0, 0.02))
     lock = "does not lock" if math.isnan(late_stop.lock_speed) else f"locks at {late_stop.lock_speed:.1f} m/s"
     row = holds(
@@ -197,7 +197,7 @@ def _late_lock_row(name: str, found: dict[str, Any]) -> Row:
     return row if row.verdict == "missed" else dataclasses.replace(row, reason=_END)
 
 
-def _vehicle_rows(found: dict[str, Any]) -> list[Row]:
+def _vehicle_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     return [
         _three(found, "height", _HEIGHTS.index(1.1), "h + 10 %", (33.35, 47.80, 42.99), 0.05),
         _three(found, "height", _HEIGHTS.index(0.9), "h - 10 %", (33.33, 54.82, 49.88), 0.05),
@@ -209,7 +209,7 @@ def _vehicle_rows(found: dict[str, Any]) -> list[Row]:
 
 def _three(
     found: dict[str, Any], kind: str, i: int, what: str, expected: tuple[float, ...], tolerance: float
-) -> Row:
+) -> PublishedNumber:
     seen = [found[f"{kind} {name}"][i].distance for name in CONTROLLED]
     return holds(
         f"{what}: stopping distance of (a), (c), (d)",

@@ -43,7 +43,7 @@ _SLIPS = np.linspace(0.0, 1.0, 201)
 def pictures(
     found: dict[str, Any], extra: Sequence[float], heights: Sequence[float], inertias: Sequence[float]
 ) -> tuple[Picture, ...]:
-    """All of them; `extra` [s], `heights` and `inertias` (shares) are what the runs went through."""
+    """Return all pictures; the runs have delays `extra` [s], and `heights` and `inertias` as shares."""
     return (
         Picture("friction", "Fig. 2: friction by Burckhardt's formula on four roads", _friction()),
         Picture("psi", _ABOUT_PSI, _psi()),
@@ -98,7 +98,7 @@ def _psi() -> Any:
 
 
 def _cut(road: Road, wheel: int) -> Array:
-    """Psi of a wheel (0 front, 1 rear) over its own slip, with the other one at the set point."""
+    """Return Psi [N.m] of a wheel (0 front, 1 rear) over its own slip, the other one at the set point."""
     p = dataclasses.replace(NOMINAL, road=road)
     other = np.full_like(_SLIPS, analysis.TARGET_SLIP)
     if wheel == 0:

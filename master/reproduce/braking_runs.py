@@ -1,7 +1,7 @@
-"""The runs of the braking two-wheeler: each strategy's stop, what the vehicle does to it, both propositions.
+"""The runs of the braking two-wheeler: each strategy's stop, the vehicle's effect on it, both propositions.
 
-All that is compared with another run is `ideal`: the bus adds up to 0.15 m in the last two meters a second,
-which are decided by half a newton meter.
+Runs that are compared with each other are `ideal`: the bus adds up to 0.15 m below 2 m/s, where half a newton
+meter decides.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ...models.road_friction import Road
 from ..simulation import Simulation
 
 LOCKED = 0.99  # slip
-FAST = 5.0  # m/s: above it, the end of the stop has no say
+FAST = 5.0  # m/s: above it, the end of the stop has no influence
 STOP_TIME = 5.0  # s, more than any stop on a dry road with the parameters here needs
 STARTS = 30
 FINE_STEP = 0.001  # s, of a controller at 1 kHz
@@ -33,7 +33,7 @@ NOMINAL = analysis.Parameters()
 
 
 class Stop(NamedTuple):
-    """How a stop went."""
+    """The numbers of a stop."""
 
     distance: float  # m; NaN: not at rest at the end of the run
     swing: float  # the highest slip of the front wheel above FAST
@@ -41,7 +41,7 @@ class Stop(NamedTuple):
 
 
 class Lock(NamedTuple):
-    """How both wheels locked: when [s], at what speed [m/s], and whether they stayed so to standstill."""
+    """The lock of both wheels: its time [s] and speed [m/s], and True if they stay locked to standstill."""
 
     time: float
     speed: float
@@ -49,7 +49,7 @@ class Lock(NamedTuple):
 
 
 class Propositions(NamedTuple):
-    """What the random starts did on one road."""
+    """The results of the random starts on one road."""
 
     spread: tuple[float, ...]  # of the end points of Proposition 3.1, in slip, for each of FACTORS
     equilibria: tuple[int, ...]  # how many there are, for each of FACTORS
@@ -61,7 +61,7 @@ MARGIN = 1.5  # k lambda* over max Psi
 
 
 def stop_of(results: Results) -> Stop:
-    """What came of a run."""
+    """Return the numbers of the stop in a run's results."""
     v, slip = results["vehicle.speed"], results["vehicle.front_slip"]
     distance = float(results["vehicle.stopping_distance"][-1]) if v[-1] == 0.0 else math.nan
     locked = np.flatnonzero(slip > LOCKED)
@@ -69,7 +69,7 @@ def stop_of(results: Results) -> Stop:
 
 
 def lock_of(results: Results) -> Lock:
-    """When and at what speed both wheels locked; NaN where they did not."""
+    """Return time and speed at which both wheels locked; NaN if they did not."""
     v = results["vehicle.speed"]
     both = (results["vehicle.front_slip"] > LOCKED) & (results["vehicle.rear_slip"] > LOCKED)
     if not both.any():
@@ -79,7 +79,7 @@ def lock_of(results: Results) -> Lock:
 
 
 def stops(strategy: str, changes: Sequence[dict[str, Value]], step_size: float | None = None) -> list[Stop]:
-    """The stops with some changed parameters each, at the system's step size or another one [s]."""
+    """Run a strategy with each set of changed parameters, at the system's step size or another one [s]."""
     system = _sampled(step_size)
     found = []
     for change in changes:
@@ -98,7 +98,7 @@ def _sampled(step_size: float | None) -> System:
 
 
 def propositions(road: Road) -> Propositions:
-    """Both propositions on one road, from the same random starts."""
+    """Evaluate both propositions on one road, from the same random starts."""
     p, starts = dataclasses.replace(NOMINAL, road=road), analysis.random_starts(STARTS)
     gains = [critical(factor) for factor in FACTORS]
     return Propositions(
@@ -109,28 +109,28 @@ def propositions(road: Road) -> Propositions:
 
 
 def critical(factor: float) -> analysis.Gains:
-    """k-bar over all roads, times a factor."""
+    """Return k-bar over all roads, times a factor [N.m per slip]."""
     k = analysis.k_bar(NOMINAL)
     return analysis.Gains(factor * k.front, factor * k.rear)
 
 
 def locking(p: analysis.Parameters) -> analysis.Gains:
-    """The gains of Proposition 3.2: k lambda* = MARGIN max Psi on the road of p."""
+    """Return the gains of Proposition 3.2 [N.m per slip]: k lambda* = MARGIN max Psi on the road of p."""
     psi = analysis.highest_psi(p)
     factor = MARGIN / analysis.TARGET_SLIP
     return analysis.Gains(factor * psi.front, factor * psi.rear)
 
 
 def late(extra: float) -> dict[str, Value]:
-    """Brakes later than the published 10 ms by `extra` [s]."""
+    """Return the parameters of brakes that are later than the published 10 ms by `extra` [s]."""
     return {f"{brake}.delay": 0.01 + extra for brake in ("front_brake", "rear_brake")}
 
 
 def high(factor: float) -> dict[str, Value]:
-    """A center of mass `factor` times as high."""
+    """Return the parameters of a center of mass `factor` times as high."""
     return {"vehicle.center_height": factor * NOMINAL.center_height}
 
 
 def heavy(factor: float) -> dict[str, Value]:
-    """Wheels of `factor` times the inertia; the controller, which compensates it in (d), knows."""
+    """Return the parameters of wheels with `factor` times the inertia, which the controller compensates."""
     return {f"{unit}.wheel_inertia": factor * NOMINAL.wheel_inertia for unit in ("vehicle", "controller")}

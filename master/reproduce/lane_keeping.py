@@ -12,7 +12,7 @@ from ...models import lane_keeping_analysis as analysis
 from ...models.lane_keeping_controller import LaneKeepingController
 from ..simulation import simulate
 from ..studies.parallel import Task
-from .page import Page, Paper, Picture, Row, at_most, holds, near, not_reproducible
+from .page import Page, Paper, Picture, PublishedNumber, at_most, holds, near, not_reproducible
 
 _P = LaneKeepingController.Parameters()
 _TARGET = 0.3  # m
@@ -51,7 +51,7 @@ def _page(found: dict[str, Any]) -> Page:
     )
 
 
-def _matrix_rows() -> list[Row]:
+def _matrix_rows() -> list[PublishedNumber]:
     published = analysis.PUBLISHED
     pairs = {
         "A": (_P.a, published.a),
@@ -82,7 +82,7 @@ def _difference(ours: Any, printed: Any) -> float:
     return float(np.abs(np.array(ours) - np.array(printed)).max())
 
 
-def _step_rows(found: dict[str, Any]) -> list[Row]:
+def _step_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     times, states = analysis.step_response(_P, _TARGET, 4.0)
     ideal, bus = found["ideal"], found["bus"]
     beta, late = ideal["vehicle.displacement"], bus["vehicle.displacement"][bus.time > 6.0]
@@ -109,7 +109,7 @@ def _angle(results: Any, axle: str) -> float:
     return float(results[f"controller.{axle}_steering_angle"][_STEP])
 
 
-def _delay_rows(found: dict[str, Any]) -> list[Row]:
+def _delay_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     one = 100.0 * analysis.overshoot(found["one"]["vehicle.displacement"], _TARGET)
     growth = float(np.abs(found["two"]["vehicle.displacement"]).max())
     radius = analysis.spectral_radius(_P, 2)
@@ -122,7 +122,7 @@ def _delay_rows(found: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _other_rows() -> list[Row]:
+def _other_rows() -> list[PublishedNumber]:
     norm = float(np.abs(np.array(_P.gain)).max())
     return [
         not_reproducible(

@@ -17,7 +17,7 @@ from ...models.wheel_speed_controller import TORQUE_LIMIT, WheelSpeedController
 from ..simulation import simulate
 from ..studies.parallel import Task
 from .multi_drive_pictures import Effect, pictures
-from .page import Page, Paper, Row, at_least, at_most, holds, near, not_reproducible
+from .page import Page, Paper, PublishedNumber, at_least, at_most, holds, near, not_reproducible
 
 _SOURCE = (
     "B. Gasbaoui, A. Nasri, A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input "
@@ -61,14 +61,14 @@ def _lag(milliseconds: int) -> dict[str, Value]:
 
 
 def _gains(factor: float) -> dict[str, Value]:
-    """PIDs with so many times the published gains."""
+    """Return the parameters of PIDs with `factor` times the published gains."""
     p = WheelSpeedController.Parameters()
     gains = {"proportional_gain": p.proportional_gain, "integral_gain": p.integral_gain}
     return _PID | {f"controller.{name}": factor * gain for name, gain in gains.items()}
 
 
 def _with_coupling(kappa: float) -> tuple[Effect, Effect]:
-    """What the MIMO-PID with a coupling does, and what PIDs with 1 + kappa times the gain do."""
+    """Return the effect of the MIMO-PID with a coupling, and that of PIDs with 1 + kappa times the gain."""
     changes: tuple[dict[str, Value], ...] = ({"controller.coupling": kappa}, _gains(1.0 + kappa))
     mimo, pid = (_effect(simulate("multi_drive", parameters=change | _IDEAL)) for change in changes)
     return mimo, pid
@@ -131,7 +131,7 @@ def _page(found: dict[str, Any]) -> Page:
     )
 
 
-def _differential_rows(results: Results) -> list[Row]:
+def _differential_rows(results: Results) -> list[PublishedNumber]:
     p = ElectronicDifferential.Parameters()
     shift = 0.5 * p.track * np.tan(results["differential.steering_angle"]) / p.wheelbase
     wheels = _SPEED / p.wheel_radius
@@ -145,7 +145,7 @@ def _differential_rows(results: Results) -> list[Row]:
     ]
 
 
-def _torque_rows(found: dict[str, Any]) -> list[Row]:
+def _torque_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     results = found["mimo"]
     air, other = (float(r["vehicle.aerodynamic_torque"][0]) for r in (results, found["density"]))
     rolling, slope = float(results["vehicle.rolling_torque"][0]), float(results["vehicle.slope_torque"].max())
@@ -167,7 +167,7 @@ def _torque_rows(found: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _comparison_rows(found: dict[str, Any]) -> list[Row]:
+def _comparison_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     mimo, pid, stronger = (_maneuver(found[name]) for name in ("mimo", "pid", "stronger"))
     dip, error = "dip of the speed on the slope", "rms error of the left wheel's speed, from 2 s on"
     fair = "PIDs with gains x 1.5"
@@ -186,24 +186,24 @@ def _comparison_rows(found: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _saved(what: str, mimo: float, pid: float) -> Row:
+def _saved(what: str, mimo: float, pid: float) -> PublishedNumber:
     saved = 100.0 * analysis.improvement(mimo, pid)
     return at_least(what, '"better"', saved, 15.0, "%", digits=2, calibrated=_CHOSEN)
 
 
-def _left(what: str, mimo: float, stronger: float) -> Row:
-    """How little the MIMO-PID is ahead of PIDs with as much gain for equal errors."""
+def _left(what: str, mimo: float, stronger: float) -> PublishedNumber:
+    """Return the advantage of the MIMO-PID over PIDs with as much gain for equal errors."""
     left = 100.0 * analysis.improvement(mimo, stronger)
     row = at_most(f"MIMO-PID below PIDs with gains x 1.5: {what}", "-", left, 1.0, "%", digits=2)
     return _because(row, "the published comparison rewards the gain and not the coupling")
 
 
-def _because(row: Row, reason: str) -> Row:
-    """A row with a remark, unless it already says why it was missed."""
+def _because(row: PublishedNumber, reason: str) -> PublishedNumber:
+    """Return the row with a remark, unless it was missed and has its reason."""
     return row if row.verdict == "missed" else dataclasses.replace(row, reason=reason)
 
 
-def _distance_rows(found: dict[str, Any]) -> list[Row]:
+def _distance_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     return [
         near(f"distance in 10 s: {label}", "-", _maneuver(found[name]).distance, 167.0, 1.0, "m")
         for name, label in (("mimo", "MIMO-PID"), ("pid", "PIDs"))
@@ -211,7 +211,7 @@ def _distance_rows(found: dict[str, Any]) -> list[Row]:
 
 
 class _Launch(NamedTuple):
-    """A launch: times [s] to 99 % and from 10 % to 90 % of the reference, overshoot [%], error [km/h]."""
+    """A launch: times [s] to 99 % and from 10 % to 90 % of the speed, overshoot [%], final error [km/h]."""
 
     time: float
     rise: float
@@ -230,7 +230,7 @@ def _launch(results: Results) -> _Launch:
     )
 
 
-def _launch_rows(found: dict[str, Any]) -> list[Row]:
+def _launch_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for name, label in (("mimo", "MIMO-PID"), ("pid", "PIDs")):
         seconds = _launch(found[f"launch {name}"]).time
@@ -240,7 +240,7 @@ def _launch_rows(found: dict[str, Any]) -> list[Row]:
     return [*rows, near("largest torque of a motor in the launch", "247 N·m", torque, 247.0, 0.1, "N·m")]
 
 
-def _drive_rows(found: dict[str, Any]) -> list[Row]:
+def _drive_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for variant, label, reach in (
         ("ideal drives", "ideal drives", 5e-3),
@@ -252,8 +252,8 @@ def _drive_rows(found: dict[str, Any]) -> list[Row]:
     return [*rows, *_machine_rows(found["machine 3 ms"], {ms: found[f"ideal {ms} ms"] for ms in (1, 3, 6)})]
 
 
-def _machine_rows(machine: Results, ideal: dict[int, Results]) -> list[Row]:
-    """The dq machine and the ideal drive of its bandwidth agree far better than two bandwidths do."""
+def _machine_rows(machine: Results, ideal: dict[int, Results]) -> list[PublishedNumber]:
+    """Compare the dq machine with the ideal drive of its bandwidth, and two bandwidths with each other."""
 
     def apart(a: Results, b: Results) -> float:
         return max(
@@ -268,8 +268,8 @@ def _machine_rows(machine: Results, ideal: dict[int, Results]) -> list[Row]:
     return [_because(torque, reason), at_most(f"{what}: speed", "-", speed, 1e-3, "km/h", digits=2)]
 
 
-def _contradictions(found: dict[str, Any]) -> list[Row]:
-    """What the paper prints and its own data cannot give."""
+def _contradictions(found: dict[str, Any]) -> list[PublishedNumber]:
+    """Return the printed numbers that the paper's own data contradict."""
     obtained = _obtained(found)
     claims = analysis.claims(_CAR, _SPEED, TORQUE_LIMIT)
     rows = [

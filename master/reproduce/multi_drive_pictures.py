@@ -1,4 +1,4 @@
-"""Pictures of the two-motor car: what the paper's Figs. 4 to 19 show, and what explains its table."""
+"""Pictures of the two-motor car: the quantities of the paper's Figs. 4 to 19, and those behind its table."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Effect(NamedTuple):
 
 
 def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Effect]]) -> tuple[Picture, ...]:
-    """All of the paper's page: `found` are the runs, `coupled` the effects of couplings and of gains."""
+    """Return all pictures: `found` are the runs, `coupled` the effects of couplings and of gains instead."""
     both = _beside({name: found[name] for name in _CONTROLLERS})
     launches = _beside({name: found[f"launch {name}"] for name in ("mimo", "pid")})
     of = "Of the paper's Figs. 4 to 19"
@@ -76,16 +76,17 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
 
 
 def _beside(runs: Mapping[str, Results]) -> Results:
-    """Runs of the same times in one: `name/unit.variable`."""
+    """Return runs of equal times as one, with variables `name/unit.variable`."""
     columns = [
         (dataclasses.replace(v, name=f"{name}/{v.name}"), run.column(v.name))
         for name, run in runs.items()
         for v in run.variables
     ]
-    return _table(next(iter(runs.values())).time, columns)
+    return _joined(next(iter(runs.values())).time, columns)
 
 
-def _table(time: Array, columns: Iterable[tuple[ResultVariable, Array]]) -> Results:
+def _joined(time: Array, columns: Iterable[tuple[ResultVariable, Array]]) -> Results:
+    """Return the columns, shape (n,) each as `time` [s], as results."""
     variables, values = zip(*columns, strict=True)
     return Results(time, np.column_stack(values), variables)
 
@@ -96,7 +97,7 @@ def _between(results: Results, begin: float, end: float) -> Results:
 
 
 def _resistances(results: Results) -> Results:
-    """The three torques, their sum, and the torque of the air in a density of 1.164 in place of 1.2 kg/m3."""
+    """Return the three torques, their sum, and the torque of air of 1.164 in place of 1.2 kg/m3."""
     slope, rolling, air = (results[f"vehicle.{n}_torque"] for n in ("slope", "rolling", "aerodynamic"))
     values = {
         "slope": slope,
@@ -106,11 +107,11 @@ def _resistances(results: Results) -> Results:
         "thin air": air * (1.164 / 1.2),
         "printed": np.full(len(air), 93.2),
     }
-    return _table(results.time, ((ResultVariable(n, "N.m"), v) for n, v in values.items()))
+    return _joined(results.time, ((ResultVariable(n, "N.m"), v) for n, v in values.items()))
 
 
 def phase_currents(results: Results, begin: float, end: float) -> Results:
-    """The three currents [A] of the left motor between two times [s], on a grid of 0.2 ms.
+    """Return the three currents [A] of the left motor between two times [s], on a grid of 0.2 ms.
 
     The recorded i_d and i_q, linear between the samples, are turned by the angle of the flux, which is the
     integral of w + L_m i_q/(T_r |psi|), equation (F4) of the drive; it is 0 at `begin`.
@@ -132,11 +133,11 @@ def phase_currents(results: Results, begin: float, end: float) -> Results:
     for k, name in enumerate("abc"):
         turned = angle - k * 2.0 * np.pi / 3.0
         phases.append((ResultVariable(name, "A"), i_d * np.cos(turned) - i_q * np.sin(turned)))
-    return _table(time, [*phases, (ResultVariable("across", "A"), i_q), (ResultVariable("along", "A"), i_d)])
+    return _joined(time, [*phases, (ResultVariable("across", "A"), i_q), (ResultVariable("along", "A"), i_d)])
 
 
 def _machine_differences(found: Mapping[str, Any]) -> Results:
-    """Differences to the ideal drive of 3 ms, without the bus."""
+    """Return the differences to the ideal drive of 3 ms, without the bus."""
     ideal = found["ideal 3 ms"]
     others = {"machine": "machine 3 ms", "faster": "ideal 1 ms", "slower": "ideal 6 ms"}
     columns = []
@@ -144,7 +145,7 @@ def _machine_differences(found: Mapping[str, Any]) -> Results:
         for what in ("right_drive.torque", "vehicle.speed"):
             variable = dataclasses.replace(ideal.variable(what), name=f"{short}/{what}")
             columns.append((variable, found[run][what] - ideal[what]))
-    return _table(ideal.time, columns)
+    return _joined(ideal.time, columns)
 
 
 def _panel(label: str, unit: str, *signals: tuple[str, str], limits: Any = None) -> PanelSpec:

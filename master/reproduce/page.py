@@ -1,12 +1,12 @@
-"""What a page of a paper says: a row with a verdict for each published number, a picture for each figure.
+"""The page of a paper: a row with a verdict for each published number, a picture for each figure.
 
 The verdicts:
 
-    reproduced         the published number comes out of published parameters and equations, within the reach
-    calibrated         it comes out, but parameters that the paper does not print were chosen so that it does
-    reached            a number that the paper does not print ("-") is what it was found to be before
-    not reproducible   it cannot come out; the reason says why
-    missed             it should come out and does not: the command fails
+    reproduced         the published number results from published parameters and equations, within the reach
+    calibrated         it results, but parameters that the paper does not print were chosen so that it does
+    reached            a number that the paper does not print ("-") is equal to the one obtained before
+    not reproducible   it cannot result; the reason is given
+    missed             it should result and does not: the command fails
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from ..studies.parallel import Task
 
@@ -22,11 +22,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Verdict = Literal["reproduced", "calibrated", "reached", "not reproducible", "missed"]
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
 @dataclasses.dataclass(frozen=True)
-class Row:
-    """One number: what it is, as published, what was to be reached, as obtained, and the verdict."""
+class PublishedNumber:
+    """A number or statement of a paper: its name, as published, to be reached, as obtained, and the verdict.
+
+    All are texts with units of measure; `published` is "-" for a number that the paper does not print.
+    """
 
     what: str
     published: str
@@ -47,25 +51,25 @@ class Picture:
 
 @dataclasses.dataclass(frozen=True)
 class Page:
-    """All of one paper. `about` is one paragraph; `commands` are those that give the same runs by hand."""
+    """The content of one paper's page. `about` is a paragraph; `commands` do the same runs by hand."""
 
     name: str
     title: str
     source: str
     about: str
-    rows: tuple[Row, ...]
+    rows: tuple[PublishedNumber, ...]
     pictures: tuple[Picture, ...]
     commands: tuple[str, ...]
 
     @property
-    def missed(self) -> tuple[Row, ...]:
-        """The rows that should have been reached."""
+    def missed(self) -> tuple[PublishedNumber, ...]:
+        """The rows whose verdict is "missed"."""
         return tuple(row for row in self.rows if row.verdict == "missed")
 
 
 @dataclasses.dataclass(frozen=True)
 class Paper:
-    """A paper: its runs, none of which needs another, and the page made of what they return, by name."""
+    """A paper: its independent runs, and the function from their return values, by name, to the page."""
 
     name: str
     runs: Callable[[], tuple[Task[Any], ...]]
@@ -82,8 +86,8 @@ def near(
     *,
     digits: int = 4,
     calibrated: str = "",
-) -> Row:
-    """A number that must come within `tolerance` of `target`; `calibrated` says what was chosen for it."""
+) -> PublishedNumber:
+    """Return a number that must be within `tolerance` of `target`; `calibrated` names the choices for it."""
     reach = f"{_number(target, digits, unit)} ± {tolerance:g}"
     return _judged(
         what, published, reach, obtained, abs(obtained - target) <= tolerance, unit, digits, calibrated
@@ -99,8 +103,8 @@ def at_most(
     *,
     digits: int = 4,
     calibrated: str = "",
-) -> Row:
-    """A number that must not exceed `limit`."""
+) -> PublishedNumber:
+    """Return a number that must not exceed `limit`."""
     return _judged(
         what,
         published,
@@ -122,8 +126,8 @@ def at_least(
     *,
     digits: int = 4,
     calibrated: str = "",
-) -> Row:
-    """A number that must not fall below `limit`."""
+) -> PublishedNumber:
+    """Return a number that must not fall below `limit`."""
     return _judged(
         what,
         published,
@@ -136,15 +140,17 @@ def at_least(
     )
 
 
-def holds(what: str, published: str, reach: str, obtained: str, true: bool, *, calibrated: str = "") -> Row:
-    """A statement: `obtained` in words, `true` if it is what `reach` asks for."""
+def holds(
+    what: str, published: str, reach: str, obtained: str, true: bool, *, calibrated: str = ""
+) -> PublishedNumber:
+    """Return a statement: `obtained` in words, and `true` if it satisfies `reach`."""
     reason = calibrated if true else "does not hold"
-    return Row(what, published, reach, obtained, _verdict(published, true, calibrated), reason)
+    return PublishedNumber(what, published, reach, obtained, _verdict(published, true, calibrated), reason)
 
 
-def not_reproducible(what: str, published: str, obtained: str, reason: str) -> Row:
-    """A printed number that cannot come out, with the one that does."""
-    return Row(what, published, "-", obtained, "not reproducible", reason)
+def not_reproducible(what: str, published: str, obtained: str, reason: str) -> PublishedNumber:
+    """Return a printed number that cannot result, with the one that does."""
+    return PublishedNumber(what, published, "-", obtained, "not reproducible", reason)
 
 
 def _judged(
@@ -156,11 +162,11 @@ def _judged(
     unit: str,
     digits: int,
     calibrated: str,
-) -> Row:
+) -> PublishedNumber:
     shown = _number(obtained, digits, unit)
     if math.isnan(obtained) or not within:
-        return Row(what, published, reach, shown, "missed", "outside what was to be reached")
-    return Row(what, published, reach, shown, _verdict(published, True, calibrated), calibrated)
+        return PublishedNumber(what, published, reach, shown, "missed", "outside what was to be reached")
+    return PublishedNumber(what, published, reach, shown, _verdict(published, True, calibrated), calibrated)
 
 
 def _verdict(published: str, within: bool, calibrated: str) -> Verdict:

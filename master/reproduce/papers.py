@@ -1,4 +1,4 @@
-"""The papers, and how they are reproduced: all their runs at once on all cores, then a page for each."""
+"""The papers, and their reproduction: all their runs at once on all cores, then a page for each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAMES = ("scooter", "lane_keeping", "braking", "multi_drive")
 
 
 def load(name: str) -> Paper:
-    """The paper of a system. Raises ConfigError with the nearest name there is."""
+    """Return the paper of a system. Raises ConfigError with the nearest name for an unknown one."""
     if name not in NAMES:
         raise ConfigError(f"there is no paper '{name}'{nearest(name, NAMES)}; papers: {', '.join(NAMES)}")
     paper: Paper = importlib.import_module(f".{name}", __package__).PAPER

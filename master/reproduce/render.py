@@ -1,4 +1,4 @@
-"""Writing pages: Markdown with the pictures beside it, and HTML that holds everything in one file."""
+"""The files of pages: Markdown with the pictures beside it, and HTML with everything in one file."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.figures import draw as figures
-from ...cosim.writing import replacing
-from .page import Page, Row
+from ...cosim.writing import markdown_table, replacing
+from .page import VERDICTS, Page, PublishedNumber
 
 _HEAD = ("what", "published", "to reach", "obtained", "verdict", "reason")
 
@@ -27,7 +27,7 @@ pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; }
 
 
 def write_page(page: Page, folder: Path) -> list[Path]:
-    """Write NAME.md, NAME.html and figures/NAME-*.png and .svg; return the paths.
+    """Write NAME.md, NAME.html and figures/NAME-*.png and .svg, and return the paths.
 
     Raises ConfigError naming the file that cannot be written.
     """
@@ -44,35 +44,31 @@ def write_page(page: Page, folder: Path) -> list[Path]:
 
 
 def write_index(pages: Sequence[Page], folder: Path) -> Path:
-    """Write README.md: the papers and how many of their numbers came out."""
-    head = ["system", "paper", *verdicts()]
-    lines = ["# Reproduced papers", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
-    for page in pages:
-        counts = [sum(r.verdict == v for r in page.rows) for v in verdicts()]
-        lines.append(f"| [{page.name}]({page.name}.md) | {page.source} | {' | '.join(map(str, counts))} |")
+    """Write README.md, the papers with the count of each verdict, and return its path. Raises ConfigError."""
+    rows = [
+        (
+            f"[{page.name}]({page.name}.md)",
+            page.source,
+            *(str(sum(row.verdict == verdict for row in page.rows)) for verdict in VERDICTS),
+        )
+        for page in pages
+    ]
+    lines = ["# Reproduced papers", "", *markdown_table(("system", "paper", *VERDICTS), rows)]
     path = folder / "README.md"
     with replacing(path) as file:
         file.write(("\n".join(lines) + "\n").encode())
     return path
 
 
-def verdicts() -> tuple[str, ...]:
-    """The verdicts, best first."""
-    return ("reproduced", "calibrated", "reached", "not reproducible", "missed")
-
-
-def _cells(row: Row) -> tuple[str, ...]:
-    return (row.what, row.published, row.reach, row.obtained, row.verdict, row.reason)
+def _cells(row: PublishedNumber, mark: str = "") -> tuple[str, ...]:
+    """Return the cells below _HEAD, the verdict between two marks."""
+    return (row.what, row.published, row.reach, row.obtained, f"{mark}{row.verdict}{mark}", row.reason)
 
 
 def _markdown(page: Page) -> str:
     lines = [f"# {page.title}", "", page.source, "", page.about, ""]
     lines += ["```sh", *page.commands, "```", ""]
-    lines += [f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD)]
-    for row in page.rows:
-        cells = [cell.replace("|", "\\|").replace("\n", " ") for cell in _cells(row)]
-        cells[4] = f"**{cells[4]}**"
-        lines.append(f"| {' | '.join(cells)} |")
+    lines += markdown_table(_HEAD, [_cells(row, "**") for row in page.rows])
     for picture in page.pictures:
         lines += [
             "",

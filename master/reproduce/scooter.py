@@ -11,7 +11,7 @@ from ...cosim.figures import draw as figures
 from ..simulation import simulate
 from ..studies.parallel import Task
 from . import scooter_numbers as numbers
-from .page import Page, Paper, Picture, Row, at_least, at_most, holds, near
+from .page import Page, Paper, Picture, PublishedNumber, at_least, at_most, holds, near
 from .scooter_identification import (
     PUBLISHED_ESR,
     PUBLISHED_GAIN,
@@ -85,7 +85,7 @@ def _page(found: dict[str, Any]) -> Page:
     )
 
 
-def _vehicle_rows() -> list[Row]:
+def _vehicle_rows() -> list[PublishedNumber]:
     gain, pole = numbers.linearized(30.0)
     over_speed = [numbers.linearized(v) for v in SPEEDS]
     gains, poles = [g for g, _ in over_speed], [f for _, f in over_speed]
@@ -110,7 +110,7 @@ def _vehicle_rows() -> list[Row]:
     ]
 
 
-def _identification_rows(found: ScooterIdentification) -> list[Row]:
+def _identification_rows(found: ScooterIdentification) -> list[PublishedNumber]:
     got, fit = found.numbers, found.measured.fit
     note = (
         f"{_MAP}; sweep chosen. In the paper's band only gain x pole is well conditioned "
@@ -131,7 +131,7 @@ def _identification_rows(found: ScooterIdentification) -> list[Row]:
     ]  # fmt: skip # one number a row
 
 
-def _observer_rows(found: dict[str, Any]) -> list[Row]:
+def _observer_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     worst = max(found[f"constant {v:g} km/h"] for v in numbers.CONSTANT_SPEEDS)
     ratio = numbers.ripple(found["fig8 raw"]) / numbers.ripple(found["fig8 bus"])
     return [
@@ -149,7 +149,7 @@ def _observer_rows(found: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _fig8_rows(found: dict[str, Any]) -> list[Row]:
+def _fig8_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for name in numbers.VARIANTS:
         results = found[f"fig8 {name}"]
@@ -185,7 +185,7 @@ def _fig8_rows(found: dict[str, Any]) -> list[Row]:
     return rows
 
 
-def _fig9_rows(found: dict[str, Any]) -> list[Row]:
+def _fig9_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for name in numbers.VARIANTS:
         results = found[f"fig9 {name}"]
@@ -202,7 +202,7 @@ def _fig9_rows(found: dict[str, Any]) -> list[Row]:
     return rows
 
 
-def _energy_rows(found: dict[str, Any]) -> list[Row]:
+def _energy_rows(found: dict[str, Any]) -> list[PublishedNumber]:
     rows = []
     for bounded, (consumption, speed) in ((True, (43.0, 24.1)), (False, (73.7, 39.7))):
         got = found[f"stop and go {bounded}"]

@@ -32,14 +32,14 @@ _SMALL = 1.0  # %; small enough for the speed limit at 49.5 km/h and the boost's
 
 @dataclasses.dataclass(frozen=True)
 class ScooterIdentification:
-    """What Figs. 2 to 4 show: `measured` over the bus at 30 km/h, `over_speed` without it."""
+    """The results behind Figs. 2 to 4: `measured` over the bus at 30 km/h, `over_speed` without it."""
 
     measured: Identification
     over_speed: tuple[Identification, ...]
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The published quantities as obtained, by what they are."""
+        """The obtained values of the published quantities, by name and unit."""
         fit = self.measured.fit
         return {
             "gain [km/h per %]": fit.gain.value,
@@ -49,7 +49,7 @@ class ScooterIdentification:
         }
 
     def figures(self) -> dict[str, Figure]:
-        """Figs. 2, 3 and 4 as `fig2`, `fig3`, `fig4`."""
+        """Draw Figs. 2, 3 and 4; return them as `fig2`, `fig3`, `fig4`."""
         from ...cosim.figures import identification as figures
 
         found = self.measured
@@ -90,17 +90,20 @@ class ScooterIdentification:
 def scooter_identification(
     speeds: Sequence[float] = SPEEDS, progress: PhaseProgress | None = None
 ) -> ScooterIdentification:
-    """Figs. 2 to 4: about 15 s. `speeds` [km/h] are those of Fig. 3. Raises as `identify` does."""
+    """Do the identifications of Figs. 2 to 4, in about 15 s; `speeds` [km/h] are those of Fig. 3.
+
+    Raises as `identify` does.
+    """
     return ScooterIdentification(at_working_point(progress), tuple(at_speed(v, progress) for v in speeds))
 
 
 def at_working_point(progress: PhaseProgress | None = None, **options: Any) -> Identification:
-    """Figs. 2 and 4: from the rider's throttle to the measured speed, over the bus (whole km/h)."""
+    """Identify as in Figs. 2 and 4: the rider's throttle to the measured speed, over the bus (whole km/h)."""
     return identify("scooter", progress=progress, **options)
 
 
 def at_speed(speed: float, progress: PhaseProgress | None = None) -> Identification:
-    """One point of Fig. 3: the vehicle alone, swept by 1 % of throttle round a steady `speed` [km/h]."""
+    """Identify a point of Fig. 3: the vehicle alone, swept by 1 % of throttle around a `speed` [km/h]."""
     spec = IdentificationSpec(
         input="throttle",
         output="speed",

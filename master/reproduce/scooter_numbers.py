@@ -20,7 +20,7 @@ CONSTANT_SPEEDS = (24.0, 27.3, 30.5, 34.49, 40.5, 45.25, 49.0)  # km/h
 
 
 def linearized(speed: float) -> tuple[float, float]:
-    """Gain [km/h per %] and pole [Hz] round a steady speed [km/h] on a level road, by (1)-(2)."""
+    """Return gain [km/h per %] and pole [Hz] at a steady speed [km/h] on a level road, by (1)-(2)."""
     p, v, h = Scooter.Parameters(), speed / KMH, 1e-4
     load_slope = (level_road_load(p, v + h) - level_road_load(p, v - h)) / (2.0 * h)
     force_slope = (maximum_force(p, v + h) - maximum_force(p, v - h)) / (2.0 * h)
@@ -29,58 +29,58 @@ def linearized(speed: float) -> tuple[float, float]:
 
 
 def steady_throttle(speed: float) -> float:
-    """The throttle [%] that keeps a speed [km/h] on a level road: v = 17.03 + 0.46 g, by the force map."""
+    """Return the throttle g [%] that keeps a speed [km/h] on a level road: v = 17.03 + 0.46 g (force map)."""
     return (speed - 17.03) / 0.46
 
 
 def switches(results: Results) -> tuple[NDArray[np.float64], list[int]]:
-    """When the supervisor changes its state [s], and the states from the start on."""
+    """Return the times [s] at which the supervisor changes its state, shape (n,), and its n + 1 states."""
     state = results["ecu.state"]
     at = np.flatnonzero(np.diff(state)) + 1
     return results.time[at], [int(state[0]), *(int(s) for s in state[at])]
 
 
 def time_in_states(results: Results) -> list[float]:
-    """Time in driver, acceleration and velocity [s]."""
+    """Return the times [s] in the states driver, acceleration and velocity."""
     step = results.time[1] - results.time[0]
     return [float(step * np.count_nonzero(results["ecu.state"][:-1] == s)) for s in (0, 1, 2)]
 
 
 def over_bound(results: Results) -> NDArray[np.float64]:
-    """True speed minus speed bound [km/h]."""
+    """Return true speed minus speed bound [km/h], shape (n,)."""
     over: NDArray[np.float64] = results["vehicle.speed"] * KMH - results["ecu.speed_bound"]
     return over
 
 
 def settled_error(results: Results) -> float:
-    """Largest |v - v_b| [km/h] in velocity after 20 s."""
+    """Return the largest |v - v_b| [km/h] in velocity after 20 s."""
     settled = (results.time > 20.0) & (results["ecu.state"] == 2)
     return float(np.abs(over_bound(results)[settled]).max())
 
 
 def ripple(results: Results) -> float:
-    """rms of dg_e/dt [%/s] while a bound acts, without the samples in which the state changes."""
+    """Return the rms of dg_e/dt [%/s] while a bound acts, without samples in which the state changes."""
     state, rate = results["ecu.state"], np.diff(results["ecu.throttle"]) / 0.01
     inside = (state[1:] == state[:-1]) & (state[1:] != 0)
     return float(np.sqrt(np.mean(rate[inside] ** 2)))
 
 
 def largest_jump(results: Results) -> float:
-    """Largest |change of g_e| [%] at a switch, beyond the rider's own change."""
+    """Return the largest |change of g_e| [%] at a switch, beyond the rider's own change."""
     throttle, request = results["ecu.throttle"], results["ecu.throttle_request"]
     at = np.flatnonzero(np.diff(results["ecu.state"]))
     return float((np.abs(np.diff(throttle))[at] - np.abs(np.diff(request))[at]).max())
 
 
 def since_switch(results: Results) -> NDArray[np.float64]:
-    """Time in the present state [s]; 0 before the first switch."""
+    """Return the time [s] in the present state, shape (n,); 0 before the first switch."""
     times, _ = switches(results)
     last = times[np.searchsorted(times, results.time, side="right") - 1]
     return np.where(results.time >= times[0], results.time - last, 0.0)
 
 
 def estimate_error(speed: float, **options: Any) -> float:
-    """Largest |v_e - v| [km/h] from 60 to 90 s at a constant speed [km/h], without bounds."""
+    """Return the largest |v_e - v| [km/h] from 60 to 90 s at a constant speed [km/h], without bounds."""
     text = f"""
         leave_out = ["rider", "planner", "battery"]
         [experiment]
@@ -102,7 +102,7 @@ def estimate_error(speed: float, **options: Any) -> float:
 
 
 def stop_and_go(bounded: bool) -> Results:
-    """300 s of full throttle for 18 s and coasting for 12 s in turn."""
+    """Run 300 s, with full throttle for 18 s and coasting for 12 s in turn."""
     with Simulation("scooter", "fig8", parameters={"ecu.enabled": bounded}) as sim:
         for second in range(300):
             sim.override("ecu.throttle_request", 100.0 if second % 30 < 18 else 0.0)
@@ -111,6 +111,6 @@ def stop_and_go(bounded: bool) -> Results:
 
 
 def energy_and_speed(results: Results) -> tuple[float, float]:
-    """Consumption from the cells [Wh/km] and mean speed [km/h]."""
+    """Return consumption from the cells [Wh/km] and mean speed [km/h]."""
     kilometers = results["vehicle.distance"][-1] / 1000.0
     return results["battery.energy_drawn"][-1] / kilometers, kilometers / (results.time[-1] / 3600.0)
