@@ -192,7 +192,7 @@ class Results:
         return Results(time, data, variables, self.manifest)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the rows into a file, in the format that its suffix names: .csv.
+        """Write the rows into a file, in the format that its suffix names, as .csv does.
 
         Raises ConfigError for another suffix, and where the file cannot be written; then none is left.
         """

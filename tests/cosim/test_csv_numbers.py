@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -29,7 +29,6 @@ def opened(path: Path, text: str | bytes) -> CsvFile:
     return CsvFile.with_header(path)
 
 
-@settings(deadline=None)  # what a disk takes for a file is not ours
 @given(table=tables, end=st.sampled_from(["\n", "\r\n"]), data=st.data())
 def test_the_numbers_are_those_that_were_written_whoever_reads_them(
     table: np.ndarray, end: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import tracemalloc
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,22 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.errors import RunError
-from evcosim.cosim.figures.draw import draw
-from evcosim.cosim.results.results import PIECE, Results, ResultVariable
-from evcosim.cosim.row_store import MEMORY, Grid, RowStore
-from evcosim.cosim.system.figure_spec import FigureSpec
-from evcosim.cosim.system.metric_spec import MetricSpec
+from evcosim.cosim.row_store import MEMORY, Grid, MemoryTable, RowStore, Table
 
 WIDTH = 3
-VARIABLES = [
-    ResultVariable("a.x"),
-    ResultVariable("a.n", type="Integer"),
-    ResultVariable("a.b", type="Boolean"),
-]
-LINE = FigureSpec.model_validate({"panels": [{"label": "x", "signals": ["a.x"]}]})
-SPECS = [
-    MetricSpec(name=how, signal="a.n", unit="1", reduce=how) for how in ("final", "max", "range", "changes")
-]
 
 
 def chunks(counts: list[int]) -> list[np.ndarray]:
@@ -73,66 +58,6 @@ def test_a_table_stays_as_it_was_when_rows_are_appended(memory: int) -> None:
     assert np.array_equal(store.table().whole(), np.vstack([first, second]))
 
 
-def test_results_read_the_same_from_a_file(tmp_path: Path) -> None:
-    (rows,) = chunks([5000])
-    rows[:, 2] = rows[:, 0] > 0.0
-    store = RowStore(WIDTH, memory=0)
-    store.append(rows)
-    time = 0.01 * np.arange(len(rows))
-    kept, stored = Results(time, rows, VARIABLES), Results(time, store.table(), VARIABLES)
-    assert stored.to_csv(tmp_path / "a.csv").read_bytes() == kept.to_csv(tmp_path / "b.csv").read_bytes()
-    assert stored.final() == kept.final() == {name: kept[name][-1].item() for name in kept.names}
-    assert [type(x) for x in stored.final().values()] == [float, int, bool]
-    part, same = stored.part(time > 10.0, ["a.b", "a.x"]), kept.part(time > 10.0, ["a.b", "a.x"])
-    assert part.names == ("a.b", "a.x")
-    assert np.array_equal(part.data, same.data)
-    assert np.array_equal(part.time, kept.time[time > 10.0])
-    for rows in (slice(None), slice(-7, None), slice(4000, 9000), slice(7, 5), slice(None, None, 3)):
-        part = stored.part(rows, ["a.b", "a.x"])
-        assert np.array_equal(part.data, kept.data[rows][:, [2, 0]])
-        assert np.array_equal(part.time, kept.time[rows])
-
-
-def test_times_on_a_grid_are_those_of_an_array() -> None:
-    grid = Grid(-1.0, 0.01, 70_001)
-    rows = np.zeros((len(grid), WIDTH))
-    kept, made = Results(-1.0 + 0.01 * np.arange(len(rows)), rows, VARIABLES), Results(grid, rows, VARIABLES)
-    assert made.span == kept.span == (-1.0, 699.0)
-    assert np.array_equal(made.times(69_990, 70_500), kept.time[69_990:])
-    assert np.array_equal(made.time, kept.time)
-    assert np.array_equal(made.times(3, 5), kept.times(3, 5))
-    assert len(Results(Grid(0.0, 0.1, 0), np.zeros((0, WIDTH)), VARIABLES).time) == 0
-
-
-def reached(count: int, use: Callable[[Results], object]) -> int:
-    """The most bytes [B] that a use of so many rows in a file takes."""
-    store = RowStore(WIDTH, memory=0)
-    for start in range(0, count, 10_000):
-        block = np.sin(np.arange(start, start + 10_000.0))[:, None] * [3.0, 0.0, 0.0]
-        store.append(block)
-    results = Results(Grid(0.0, 0.01, count), store.table(), VARIABLES, metrics=SPECS)
-    tracemalloc.start()
-    use(results)
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    return peak
-
-
-@pytest.mark.parametrize(
-    "use", [Results.metrics, lambda r: draw(r, LINE), lambda r: r.part(slice(7), ["a.x"])]
-)
-def test_what_reads_a_long_run_holds_a_piece_of_it(use: Callable[[Results], object]) -> None:
-    """Twice the rows take no more memory: not even a column of those that came to them."""
-    count = 3 * PIECE // 10_000 * 10_000
-    use(Results([0.0], np.zeros((1, WIDTH)), VARIABLES, metrics=SPECS))  # what is loaded once for all
-    assert reached(2 * count, use) - reached(count, use) < 0.2 * 8 * count
-
-
-def test_writing_a_long_run_holds_a_piece_of_it(tmp_path: Path) -> None:
-    peaks = [reached(count, lambda r: r.to_csv(tmp_path / "a.csv")) for count in (20_000, 60_000)]
-    assert peaks[1] - peaks[0] < 0.2 * 8 * 40_000
-
-
 def test_few_rows_need_no_file(tmp_path: Path) -> None:
     """A folder that is none is never asked for."""
     store = RowStore(WIDTH, folder=tmp_path / "none")
@@ -161,3 +86,41 @@ def test_a_full_disk_loses_nothing() -> None:
         with pytest.raises(RunError, match="No space left on device"):
             store.append(second)
     assert len(store) == 110
+
+
+@given(
+    st.floats(-10.0, 10.0),
+    st.floats(1e-3, 1.0),
+    st.integers(0, 50),
+    st.integers(-60, 60),
+    st.integers(-60, 60),
+)
+def test_the_times_of_a_grid_are_counted(
+    start: float, step: float, count: int, first: int, stop: int
+) -> None:
+    grid = Grid(start, step, count)
+    expected = np.array([start + step * k for k in range(count)])
+    assert len(grid) == count
+    assert np.array_equal(grid[:], expected)
+    assert np.array_equal(grid[first:stop], expected[first:stop])
+    assert np.array_equal(grid[first:stop:3], expected[first:stop:3])
+
+
+@pytest.mark.parametrize("memory", [0, 10**9])
+def test_a_table_of_either_kind_is_a_table(memory: int) -> None:
+    store = RowStore(WIDTH, memory)
+    assert store.table().shape == (0, WIDTH)
+    store.append(np.empty((0, WIDTH)))
+    assert len(store) == 0
+    (rows,) = chunks([3])
+    store.append(rows)
+    assert isinstance(store.table(), Table)
+    assert isinstance(store.table(), MemoryTable) is (memory > 0)
+
+
+def test_rows_of_an_array_are_views_of_it() -> None:
+    (rows,) = chunks([9])
+    table = MemoryTable(rows)
+    for view in (table.rows(2, 5), table.column(1), table.whole()):
+        assert np.shares_memory(view, rows)
+    assert not np.shares_memory(table.part(0, 9, [0]), rows)

@@ -81,3 +81,28 @@ def test_the_table_of_usual_units_is_pints(name):
     assert ours.offset == pints.offset == 0.0
     assert ours.exponents[:-1] == pints.exponents[:-1]  # pint does not always keep rad
     assert conversion(ours, pints).scale == pytest.approx(1.0, rel=1e-12)
+
+
+QUANTITIES = [
+    [u for u in _USUAL.values() if u.exponents == e] for e in sorted({u.exponents for u in _USUAL.values()})
+]
+
+
+@given(numbers, st.sampled_from(QUANTITIES).flatmap(lambda units: st.tuples(*[st.sampled_from(units)] * 3)))
+def test_conversions_in_a_row_are_one_conversion(x, units):
+    a, b, c = units
+    twice, once = conversion(b, c)(conversion(a, b)(x)), conversion(a, c)(x)
+    assert twice == pytest.approx(once, rel=1e-12, abs=1e-300)
+
+
+def test_the_identity_maps_every_value_to_itself():
+    assert Affine().identity and Affine()(7.5) == 7.5
+    assert Affine().expression("x") == "x"
+    assert not Affine(2.0).identity and not Affine(1.0, 1.0).identity
+
+
+def test_a_unit_without_a_definition_converts_to_itself_alone():
+    unknown = UnitOfMeasure("parsecond")
+    assert conversion(unknown, unknown).identity
+    with pytest.raises(ConfigError, match="different quantities"):
+        conversion(unknown, UnitOfMeasure("furlong"))

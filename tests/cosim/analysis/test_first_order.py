@@ -1,4 +1,4 @@
-"""Identification: what is known exactly is found exactly, intervals hold the truth, bad data are refused."""
+"""First-order fits: the exact model is found exactly, intervals hold the truth, bad data are refused."""
 
 from __future__ import annotations
 
@@ -8,146 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evcosim.cosim.analysis.first_order import FirstOrder, curvature, fit_first_order, flat_share, predict
-from evcosim.cosim.analysis.frequency_response import (
-    FrequencyResponse,
-    averaged,
-    block_length,
-    frequency_response,
-    midpoints,
-)
-from evcosim.cosim.analysis.sweep import Sweep
+from evcosim.cosim.analysis.frequency_response import FrequencyResponse, frequency_response, midpoints
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.figures import identification as identification_figures
-
-SWEEP = Sweep(0.008, 0.6, 900.0, 20.0)
-RATE = 5.0  # Hz
-BAND = (0.012, 0.3)
-GAINS = st.floats(1e-3, 1e3) | st.floats(-1e3, -1e-3)
-POLES = st.floats(0.003, 1.0)
-
-
-def exact(model, frequency):
-    return FrequencyResponse(frequency, model.response(frequency), np.ones_like(frequency))
-
-
-def swept(model, sweep=SWEEP):
-    """Input and output, as averages over 0.2 s, of a model in continuous time."""
-    u = sweep(np.arange(int(sweep.length * 100)) * 0.01)
-    y = model.simulated(u, 0.01)
-    return averaged(u, 20), averaged(midpoints(y), 20)
-
-
-# ---- the sweep
-
-
-@given(st.floats(0.001, 0.1), st.floats(1.5, 200.0), st.floats(2.0, 50.0))
-def test_sweep_goes_from_its_first_to_its_last_frequency(start, ratio, periods):
-    sweep = Sweep(start, start * ratio, periods / start * 1.001, 3.0)
-    ends = sweep.frequency(np.array([0.0, sweep.duration * (1.0 - 1e-12)]))
-    assert ends == pytest.approx([start, start * ratio], rel=1e-6)
-    time = np.linspace(0.0, sweep.duration, 1000, endpoint=False)
-    assert np.abs(sweep(time)).max() <= 3.0
-    assert sweep(np.zeros(1)) == 0.0
-    assert np.array_equal(sweep(time), Sweep(start, start * ratio, sweep.duration, 6.0)(time) / 2.0)
-
-
-def test_sweep_frequency_is_the_slope_of_its_phase():
-    time = np.linspace(0.0, 300.0, 300_001)
-    crossings = time[1:][np.diff(np.sign(SWEEP(time))) > 0]
-    periods = np.diff(crossings)
-    assert 1.0 / periods == pytest.approx(SWEEP.frequency(crossings[:-1] + periods / 2.0), rel=0.02)
-
-
-def test_repeats_begin_anew():
-    sweep = Sweep(0.1, 1.0, 30.0, 1.0, repeats=2)
-    time = np.arange(0.0, 30.0, 0.01)
-    assert sweep.length == 60.0
-    assert sweep(time + 30.0) == pytest.approx(sweep(time), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("numbers", "text"),
-    [
-        ((0.6, 0.008, 900.0, 20.0), "the first frequency is the lower one"),
-        ((0.0, 0.6, 900.0, 20.0), "all four are finite and above 0"),
-        ((0.008, 0.6, 900.0, 0.0), "all four are finite and above 0"),
-        ((0.008, float("nan"), 900.0, 1.0), "all four are finite and above 0"),
-        ((0.008, 0.6, 100.0, 20.0), "0.008 Hz needs 250 s or more"),
-        ((0.008, 0.6, 900.0, 20.0, 0), "repeats = 0"),
-    ],
-)
-def test_numbers_that_make_no_sweep(numbers, text):
-    with pytest.raises(ConfigError, match=text):
-        Sweep(*numbers)
-
-
-def test_sweep_against_step_band_and_range():
-    SWEEP.check_step(0.2)
-    with pytest.raises(ConfigError, match=r"goes up to 0\.5 Hz"):
-        SWEEP.check_step(0.25)
-    SWEEP.check_band((0.008, 0.6))
-    for band in ((0.004, 0.3), (0.05, 0.7), (0.3, 0.05), (0.1, 0.1), (float("nan"), 0.3)):
-        with pytest.raises(ConfigError, match="must rise, and lie in the sweep"):
-            SWEEP.check_band(band)
-    SWEEP.check_range(28.0, 0.0, 100.0, "throttle", "%")
-    with pytest.raises(ConfigError, match=r"saturates throttle: 85 % .* 65 to 105, .* 0..100 %"):
-        SWEEP.check_range(85.0, 0.0, 100.0, "throttle", "%")
-    with pytest.raises(ConfigError, match=r"declared for 10.. %"):
-        SWEEP.check_range(28.0, 10.0, None, "throttle", "%")
-
-
-# ---- the spectra
-
-
-@given(st.integers(1, 50), st.integers(50, 500))
-def test_averages_keep_the_mean(block, count):
-    values = np.random.default_rng(block).normal(size=block * count)
-    assert averaged(values, block).mean() == pytest.approx(values.mean(), abs=1e-12)
-
-
-def test_a_pure_gain_has_its_response_everywhere():
-    u, _ = swept(FirstOrder(1.0, 0.03))
-    found = frequency_response(u, -2.5 * u, RATE)
-    inside = found.within((0.012, 0.55))
-    assert inside.response == pytest.approx(np.full(len(inside.response), -2.5), rel=1e-9)
-    assert inside.coherence == pytest.approx(np.ones(len(inside.response)))
-
-
-def test_noise_lowers_the_coherence():
-    u, y = swept(FirstOrder(0.46, 0.03))
-    noise = np.random.default_rng(0).normal(size=len(y))
-    coherence = [
-        frequency_response(u, y + size * noise, RATE).within(BAND).coherence.mean()
-        for size in (0.0, 0.3, 3.0)
-    ]
-    assert coherence[0] > 0.99 > coherence[1] > coherence[2]
-
-
-def test_signals_that_say_nothing_are_refused():
-    u, y = swept(FirstOrder(0.46, 0.03))
-    broken = y.copy()
-    broken[7] = np.nan
-    for a, b, text in (
-        (u, np.full_like(u, 3.0), r"output is constant \(3\)"),
-        (np.zeros_like(u), y, r"input is constant \(0\)"),
-        (u, broken, "output is nan at sample 7"),
-        (u, y[:-1], "two signals of the same length"),
-        (u[:16], y[:16], "sweep for longer"),
-    ):
-        with pytest.raises(ConfigError, match=text):
-            frequency_response(a, b, RATE)
-
-
-def test_block_gives_eight_samples_in_the_shortest_period():
-    assert block_length(0.6, 0.01) == 20
-    assert block_length(12.5, 0.01) == 1
-
+from support.swept import BAND, GAINS, POLES, RATE, SWEEP, exact, swept
 
 # ---- the fit
 
 
 @given(GAINS, POLES)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_exact_response_gives_the_exact_model(gain, pole):
     fit = fit_first_order(exact(FirstOrder(gain, pole), np.linspace(0.01, 0.4, 80)), BAND)
     assert (fit.gain.value, fit.pole.value) == pytest.approx((gain, pole), rel=1e-6)
@@ -240,7 +109,7 @@ def test_a_limit_shows_as_a_flat_or_bent_output():
 
 
 @given(GAINS, st.floats(0.02, 0.2), st.floats(-50.0, 50.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_simulated_model_reaches_its_gain(gain, pole, u):
     model = FirstOrder(gain, pole)
     x = model.simulated(np.full(2000, u), 0.1)
@@ -266,22 +135,3 @@ def test_no_error_is_given_for_an_output_that_passes_zero():
     u = np.sign(np.sin(2.0 * np.pi * time / 25.0))
     found = predict(model, time, u, model.simulated(u, 0.1)[:-1], (0.0, 0.0))
     assert np.isnan(found.mean_esr)
-
-
-# ---- figures
-
-
-def test_figures_can_be_drawn(tmp_path):
-    model = FirstOrder(-0.46, 0.03)
-    u, y = swept(model)
-    response = frequency_response(u, y, RATE)
-    fit = fit_first_order(response, BAND)
-    figure = identification_figures.bode(response, fit, (0.008, 0.6), "km/h per %", "a", (-0.46, 0.03))
-    labels = {text.get_text() for axes in figure.axes for text in [axes.yaxis.label]}
-    assert labels == {"Magnitude\n[km/h per %]", "Phase [deg]", "Coherence [1]"}
-    time = np.arange(len(u)) / RATE
-    for offset, panels in ((30.0, 2), (0.0, 1)):
-        found = predict(model, time, u, y + offset, (0.0, offset))
-        assert len(identification_figures.prediction(found, "km/h", "v", "b").axes) == panels
-    over = identification_figures.over_working_points([30.0, 40.0], [fit, fit], "v [km/h]", "km/h per %", "c")
-    assert len(over.axes) == 2

@@ -60,7 +60,7 @@ def test_a_quantity_is_named_with_its_unit(label: str, unit: str, shown: str) ->
 
 
 @given(st.lists(st.floats(-1e6, 1e6) | st.just(math.nan), min_size=1, max_size=20))
-@settings(deadline=None, max_examples=30)  # matplotlib's first figure takes its time
+@settings(max_examples=30)
 def test_all_that_is_finite_lies_within_the_limits(values: list[float]) -> None:
     _, axes = grid(1, 1, 2.0, "", share_x=False)
     axes[0, 0].plot(values)

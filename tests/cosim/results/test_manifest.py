@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.errors import ConfigError
@@ -21,7 +21,6 @@ plain = (
 nested = st.recursive(plain, lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner), max_leaves=8)
 
 
-@settings(deadline=None)  # what a disk takes for a file is not ours
 @given(about=st.dictionaries(st.text().filter(lambda key: key != "variables"), nested))
 def test_what_is_written_reads_back(about: dict, tmp_path_factory) -> None:
     path = tmp_path_factory.getbasetemp() / "run.json"

@@ -1,16 +1,22 @@
 import errno
 import os
+import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.figures.draw import draw
 from evcosim.cosim.results.formats import csv
-from evcosim.cosim.results.results import Results, ResultVariable, to_nanoseconds
+from evcosim.cosim.results.results import PIECE, Results, ResultVariable, to_nanoseconds
+from evcosim.cosim.row_store import Grid, RowStore
+from evcosim.cosim.system.figure_spec import FigureSpec
+from evcosim.cosim.system.metric_spec import MetricSpec
 
 STATE = ResultVariable("ecu.state", type="Enumeration", items=((0, "driver"), (1, "acceleration")))
 SPEED = ResultVariable("vehicle.speed", "m/s", description="Speed")
@@ -34,7 +40,6 @@ def same(a: Results, b: Results) -> None:
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
 
-@settings(deadline=None)  # what a disk takes for a file is not ours
 @given(data=arrays.arrays(np.float64, st.tuples(st.integers(0, 6), st.just(2)), elements=finite))
 def test_what_is_written_reads_back_bit_for_bit(data: np.ndarray, tmp_path_factory) -> None:
     folder = tmp_path_factory.mktemp("run")
@@ -157,3 +162,77 @@ def test_results_without_their_manifest_have_no_units(tmp_path: Path) -> None:
     bare = Results.read(tmp_path)
     assert bare.data.tobytes() == some().data.tobytes()
     assert set(bare.units.values()) == {""}
+
+
+# ---- of a long run: rows in a file, times on a grid
+
+WIDTH = 3
+VARIABLES = [
+    ResultVariable("a.x"),
+    ResultVariable("a.n", type="Integer"),
+    ResultVariable("a.b", type="Boolean"),
+]
+LINE = FigureSpec.model_validate({"panels": [{"label": "x", "signals": ["a.x"]}]})
+SPECS = [
+    MetricSpec(name=how, signal="a.n", unit="1", reduce=how) for how in ("final", "max", "range", "changes")
+]
+
+
+def test_results_read_the_same_from_a_file(tmp_path: Path) -> None:
+    rows = np.round(np.random.default_rng(1).normal(size=(5000, WIDTH)))
+    rows[:, 2] = rows[:, 0] > 0.0
+    store = RowStore(WIDTH, memory=0)
+    store.append(rows)
+    time = 0.01 * np.arange(len(rows))
+    kept, stored = Results(time, rows, VARIABLES), Results(time, store.table(), VARIABLES)
+    assert stored.to_csv(tmp_path / "a.csv").read_bytes() == kept.to_csv(tmp_path / "b.csv").read_bytes()
+    assert stored.final() == kept.final() == {name: kept[name][-1].item() for name in kept.names}
+    assert [type(x) for x in stored.final().values()] == [float, int, bool]
+    part, same = stored.part(time > 10.0, ["a.b", "a.x"]), kept.part(time > 10.0, ["a.b", "a.x"])
+    assert part.names == ("a.b", "a.x")
+    assert np.array_equal(part.data, same.data)
+    assert np.array_equal(part.time, kept.time[time > 10.0])
+    for rows in (slice(None), slice(-7, None), slice(4000, 9000), slice(7, 5), slice(None, None, 3)):
+        part = stored.part(rows, ["a.b", "a.x"])
+        assert np.array_equal(part.data, kept.data[rows][:, [2, 0]])
+        assert np.array_equal(part.time, kept.time[rows])
+
+
+def test_times_on_a_grid_are_those_of_an_array() -> None:
+    grid = Grid(-1.0, 0.01, 70_001)
+    rows = np.zeros((len(grid), WIDTH))
+    kept, made = Results(-1.0 + 0.01 * np.arange(len(rows)), rows, VARIABLES), Results(grid, rows, VARIABLES)
+    assert made.span == kept.span == (-1.0, 699.0)
+    assert np.array_equal(made.times(69_990, 70_500), kept.time[69_990:])
+    assert np.array_equal(made.time, kept.time)
+    assert np.array_equal(made.times(3, 5), kept.times(3, 5))
+    assert len(Results(Grid(0.0, 0.1, 0), np.zeros((0, WIDTH)), VARIABLES).time) == 0
+
+
+def reached(count: int, use: Callable[[Results], object]) -> int:
+    """The most bytes [B] that a use of so many rows in a file takes."""
+    store = RowStore(WIDTH, memory=0)
+    for start in range(0, count, 10_000):
+        block = np.sin(np.arange(start, start + 10_000.0))[:, None] * [3.0, 0.0, 0.0]
+        store.append(block)
+    results = Results(Grid(0.0, 0.01, count), store.table(), VARIABLES, metrics=SPECS)
+    tracemalloc.start()
+    use(results)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak
+
+
+@pytest.mark.parametrize(
+    "use", [Results.metrics, lambda r: draw(r, LINE), lambda r: r.part(slice(7), ["a.x"])]
+)
+def test_what_reads_a_long_run_holds_a_piece_of_it(use: Callable[[Results], object]) -> None:
+    """Twice the rows take no more memory: not even a column of those that came to them."""
+    count = 3 * PIECE // 10_000 * 10_000
+    use(Results([0.0], np.zeros((1, WIDTH)), VARIABLES, metrics=SPECS))  # what is loaded once for all
+    assert reached(2 * count, use) - reached(count, use) < 0.2 * 8 * count
+
+
+def test_writing_a_long_run_holds_a_piece_of_it(tmp_path: Path) -> None:
+    peaks = [reached(count, lambda r: r.to_csv(tmp_path / "a.csv")) for count in (20_000, 60_000)]
+    assert peaks[1] - peaks[0] < 0.2 * 8 * 40_000

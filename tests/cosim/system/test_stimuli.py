@@ -66,6 +66,9 @@ def test_linear_is_numpys_where_times_differ(points):
         ("t,v\n", r"no row below the header"),
         ("t;v\n0;1\n", r"line 1: columns are separated by .,., not by .;.: .t;v."),
         ("t,v\n0,1_0\n", r"line 2, column .v.: .1_0. is not a finite number"),
+        ("t,v\n0,1\n1,1,2\n", r"line 3 has 3 values, the header has 2 columns"),
+        ("0,1\n1,2\n", r"line 1: a header with names is needed, not numbers: '0,1'"),
+        ("t\n0\n", r"a header of two or more column names is needed, not \['t'\]"),
         ("", r"a header of two or more"),
     ],
 )
@@ -84,6 +87,14 @@ def test_a_csv_column_by_name(tmp_path):
     assert values([1], csv=str(path)) == pytest.approx([2])
     with pytest.raises(ConfigError, match=r"no column 'bb' \(did you mean 'b'\?\); columns: a, b"):
         values([1], csv=str(path), column="bb")
+
+
+def test_what_stands_beside_the_wanted_columns_counts_for_nothing(tmp_path):
+    path = tmp_path / "cycle.csv"
+    path.write_text('"time\n[s]",phase,"v, raw",w\n\n0,cold,1,\n\n2,"warm, dry",3,nan\n')
+    assert values([1], csv=str(path), column="v, raw") == pytest.approx([2])
+    with pytest.raises(ConfigError, match="line 4, column 'phase': 'cold' is not a number"):
+        values([1], csv=str(path))
 
 
 @pytest.mark.parametrize(

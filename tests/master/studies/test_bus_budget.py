@@ -1,8 +1,7 @@
-"""The bus budget: verdicts on their own, then systems that hold, break, fail and die."""
+"""The bus budget of systems that hold, break, fail and die."""
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 import os
@@ -13,11 +12,8 @@ import time
 import pytest
 
 from evcosim import simulate
-from evcosim.cosim.analysis.bus_budget import Budget, Series, as_data, as_markdown, series
-from evcosim.cosim.can.bus_settings import BusVariation
+from evcosim.cosim.analysis.bus_budget import as_data
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.figures.bus_budget import draw_budget
-from evcosim.cosim.figures.draw import save
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.selection import metric_specs
 from evcosim.cosim.system.system import load_system, system_names
@@ -83,91 +79,6 @@ def measured(line):
     told = []
     found = budget(line / "line.toml", progress=lambda *args: told.append(args))
     return found, told
-
-
-# ---- what is run
-
-
-def test_each_variation_by_itself_from_the_nominal_point():
-    delay, resolution, cycle = series(0.01)
-    assert [p.bus.delay_steps for p in delay.points] == [0, 1, 2, 3]
-    assert [p.label for p in delay.points[1:]] == ["+1 step (10 ms)", "+2 steps (20 ms)", "+3 steps (30 ms)"]
-    assert [p.bus.resolution for p in resolution.points] == ["ideal", 1.0, 2.0, 4.0, 8.0]
-    assert [p.bus.cycle for p in cycle.points] == [1, 2, 4, 8]
-    for each in (delay, resolution, cycle):
-        assert each.points[each.nominal].bus == BusVariation()
-        for point in each.points:
-            changed = [f.name for f in dataclasses.fields(point.bus)
-                       if getattr(point.bus, f.name) != getattr(BusVariation(), f.name)]  # fmt: skip
-            assert len(changed) == (point.bus != BusVariation())
-
-
-# ---- verdicts
-
-
-def judged(values, kind="max", limit=1.5):
-    """A budget with these values over the resolution, from ideal on."""
-    points = tuple(
-        dataclasses.replace(p, value=v, reason="it fell\nover" if math.isnan(v) else "")
-        for p, v in zip(series(0.01)[1].points, values, strict=True)
-    )
-    return Budget("s", "t", "error", "m", limit, kind, (Series("signal resolution", points),))
-
-
-@pytest.mark.parametrize(
-    ("values", "kind", "broken", "summary"),
-    [
-        ([1.0, 1.1, 1.2, 1.3, 1.5], "max", "", "holds up to DBC x 8"),
-        ([1.0, 1.1, 1.2, 1.6, 1.4], "max", "3", "breaks at DBC x 4"),
-        ([1.0, 1.1, math.nan, 1.6, 1.4], "max", "23", "breaks at DBC x 2"),
-        ([1.0, 1.6, 1.2, 1.6, 1.4], "max", "13", "broken as it is"),
-        ([1.6, 1.6, 1.2, 1.6, 1.4], "max", "013", "broken as it is"),
-        ([math.nan, 1.1, 1.2, 1.3, 1.4], "max", "0", "holds up to DBC x 8; broken at ideal too"),
-        ([1.6, 1.1, 1.2, 1.3, 2.0], "max", "04", "breaks at DBC x 8; broken at ideal too"),
-        ([2.0, 1.9, 1.5, 1.4, math.nan], "min", "34", "breaks at DBC x 4"),
-    ],
-)
-def test_where_it_breaks(values, kind, broken, summary):
-    found = judged(values, kind)
-    (only,) = found.series
-    assert "".join(str(i) for i, p in enumerate(only.points) if found.broken(p)) == broken
-    assert found.summary(only) == summary
-
-
-def test_texts():
-    found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
-    assert found.rule == "error: at most 1.5 m"
-    assert found.rows()[1] == ("", "DBC *", "1.1 m", "holds")
-    assert found.rows()[3] == ("", "DBC x 4", "-", "broken: it fell")
-    page = as_markdown(found, "figure.png")
-    assert r"|  | DBC \* | 1.1 m | holds |" in page
-    assert "- signal resolution: breaks at DBC x 4" in page
-    data = json.loads(json.dumps(as_data(found), allow_nan=False))
-    points = data["series"][0]["points"]
-    assert [p["value"] for p in points] == [1.0, 1.1, 1.2, None, 1e9]
-    assert [p["nominal"] for p in points] == [False, True, False, False, False]
-    assert data["series"][0]["first_broken"] == "DBC x 4"
-    assert points[3]["reason"] == "it fell\nover"
-
-
-@pytest.mark.parametrize("kind", ["max", "min"])
-@pytest.mark.parametrize(
-    "values",
-    [[1.0, 1.1, 1.2, math.nan, 1e9], [math.nan] * 5, [1.5] * 5, [-1e12, 0.0, 1.4, 1.6, 3.0]],
-    ids=["failed and far", "nothing", "flat", "both sides"],
-)
-def test_figure(values, kind):
-    figure = draw_budget(judged(values, kind))
-    figure.draw_without_rendering()
-    low, high = figure.axes[0].get_ylim()
-    assert low < 1.5 < high
-    assert high - low < 20.0  # what diverged does not squeeze the rest
-
-
-def test_same_figure_same_bytes(tmp_path):
-    found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
-    first, again = ([p.read_bytes() for p in save(draw_budget(found), tmp_path, "budget")] for _ in range(2))
-    assert first == again
 
 
 # ---- runs

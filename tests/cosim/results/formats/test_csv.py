@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -20,7 +20,6 @@ FLAG = ResultVariable("ecu.on", type="Boolean", variability="discrete")
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
 
-@settings(deadline=None)  # what a disk takes for a file is not ours
 @given(
     data=arrays.arrays(np.float64, st.tuples(st.integers(0, 6), st.just(2)), elements=finite),
     name=st.text(st.characters(codec="utf-8"), min_size=1).map(lambda text: f"a.{text.strip()}b"),

@@ -1,0 +1,47 @@
+"""The figure of a bus budget: readable whatever the values are."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from evcosim.cosim.figures.bus_budget import draw_budget
+from evcosim.cosim.figures.saving import save
+from support.judged_budget import judged
+
+
+@pytest.mark.parametrize("kind", ["max", "min"])
+@pytest.mark.parametrize(
+    "values",
+    [[1.0, 1.1, 1.2, math.nan, 1e9], [math.nan] * 5, [1.5] * 5, [-1e12, 0.0, 1.4, 1.6, 3.0]],
+    ids=["failed and far", "nothing", "flat", "both sides"],
+)
+def test_figure(values, kind):
+    figure = draw_budget(judged(values, kind))
+    figure.draw_without_rendering()
+    low, high = figure.axes[0].get_ylim()
+    assert low < 1.5 < high
+    assert high - low < 20.0  # what diverged does not squeeze the rest
+
+
+def test_same_figure_same_bytes(tmp_path):
+    found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
+    first, again = ([p.read_bytes() for p in save(draw_budget(found), tmp_path, "budget")] for _ in range(2))
+    assert first == again
+
+
+def test_a_broken_point_is_a_cross_and_one_without_a_value_is_at_the_edge():
+    figure = draw_budget(judged([1.0, 1.1, 1.6, math.nan, 1e9]))
+    axes = figure.axes[0]
+    points = {
+        line.get_xdata()[0]: line
+        for line in axes.get_lines()
+        if line.get_marker() in "oXv^" and line.get_markersize() == 8.0
+    }
+    assert "".join(points[i].get_marker() for i in range(5)) == "ooX^^"
+    low, high = axes.get_ylim()
+    assert [points[i].get_ydata()[0] for i in range(3)] == [1.0, 1.1, 1.6]
+    assert all(low < points[i].get_ydata()[0] < high for i in range(5))
+    texts = {text.get_text() for text in axes.texts}
+    assert {"1", "1.1", "1.6", "no value", "1e+09"} == texts

@@ -1,0 +1,19 @@
+"""A bus budget without a run: given values over the resolution of the signals."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+from evcosim.cosim.analysis.bus_budget import Budget, Series, series
+
+
+def judged(values: Sequence[float], kind: Literal["max", "min"] = "max", limit: float = 1.5) -> Budget:
+    """Return a budget with these values over the resolution, from ideal on."""
+    points = tuple(
+        dataclasses.replace(p, value=v, reason="it fell\nover" if math.isnan(v) else "")
+        for p, v in zip(series(0.01)[1].points, values, strict=True)
+    )
+    return Budget("s", "t", "error", "m", limit, kind, (Series("signal resolution", points),))
