@@ -35,7 +35,7 @@ class CsvFile:
     header_lines: int
 
     @classmethod
-    def with_header(cls, path: Path) -> CsvFile:
+    def of(cls, path: Path) -> CsvFile:
         """Read the header of a file: no names where the file is empty or begins with an empty line.
 
         Raises ConfigError naming the file where it cannot be read, is not UTF-8 text, does not close a quote,

@@ -101,7 +101,7 @@ def read_columns(path: Path, column: str | None) -> tuple[NDArray[np.float64], N
     ConfigError naming file, line, column and value where a number is missing or is none, and where there is
     no such column or no row.
     """
-    file = CsvFile.with_header(path)
+    file = CsvFile.of(path)
     names = file.names
     if len(names) < 2:
         raise ConfigError(

@@ -26,7 +26,7 @@ def text_of(table: np.ndarray, end: str = "\n") -> str:
 
 def opened(path: Path, text: str | bytes) -> CsvFile:
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return CsvFile.with_header(path)
+    return CsvFile.of(path)
 
 
 @given(table=tables, end=st.sampled_from(["\n", "\r\n"]), data=st.data())
@@ -133,15 +133,15 @@ def test_a_mistake_is_named_with_its_place(text: bytes, said: str, tmp_path: Pat
     path = tmp_path / "x.csv"
     path.write_bytes(text)
     with pytest.raises(ConfigError) as refusal:
-        CsvFile.with_header(path).numbers()
+        CsvFile.of(path).numbers()
     assert str(refusal.value).startswith(f"{path}: {said}")
 
 
 def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"none.csv: cannot be read: No such file or directory"):
-        CsvFile.with_header(tmp_path / "none.csv")
+        CsvFile.of(tmp_path / "none.csv")
     with pytest.raises(ConfigError, match="cannot be read: Is a directory"):
-        CsvFile.with_header(tmp_path)
+        CsvFile.of(tmp_path)
 
 
 @pytest.mark.parametrize("phase", ["1", "warm"])

@@ -59,7 +59,7 @@ def read(path: Path) -> Contents:
     Its variables are Reals without a unit of measure. Raises ConfigError naming file, line, column and value
     of what is missing, is no finite number, or is a time before the one above it.
     """
-    file = CsvFile.with_header(path)
+    file = CsvFile.of(path)
     _check_names(file)
     table = file.numbers()
     backward = np.flatnonzero(np.diff(table[:, 0]) < 0.0)
