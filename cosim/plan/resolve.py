@@ -52,12 +52,13 @@ def resolve(
     """
     experiment, algorithm = _experiment(system, scenario, options)
     entries = participating(system, scenario)
-    place = str(system.path)
-    record = scenario.file.record if scenario.file.record is not None else system.file.record
+    path, record = system.path, system.file.record
+    if scenario.file.record is not None and scenario.path is not None:
+        path, record = scenario.path, scenario.file.record
     connected = {c.source for c in system.file.connect}
-    slots, columns = allot(interfaces, record, connected, place)
+    slots, columns = allot(interfaces, record, connected, str(path))
     every = {
-        name: _every(entry.period, experiment.step_size, f"{place}: units.{name}.period")
+        name: _every(entry.period, experiment.step_size, f"{system.keys_of(name)}period")
         for name, entry in entries.items()
     }
     network = connect(system, interfaces, slots, every, experiment, algorithm, options.get("ideal", False))
@@ -70,7 +71,7 @@ def resolve(
         scenario=scenario.name,
         experiment=experiment,
         algorithm=algorithm,
-        steps=_steps(experiment, len(columns), place),
+        steps=_steps(experiment, len(columns), _stop_time_in(system, scenario, options)),
         ideal=options.get("ideal", False),
         units=tuple(
             UnitPlan(
@@ -123,8 +124,16 @@ def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tupl
     return experiment, algorithm
 
 
+def _stop_time_in(system: System, scenario: Scenario, options: RunOptions) -> str:
+    """Return the place of the stop time that counts: a file and its key, or the option."""
+    if options.get("stop_time") is not None:
+        return "stop_time"
+    path = system.path if scenario.file.experiment.stop_time is None else scenario.path
+    return f"{path}: experiment.stop_time"
+
+
 def _steps(experiment: Experiment, columns: int, place: str) -> int:
-    """Return the number of steps of the run, each recorded in so many columns.
+    """Return the number of steps of the run, each recorded in so many columns; `place` is the stop time's.
 
     Raises ConfigError when the stop time is no whole number of steps after the start, or too much is
     recorded.
@@ -132,9 +141,9 @@ def _steps(experiment: Experiment, columns: int, place: str) -> int:
     duration = experiment.stop_time - experiment.start_time
     if not (math.isfinite(duration) and duration > 0.0):
         raise ConfigError(
-            f"{place}: stop_time {experiment.stop_time} s is not after start_time {experiment.start_time} s"
+            f"{place} {experiment.stop_time} s is not after start_time {experiment.start_time} s"
         )
-    steps = _multiple(duration, experiment.step_size, f"{place}: stop_time - start_time")
+    steps = _multiple(duration, experiment.step_size, f"{place} - start_time")
     if steps * (columns + 1) > _MOST_VALUES:
         raise ConfigError(
             f"{place}: {steps:.3g} steps of {experiment.step_size:g} s with {columns} recorded variables are "
@@ -169,9 +178,7 @@ def _parameters(
     """
     given: list[tuple[str, str, str, Value]] = []
     for unit, entry in entries.items():
-        given += [
-            (unit, k, f"{system.path}: units.{unit}.parameters.{k}", x) for k, x in entry.parameters.items()
-        ]
+        given += [(unit, k, f"{system.keys_of(unit)}parameters.{k}", x) for k, x in entry.parameters.items()]
     for unit, values in scenario.file.parameters.items():
         given += [(unit, k, f"{scenario.path}: parameters.{unit}.{k}", x) for k, x in values.items()]
     for name, value in (options.get("parameters") or {}).items():
@@ -191,9 +198,7 @@ def _starts(
 ) -> dict[str, Value]:
     """Return the start values of a unit's inputs by name: the scenario's, else the system's."""
     starts = {}
-    given = {
-        name: (f"{system.path}: units.{unit}.start.{name}", value) for name, value in entry.start.items()
-    }
+    given = {name: (f"{system.keys_of(unit)}start.{name}", value) for name, value in entry.start.items()}
     for name, value in scenario.file.start.get(unit, {}).items():
         given[name] = (f"{scenario.path}: start.{unit}.{name}", value)
     for name, (place, value) in given.items():

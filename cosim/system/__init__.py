@@ -1,1 +1,1 @@
-"""What files say: systems, scenarios, stimuli, bus variations, and the specifications in them."""
+"""The files of a user: systems, scenarios, stimuli, bus variations, and the specifications in them."""

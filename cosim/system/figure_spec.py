@@ -1,4 +1,4 @@
-"""What a figure shows: the specification that stands in system and scenario files."""
+"""The figure of a run: the table `[figure]` of system and scenario files."""
 
 from __future__ import annotations
 
@@ -7,21 +7,26 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from .toml import FileModel
+from .toml import FileModel, OrText
 
 
 class SignalSpec(FileModel):
-    """One line: a variable `unit.variable`, its text in the legend, and how it is drawn.
+    """One line of a panel: a variable and how it is drawn. The variable's name alone stands for a table."""
 
-    `step` draws each value held until the next; by default so are inputs and sampled outputs.
-    `weight` is the width of the line in points.
-    """
+    name: str = Field(examples=["vehicle.speed"])
+    """The variable, written `unit.variable`."""
 
-    name: str
     label: str | None = None
+    """The text in the legend; without it the variable's name."""
+
     style: Literal["solid", "dashed", "dotted", "dashdot"] | None = None
+    """The dash pattern; without it one that no other line of the panel has."""
+
     weight: float | None = Field(default=None, gt=0.0, le=10.0)
+    """Width of the line in points; without it the first line is the widest."""
+
     step: bool | None = None
+    """Draw each value held until the next; without it so are inputs and sampled outputs."""
 
 
 def _from_name(value: Any) -> Any:
@@ -29,15 +34,19 @@ def _from_name(value: Any) -> Any:
 
 
 class PanelSpec(FileModel):
-    """One panel: what its axis says, the unit that all its signals are converted to, and the signals.
-
-    A signal is a table or a variable's name alone. `limits` are the ends of the axis, in `unit`.
-    """
+    """One panel of the figure, with an axis of its own."""
 
     label: str = ""
+    """The text at the axis, before the unit."""
+
     unit: str = ""
-    signals: list[Annotated[SignalSpec, BeforeValidator(_from_name)]] = Field(min_length=1)
+    """The unit of measure of the axis, to which all signals are converted; "" for states and counts."""
+
+    signals: list[Annotated[SignalSpec, BeforeValidator(_from_name), OrText()]] = Field(min_length=1)
+    """The lines: names of variables, or tables of a name and how it is drawn."""
+
     limits: tuple[float, float] | None = None
+    """Lower and upper end of the axis, in `unit`; without them the axis fits the data."""
 
     @model_validator(mode="after")
     def _limits_rise(self) -> PanelSpec:
@@ -47,15 +56,22 @@ class PanelSpec(FileModel):
 
 
 class FigureSpec(FileModel):
-    """A figure: panels from top to bottom, the enumeration whose states shade them, a title and a note."""
+    """The figure that `evcosim run` draws: panels from top to bottom over a common time axis."""
 
     title: str | None = None
+    """The text above the figure; without it the names of system and scenario."""
+
     shade: str | None = None
+    """An enumeration, written `unit.variable`, whose states shade the background of all panels."""
+
     panels: list[PanelSpec] = Field(min_length=1)
+    """The panels, from top to bottom."""
+
     note: str | None = None
+    """A line of text below the figure."""
 
     def without(self, gone: Callable[[str], bool]) -> FigureSpec | None:
-        """The figure without the signals that are `gone`; None when no panel is left."""
+        """Return the figure without the signals that are `gone`; None when no panel is left."""
         panels = [
             panel.model_copy(update={"signals": [s for s in panel.signals if not gone(s.name)]})
             for panel in self.panels

@@ -1,30 +1,42 @@
-"""What an identification does: the table `[identification]` of a scenario file, or options of the user."""
+"""The task of an identification: the table `[identification]` of a scenario file, or options of the user."""
 
 from __future__ import annotations
-
-from pydantic import Field
 
 from .toml import FileModel
 
 
 class IdentificationSpec(FileModel):
-    """A sweep of `input` around each working point, and what is fitted to the response of `output`.
-
-    `at` are working points of the output, in `unit` (default: the output's own unit); with `at_input` they
-    are the input's instead; with neither the input stays where it is. `sweep` and `band` in Hz, `duration`
-    in s; the fit is done in `band` (default: from 1.5 times the lowest frequency to half the highest).
-    """
+    """The task of `evcosim identify`: a sweep of an input and a first-order fit to an output's response."""
 
     input: str
+    """The input that is swept, written `unit.variable`."""
+
     output: str
+    """The variable that responds, written `unit.variable`: any recorded Real variable."""
+
     amplitude: float
+    """Amplitude of the sweep around the working point, above 0, in the input's unit."""
+
     unit: str | None = None
+    """Unit of measure of the output, for `at` and for the gain; without it the output's own."""
+
     at: list[float] = []
+    """Working points of the output, in `unit`; one identification at each."""
+
     at_input: list[float] = []
+    """Working points of the input, in its own unit; without these and `at` the input stays where it is."""
+
     sweep: tuple[float, float] = (0.008, 0.6)
-    duration: float = Field(default=900.0)
+    """Lowest and highest frequency of the sweep in Hz."""
+
+    duration: float = 900.0
+    """Duration of one sweep in s: some periods of the lowest frequency."""
+
     repeats: int = 1
+    """Number of sweeps, from 1 on."""
+
     band: tuple[float, float] | None = None
+    """The fit's frequencies in Hz; without it from 1.5 times the lowest to half the highest of `sweep`."""
 
     @property
     def fit_band(self) -> tuple[float, float]:

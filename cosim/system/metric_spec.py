@@ -1,4 +1,4 @@
-"""What a metric is: the specification that stands in system and scenario files (see `results.metrics`)."""
+"""The metrics that a file names: tables `[[metrics]]`; `results.metrics` evaluates them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from .toml import FileModel
+from .toml import FileModel, FileValue
 
 _TAKES = {
     "threshold": ("share_above", "time_above", "integral_above", "settling"),
@@ -15,14 +15,14 @@ _TAKES = {
 
 
 class Reduction(FileModel):
-    """A signal, `minus` another one if given, and how it is reduced to one number.
+    """A signal of a run, or the difference of two, reduced to one number."""
 
-    `threshold` is in `threshold_unit`, or else in the unit of the signal. `value` is a number or the name
-    of a state of an enumeration.
-    """
+    signal: str = Field(examples=["vehicle.speed"])
+    """The variable x, written `unit.variable`."""
 
-    signal: str
     minus: str | None = None
+    """A variable that is subtracted first: x is then the difference."""
+
     reduce: Literal[
         "final",
         "mean",
@@ -39,14 +39,24 @@ class Reduction(FileModel):
         "changes",
         "settling",
     ] = "final"
+    """The number that is made of x over the run; `range` is max - min, `settling` the time until x stays
+    within the threshold."""
+
     threshold: float | None = Field(default=None, allow_inf_nan=False)
+    """The level that `share_above`, `time_above`, `integral_above` and `settling` need; others take none."""
+
     threshold_unit: str | None = None
-    value: bool | int | float | str | None = None
+    """Unit of measure of `threshold`; without it the signal's own."""
+
+    value: FileValue | None = None
+    """The number, or the name of an enumeration's state, that `share_equal` and `time_equal` need."""
+
     after: float | None = Field(default=None, allow_inf_nan=False)
+    """Only what lies at or behind this time in s counts; without it the whole run."""
 
     @property
     def signals(self) -> list[str]:
-        """The names of the signals that it is of."""
+        """The names of the signals that are reduced."""
         return [name for name in (self.signal, self.minus) if name is not None]
 
     @model_validator(mode="after")
@@ -61,18 +71,23 @@ class Reduction(FileModel):
 
 
 class MetricSpec(Reduction):
-    """A named number and the unit of measure that it is given in."""
+    """A number of the run that is reported. Its unit follows from the signals and is converted."""
 
     name: str
+    """The name under which it is reported; each name is there once."""
+
     unit: str = "1"
+    """Unit of measure in which it is given."""
+
     per: Reduction | None = None
+    """A second reduction by which it is divided, as in `per = { signal = "vehicle.distance" }`."""
 
     @property
     def reductions(self) -> tuple[Reduction, ...]:
-        """What is computed: itself, and `per`."""
+        """The metric's own reduction, and `per` where it has one."""
         return (self, self.per) if self.per else (self,)
 
     @property
     def all_signals(self) -> list[str]:
-        """The names of all signals that it needs."""
+        """The names of all signals that the metric needs."""
         return [name for part in self.reductions for name in part.signals]

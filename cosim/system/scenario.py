@@ -1,4 +1,4 @@
-"""The scenario file: what drives a system, and what happens to it (TOML; docs/system-file.md)."""
+"""The scenario file: a system's stimuli and events, and the values it takes (TOML; docs/system-file.md)."""
 
 from __future__ import annotations
 
@@ -6,62 +6,99 @@ import dataclasses
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
-from ..interface import Value
 from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
 from .system import Algorithm, System, VariableName
-from .toml import FileModel, FiniteModel, find, names_in, read_toml
+from .toml import FileModel, FileValue, FiniteModel, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
 
 
+_KINDS = ("constant", "table", "csv", "sine", "ramp")
+
+
 class Sine(FiniteModel):
-    """mean + amplitude sin(2 pi (t - delay)/period + phase); mean before `delay`. Time in s, phase in rad."""
+    """mean + amplitude sin(2 pi (t - delay)/period + phase); before `delay` it is `mean`."""
 
     amplitude: float
+    """Amplitude, in the stimulus' unit."""
+
     period: float = Field(gt=0.0)
+    """Period in s."""
+
     mean: float = 0.0
+    """Mean value, in the stimulus' unit."""
+
     phase: float = 0.0
+    """Phase at `delay` in rad."""
+
     delay: float = 0.0
+    """Time in s at which the oscillation begins."""
 
 
 class Ramp(FiniteModel):
-    """`start` until `delay`, then `slope` per second until `end` is reached (no end: for ever)."""
+    """start + slope (t - delay), until `end` is reached; before `delay` it is `start`."""
 
     slope: float
+    """Change in the stimulus' unit per second."""
+
     start: float = 0.0
+    """First value, in the stimulus' unit."""
+
     end: float | None = None
+    """Value at which the ramp stays; without it the ramp never ends."""
+
     delay: float = 0.0
+    """Time in s at which the ramp begins."""
 
 
 class StimulusEntry(FiniteModel):
-    """A signal for a free input: exactly one of table, csv, sine, ramp or constant.
-
-    Values are in `unit` (default: the input's own). Before its first point a table holds its first value,
-    after its last point the last one. `csv` names a file with a header; `column` defaults to the second
-    column, the first is time in s.
-    """
+    """A signal for a free input: exactly one of `constant`, `table`, `csv`, `sine` and `ramp`."""
 
     to: VariableName
+    """The input that is driven."""
+
     unit: str | None = None
+    """Unit of measure of the values; without it the input's own."""
+
     constant: float | None = None
+    """One value for the whole run."""
+
     table: list[tuple[float, float]] | None = None
+    """Pairs of time in s and value, in rising time; two pairs of one time are a jump. Before the first pair
+    its value holds, after the last that of the last."""
+
     csv: str | None = None
+    """A CSV file with a header, beside this file or built in; its first column is time in s as in `table`."""
+
     column: str | None = None
+    """The column of `csv` that holds the values; without it the second."""
+
     interpolation: Interpolation = "linear"
+    """Between the rows of `table` or `csv`: a straight line, or the earlier value held."""
+
     sine: Sine | None = None
+    """A sine around a mean."""
+
     ramp: Ramp | None = None
+    """A steady rise or fall."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [{"required": [kind]} for kind in _KINDS],
+            "dependentRequired": {"column": ["csv"]},
+        }
+    )
 
     @model_validator(mode="after")
     def _one_kind(self) -> StimulusEntry:
-        kinds = ("constant", "table", "csv", "sine", "ramp")
-        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        given = [kind for kind in _KINDS if getattr(self, kind) is not None]
         if len(given) != 1:
             raise ValueError(
-                f"a stimulus has exactly one of {', '.join(kinds)}; this one has {given or 'none'}"
+                f"a stimulus has exactly one of {', '.join(_KINDS)}; this one has {given or 'none'}"
             )
         if self.column is not None and self.csv is None:
             raise ValueError("'column' belongs to a csv stimulus")
@@ -69,9 +106,10 @@ class StimulusEntry(FiniteModel):
 
 
 class _EventRecord(FiniteModel):
-    """Base of all events: each takes effect at the first communication point at or after `time` [s]."""
+    """Keys of all events."""
 
     time: float = Field(ge=0.0)
+    """Time in s; it happens at the first communication point at or after it."""
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -80,9 +118,10 @@ class _EventRecord(FiniteModel):
 
 
 class _InputEvent(_EventRecord):
-    """An event that acts on what the input `variable` receives."""
+    """Keys of the events that act on what an input receives."""
 
     variable: VariableName
+    """The input: the event acts on what the unit receives, not on what was sent."""
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -91,23 +130,30 @@ class _InputEvent(_EventRecord):
 
 
 class Override(_InputEvent):
-    """From then on the input receives `value`, in its own unit, whatever drives it."""
+    """Set what the input receives to `value` from then on, whatever drives it."""
 
     action: Literal["override"]
+    """The kind of event."""
+
     value: float
+    """The value, in the input's own unit of measure."""
 
 
 class Bias(_InputEvent):
-    """From then on the input receives `value`, in its own unit, more than what drives it."""
+    """Add `value` to what the input receives from then on."""
 
     action: Literal["bias"]
+    """The kind of event."""
+
     value: float
+    """The value, in the input's own unit of measure."""
 
 
 class Reset(_InputEvent):
-    """From then on the input receives what drives it: the end of an override or a bias."""
+    """End all overrides and biases of the input: it receives what drives it again."""
 
     action: Literal["reset"]
+    """The kind of event."""
 
 
 Event = Annotated[Override | Bias | Reset, Field(discriminator="action")]
@@ -116,28 +162,56 @@ place that a new action must be added to."""
 
 
 class ScenarioExperiment(FiniteModel):
-    """What a scenario may change of the system's experiment."""
+    """Keys of the system's `[experiment]` that take another value in this scenario."""
 
     stop_time: float | None = None
+    """Time at which the run ends, in s; without it the system's."""
+
     step_size: float | None = Field(default=None, gt=0.0)
+    """Communication step in s; without it the system's."""
+
     algorithm: Algorithm | None = None
+    """The order of a step; without it the system's."""
 
 
 class ScenarioFile(FileModel):
-    """What stands in a scenario file. `leave_out` names units that do not take part."""
+    """A scenario: what drives a system, with which values, and what happens to it."""
 
     title: str = ""
+    """One line that `evcosim list` shows."""
+
     source: str = ""
+    """Which of the numbers are published, and which are chosen."""
+
     experiment: ScenarioExperiment = ScenarioExperiment()
+    """Duration, step and order of the units."""
+
     leave_out: list[str] = []
-    parameters: dict[str, dict[str, Value]] = {}
-    start: dict[str, dict[str, Value]] = {}
+    """Units that take no part; what they would drive are free inputs."""
+
+    parameters: dict[str, dict[str, FileValue]] = {}
+    """Values of parameters in place of the system's: a table `[parameters.UNIT]` for each unit."""
+
+    start: dict[str, dict[str, FileValue]] = {}
+    """Start values of inputs in place of the system's: a table `[start.UNIT]` for each unit."""
+
     stimuli: list[StimulusEntry] = Field(default=[], alias="stimulus")
+    """The signals that drive free inputs: a table `[[stimulus]]` for each."""
+
     events: list[Event] = Field(default=[], alias="event")
+    """The events of the run, as faults of a sensor: a table `[[event]]` for each."""
+
     record: list[str] | None = None
+    """Patterns of variables that are recorded; without it the system's."""
+
     figure: FigureSpec | None = None
+    """The figure of a run; without it the system's."""
+
     metrics: list[MetricSpec] = []
+    """Numbers that are reported beside the system's; one of the same name takes its place."""
+
     identification: IdentificationSpec | None = None
+    """The task of `evcosim identify` in this scenario."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -150,12 +224,12 @@ class Scenario:
 
 
 def scenario_names(system: System) -> list[str]:
-    """The names of the scenarios that there are for a system."""
+    """Return the names of the scenarios that there are for a system."""
     return sorted({name for folder in system.scenario_folders for name in names_in(folder)})
 
 
 def load_scenario(system: System, name: str | None = None) -> Scenario:
-    """Read a scenario by name or path; None: the system's default, which may be none at all.
+    """Return a scenario by name or path; None: the system's default, which may be none at all.
 
     Raises ConfigError naming file, key, rule and value.
     """

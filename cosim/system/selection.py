@@ -1,4 +1,4 @@
-"""Which figure and metrics a run has: the scenario's own, and the system's without what was left out."""
+"""Figure and metrics of a run: the scenario's own, and the system's without what the scenario leaves out."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .system import System
 
 
 def metric_specs(system: System, scenario: Scenario) -> list[MetricSpec]:
-    """The metrics of the system that need no unit that the scenario leaves out, then the scenario's.
+    """Return the metrics of the system that need no unit that the scenario leaves out, then the scenario's.
 
     A metric of the scenario takes the place of the system's of the same name.
     """
@@ -21,9 +21,9 @@ def metric_specs(system: System, scenario: Scenario) -> list[MetricSpec]:
 
 
 def figure_spec(system: System, scenario: Scenario) -> FigureSpec | None:
-    """The figure of the scenario, or that of the system without the units that the scenario leaves out.
+    """Return the figure of the scenario, or that of the system without the units that it leaves out.
 
-    None: nothing is asked for, or nothing of it is left.
+    None: neither has one, or nothing of it is left.
     """
     spec = system.file.figure
     if scenario.file.figure is not None or spec is None:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..can.bus_settings import BusSettings
-from ..interface import InterfaceType, Value
+from ..interface import InterfaceType
 from .figure_spec import FigureSpec
 from .metric_spec import MetricSpec
-from .toml import DATA, FileModel, FiniteModel, find, names_in, read_toml
+from .toml import DATA, FileModel, FileValue, FiniteModel, OrText, find, names_in, read_toml, text_type
 
 Algorithm = Literal["gauss_seidel", "jacobi"]
 Isolation = Literal["process", "none"]
@@ -37,48 +38,72 @@ def _signal(name: str) -> str:
     return name
 
 
-Identifier = Annotated[str, AfterValidator(_identifier)]
-VariableName = Annotated[str, AfterValidator(_variable)]
-SignalName = Annotated[str, AfterValidator(_signal)]
+# letters outside ASCII are let through: every dialect of patterns has its own idea of them
+_NAME = r"^[A-Za-z_\u0080-\uffff][A-Za-z0-9_\u0080-\uffff]*$"
+
+Identifier = Annotated[str, AfterValidator(_identifier), text_type("name", _NAME)]
+VariableName = Annotated[str, AfterValidator(_variable), text_type("unit.variable", r"^[^.]+\.[^\n]+$")]
+SignalName = Annotated[
+    str, AfterValidator(_signal), text_type("bus.message.signal", r"^[^.]*\.[^.]*\.[^.]*$")
+]
 
 
 class Experiment(FiniteModel):
-    """The communication points and the order of the units. Times in s.
-
-    `engine` is what does the steps (None: the compiled one where there is numba); results are the same.
-    """
+    """The communication points of a run, and the order in which units step."""
 
     start_time: float = 0.0
+    """Time of the first communication point in s."""
+
     stop_time: float = 10.0
+    """Time at which the run ends, in s: a whole number of steps after `start_time`."""
+
     step_size: float = Field(default=0.01, gt=0.0)
+    """Communication step in s: how often values go from unit to unit."""
+
     algorithm: Algorithm = "gauss_seidel"
+    """The order of a step: units one after the other, as written (gauss_seidel), or all at once (jacobi)."""
+
     engine: EngineName | None = None
+    """The engine; results are equal bit for bit. Without it compiled, or python where numba is missing."""
+
     algebraic_loops: Literal["refuse", "iterate"] = "refuse"
+    """A loop of outputs that depend on each other at once is refused, or its initial values are iterated."""
+
     loop_tolerance: float = Field(default=1e-9, gt=0.0)
+    """Relative tolerance at which that iteration ends."""
 
 
 class MapEntry(FileModel):
-    """The FMU's `variable` behind a name of the system; `unit`, if the FMU declares none or a wrong one;
-    `invert`, if its sign is the other one."""
+    """The FMU's variable behind a name of the system. The variable's name alone stands for a table."""
 
     variable: str
+    """The FMU's own name of the variable."""
+
     unit: str | None = None
+    """Unit of measure, where the FMU declares none or a wrong one; without it as the FMU declares."""
+
     invert: bool = False
+    """Take the value with the other sign."""
 
 
 def _mapped(value: Any) -> Any:
     return {"variable": value} if isinstance(value, str) else value
 
 
-Mapped = Annotated[MapEntry, BeforeValidator(_mapped)]
+Mapped = Annotated[MapEntry, BeforeValidator(_mapped), OrText()]
 
 
 class MapTables(FileModel):
-    """The variables of an FMU behind the names that the system uses (see `mapping.present`)."""
+    """The variables of an FMU behind the names that the system uses; the rest keep the FMU's own names."""
 
     inputs: dict[str, Mapped] = {}
+    """Inputs: names of the system, each with the FMU's variable."""
+
     outputs: dict[str, Mapped] = {}
+    """Outputs, to which a local variable or a parameter of the FMU may be given too."""
+
     parameters: dict[str, Mapped] = {}
+    """Parameters, as `--set` and `parameters` name them."""
 
     @property
     def by_causality(self) -> dict[str, dict[str, MapEntry]]:
@@ -87,33 +112,53 @@ class MapTables(FileModel):
 
 
 class UnitEntry(FileModel):
-    """One unit: its FMU (a built-in name or a path), parameters and starts, and how it is stepped.
+    """One unit: its FMU, the values that it starts with, and how it is stepped."""
 
-    `period` [s] is how often it steps (default: every communication point); `substeps` is into how many
-    FMU steps a period is divided. `isolation`: in a process of its own, or in the master's (default: an FMU
-    that evcosim built itself is in the master's). The limits of such a process: `step_timeout` [s] for an
-    answer in the run, `load_timeout` [s] for one before it, `memory_limit` [bytes] of address space,
-    `file_limit` [bytes] of each file that it writes. `interface` is which one is used of an FMU that has both
-    (default: Co-Simulation), `tolerance` the relative one of the solver: ours under Model Exchange, else the
-    FMU's own. `strict` refuses an FMU with defects that we could bear. `map` gives its variables the names
-    that the system uses; `absent` are names of the system that it does not have.
-    """
+    fmu: str = Field(examples=["Scooter", "my/Vehicle.fmu"])
+    """A built-in FMU by name, or the path of any FMU, beside this file or from the working folder."""
 
-    fmu: str
-    parameters: dict[str, Value] = {}
-    start: dict[str, Value] = {}
+    parameters: dict[str, FileValue] = {}
+    """Values of parameters by name, in the units of measure that the FMU declares."""
+
+    start: dict[str, FileValue] = {}
+    """Start values of inputs by name; an input that nothing drives keeps its own."""
+
     period: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    """Time in s from one step of the unit to the next, a multiple of `step_size`; without it that itself."""
+
     substeps: int = Field(default=1, ge=1)
+    """FMU steps into which a period is divided, with the inputs held."""
+
     isolation: Isolation | None = None
+    """Run it in a process of its own (process) or in the master's (none); without it FMUs that evcosim did
+    not build have a process of their own."""
+
     step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
+    """Longest time in s that its process may take for an answer in the run."""
+
     load_timeout: float = Field(default=60.0, gt=0.0, allow_inf_nan=False)
+    """Longest time in s for an answer before the run: loading, instantiating, initializing."""
+
     memory_limit: float = Field(default=8e9, gt=0.0)
+    """Address space of its process in bytes; inf for no limit."""
+
     file_limit: float = Field(default=256e6, gt=0.0)
+    """Size in bytes of each file that its process writes; inf for no limit."""
+
     interface: InterfaceType | None = None
+    """The interface that is used of an FMU that has both; without it Co-Simulation."""
+
     tolerance: float | None = Field(default=None, gt=0.0, lt=1.0)
+    """Relative tolerance of the solver; without it the FMU's own, else 1e-6 under Model Exchange."""
+
     strict: bool = False
+    """Refuse the FMU when its description has defects, also such that could be mended."""
+
     map: MapTables = MapTables()
+    """Names of the system for variables of an FMU of another tool."""
+
     absent: list[str] = []
+    """Names of the system that the FMU does not have; what needs them is left out."""
 
 
 class _BusFile(FileModel):
@@ -128,15 +173,22 @@ class BusEntry(BusSettings, _BusFile):
 
 
 class Connection(FiniteModel):
-    """One output to one or more inputs, over a bus signal or directly.
+    """One output to one or more inputs, over a bus signal or directly; units of measure are converted."""
 
-    `initial` is what the receivers see before the first message, in their own unit of measure.
-    """
+    source: VariableName = Field(alias="from", examples=["vehicle.speed"])
+    """The output (or local variable) whose value is sent."""
 
-    source: VariableName = Field(alias="from")
     to: list[VariableName] = []
-    via: SignalName | None = None
+    """The inputs that receive it; none where a bus signal is sent for whoever listens."""
+
+    via: SignalName | None = Field(default=None, examples=["can0.EMD_Status.EMD_VehicleSpeed"])
+    """The bus signal that carries it; without it the connection is direct."""
+
     initial: float | None = None
+    """Value at the receivers before the first message, in their own unit; without it their start values.
+    It needs `via`."""
+
+    model_config = ConfigDict(json_schema_extra={"dependentRequired": {"initial": ["via"]}})
 
     @model_validator(mode="after")
     def _initial_over_a_bus(self) -> Connection:
@@ -146,53 +198,84 @@ class Connection(FiniteModel):
 
 
 class BudgetEntry(FileModel):
-    """The metric by which `evcosim budget` judges a system: broken above `limit`, or with kind "min" below.
-
-    `metric` is the name of one of the metrics, `limit` is in its unit.
-    """
+    """The limit by which `evcosim budget` judges the system when it varies the buses."""
 
     metric: str
+    """The name of one of the `[[metrics]]`."""
+
     limit: float = Field(allow_inf_nan=False)
+    """The limit, in the metric's unit."""
+
     kind: Literal["max", "min"] = "max"
+    """The limit is broken by a value above it (max) or below it (min)."""
 
 
 class SystemFile(FileModel):
-    """What stands in a system file."""
+    """A system: its units, its buses, and what is connected to what."""
 
     name: Identifier
+    """The system's name; its scenarios are looked up in `scenarios/NAME/` beside this file."""
+
     title: str = ""
+    """One line that `evcosim list` and `evcosim info` show."""
+
     source: str = ""
+    """The publication or data that the system is taken from."""
+
     scenario: str | None = None
+    """The scenario that runs by default; without it the system runs with no scenario."""
+
     experiment: Experiment = Experiment()
+    """Communication points and order of the units."""
+
     units: dict[Identifier, UnitEntry] = Field(min_length=1)
+    """The units by name, in the order in which they step: a table `[units.NAME]` for each."""
+
     buses: dict[Identifier, BusEntry] = {}
+    """The CAN buses by name: a table `[buses.NAME]` for each."""
+
     connect: list[Connection] = []
+    """The connections: a table `[[connect]]` for each."""
+
     record: list[str] = ["*"]
+    """Patterns of variables that are recorded, as `vehicle.*`; `*` stands for all inputs and outputs, a local
+    variable is named in full."""
+
     figure: FigureSpec | None = None
+    """The figure of a run; without it evcosim chooses one."""
+
     metrics: list[MetricSpec] = []
+    """Numbers of a run that are reported: a table `[[metrics]]` for each."""
+
     budget: BudgetEntry | None = None
+    """The limit for `evcosim budget`."""
 
 
 @dataclasses.dataclass(frozen=True)
 class System:
-    """A system file that was read, and where from."""
+    """A system file that was read from `path`; `swaps` are the swap files that units come from, by unit."""
 
     path: Path
     file: SystemFile
+    swaps: Mapping[str, Path] = dataclasses.field(default_factory=dict)
 
     @property
     def scenario_folders(self) -> list[Path]:
-        """Where this system's scenarios are looked up: beside the system file, then built in."""
+        """The folders of this system's scenarios: beside the system file, then built in."""
         folders = [root / "scenarios" / self.file.name for root in (self.path.parent, DATA)]
         return list(dict.fromkeys(folders))
 
+    def keys_of(self, unit: str) -> str:
+        """Return the beginning of a unit's keys in messages, as `scooter.toml: units.vehicle.`."""
+        return f"{self.swaps[unit]}: " if unit in self.swaps else f"{self.path}: units.{unit}."
+
 
 def system_names() -> list[str]:
-    """The names of the built-in systems."""
+    """Return the names of the built-in systems."""
     return names_in(DATA / "systems")
 
 
 def load_system(name: str) -> System:
-    """Read a system by built-in name or path. Raises ConfigError naming file, key, rule and value."""
+    """Return the system of a built-in name or a path. Raises ConfigError naming file, key, rule and value."""
     path = find(name, [DATA / "systems"], "system")
     return System(path, read_toml(path, SystemFile))

@@ -11,8 +11,6 @@ from evcosim.cosim.figures import thinning
 from evcosim.cosim.figures.draw import draw, save
 from evcosim.cosim.results import results as results_module
 from evcosim.cosim.results.results import Results, ResultVariable
-from evcosim.cosim.system.figure_spec import FigureSpec
-from evcosim.cosim.system.toml import validate
 from support.outlined_scooter import SPEC, STATES, scooter
 
 
@@ -106,21 +104,3 @@ def test_a_figure_does_not_depend_on_the_pieces_that_a_run_is_read_in(
         ]
         for one, other in zip(a.get_lines(), b.get_lines(), strict=True):
             assert {tuple(xy) for xy in one.get_xydata()} <= {tuple(xy) for xy in other.get_xydata()}
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ({"panels": []}, "panels: List should have at least 1 item"),
-        ({"panels": [{"signals": []}]}, "panels 1.signals: List should have at least 1 item"),
-        ({"panels": [{"signals": ["x"], "limits": [2, 1]}]}, "limits: the first must be below the second"),
-        (
-            {"panels": [{"signals": [{"name": "x", "sytle": "dashed"}]}]},
-            r"unknown key \(did you mean 'style'",
-        ),
-        ({"panels": [{"signals": [{"name": "x", "style": "wavy"}]}]}, "Input should be 'solid', 'dashed'"),
-    ],
-)
-def test_a_wrong_key_of_a_figure_is_named(keys: dict, message: str) -> None:
-    with pytest.raises(ConfigError, match=message):
-        validate(keys, FigureSpec, "scooter.toml")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.system.system import SystemFile, load_system
-from evcosim.cosim.system.toml import read_toml, validate
 from support.car import plan
 
 
@@ -51,13 +49,19 @@ def test_parameters_user_before_scenario_before_system():
             "no input 'car.speed'",
         ),
         ({"leave_out": ["caar"]}, r"no unit 'caar' in mocks.toml \(did you mean 'car'\?\)"),
-        ({"experiment": {"stop_time": -1.0}}, "stop_time -1.0 s is not after start_time 0.0 s"),
+        (
+            {"experiment": {"stop_time": -1.0}},
+            "^test.toml: experiment.stop_time -1.0 s is not after start_time 0.0 s",
+        ),
         (
             {"experiment": {"stop_time": 1.0, "step_size": 0.03}},
-            "is not a multiple of the communication step 0.03 s",
+            r"^test.toml: experiment.stop_time - start_time = 1.0 s is not a multiple of the communication step 0.03 s",
         ),
         ({"parameters": {"car": {"mass": 0}}}, "test.toml: parameters.car.mass: 0 kg is below the minimum"),
-        ({"record": ["car.spee"]}, r"'car.spee' fits no variable \(did you mean 'car.speed'\?\)"),
+        (
+            {"record": ["car.spee"]},
+            r"^test.toml: record: 'car.spee' fits no variable \(did you mean 'car.speed'\?\)",
+        ),
     ],
 )
 def test_a_wrong_scenario_is_named(scenario, said):
@@ -65,56 +69,7 @@ def test_a_wrong_scenario_is_named(scenario, said):
         plan([{"from": "car.speed", "to": ["ecu.speed"]}], scenario)
 
 
-# ---- the files
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("name = 'x'\n[units.a]\nfmu = 'A'\nparametres = {}\n", r"units.a.parametres: unknown key \(did you mean 'parameters'"),
-        ("name = 'x'\n", "units: this key is needed"),
-        ("name = 'x'\n[units.a]\n", "units.a.fmu: this key is needed"),
-        ("name = 'x'\n[units.a]\nfmu = 'A'\nsubsteps = 0\n", "units.a.substeps: .* not 0"),
-        ("name = 'x'\n[units.a]\nfmu = 'A'\n[[connect]]\nfrom = 'a'\nto = ['a.b']\n", "written unit.variable, not 'a'"),
-        ("name = 'x'\n[units.a]\nfmu = 'A'\n[experiment]\nalgorithm = 'gauss'\n", "algorithm: .*'gauss_seidel' or 'jacobi'"),
-        ("name = x\n", "is not valid TOML: .*line 1"),
-    ],
-)  # fmt: skip # one case a line
-def test_a_wrong_system_file_names_file_key_and_value(tmp_path, text, said):
-    path = tmp_path / "mine.toml"
-    path.write_text(text)
-    with pytest.raises(ConfigError, match=said) as caught:
-        read_toml(path, SystemFile)
-    assert "mine.toml" in str(caught.value)
-
-
-def test_a_direct_connection_has_no_value_before_the_first_message():
-    unit = {"fmu": "F"}
-    data = {"name": "a", "units": {"u": unit, "w": unit}}
-    connection = {"from": "u.y", "to": ["w.x"], "initial": 1.0}
-    with pytest.raises(ConfigError, match="connect 1: 'initial' is what is there before the first message"):
-        validate(data | {"connect": [connection]}, SystemFile, "s.toml")
-
-
 @pytest.mark.parametrize("stop_time", [1e8, 1e300])
 def test_a_run_that_no_memory_holds_is_refused(stop_time):
     with pytest.raises(ConfigError, match=r"steps of 0\.01 s with .* recorded variables are more than"):
         plan([], options={"stop_time": stop_time})
-
-
-@pytest.mark.parametrize("mark", ["", "\ufeff"])
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_files_of_other_editors(tmp_path, mark, end):
-    path = tmp_path / "a.toml"
-    text = f'{mark}name = "a"{end}[units.u]{end}fmu = "F"{end}'
-    path.write_bytes(text.encode())
-    assert load_system(str(path)).file.units["u"].fmu == "F"
-
-
-def test_unknown_names_say_what_there_is(tmp_path):
-    with pytest.raises(
-        ConfigError, match=r"unknown system 'scoter' \(did you mean 'scooter'\?\); known: .*scooter"
-    ):
-        load_system("scoter")
-    with pytest.raises(ConfigError, match="there is no such system file"):
-        load_system(str(tmp_path / "none.toml"))

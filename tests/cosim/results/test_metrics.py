@@ -11,7 +11,6 @@ from evcosim.cosim.results import results as results_module
 from evcosim.cosim.results.metrics import check, evaluate
 from evcosim.cosim.results.results import Results, ResultVariable
 from evcosim.cosim.system.metric_spec import MetricSpec
-from evcosim.cosim.system.toml import validate
 
 STATES = ((0, "driver"), (1, "acceleration"), (2, "velocity"))
 VARIABLES = (
@@ -223,22 +222,6 @@ def test_a_name_stands_once() -> None:
     spec = MetricSpec(name="it", signal="ecu.state")
     with pytest.raises(ConfigError, match="metric 'it' is there twice"):
         check([spec, spec], {v.name: v for v in VARIABLES}, "scooter.toml")
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ({"reduce": "share_above"}, "reduce = \"share_above\" needs 'threshold'"),
-        ({"reduce": "max", "threshold": 1}, "reduce = \"max\" takes no 'threshold'"),
-        ({"reduce": "time_equal"}, "reduce = \"time_equal\" needs 'value'"),
-        ({"threshold_unit": "km/h"}, "'threshold_unit' stands without a 'threshold'"),
-        ({"reduce": "maximum"}, "reduce: Input should be 'final', 'mean'"),
-        ({"sginal": "x"}, r"sginal: unknown key \(did you mean 'signal'\?\)"),
-    ],
-)
-def test_keys_that_do_not_go_together_are_named(keys: dict, message: str) -> None:
-    with pytest.raises(ConfigError, match=message):
-        validate({"name": "it", "signal": "ecu.state", **keys}, MetricSpec, "scooter.toml")
 
 
 def settling(x, **spec):

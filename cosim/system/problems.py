@@ -1,0 +1,148 @@
+"""Sentences about what is wrong in a file: the key as the file spells it, the rule and the value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from ..errors import nearest
+
+_LONGEST = 80
+"""Characters of a value that a sentence shows at most."""
+
+_NEEDED = {
+    "model_type": "a table is needed",
+    "model_attributes_type": "a table is needed",
+    "dict_type": "a table is needed",
+    "list_type": "a list is needed",
+    "tuple_type": "a list is needed",
+}
+
+Place = Sequence[str | int]
+"""Keys and indexes of entries, counted from 0, from the file's top to one value."""
+
+
+def sentences(error: ValidationError, data: Any, model: type[BaseModel]) -> list[str]:
+    """Return one sentence for each problem that was found in `data`, read as a `model`."""
+    keys, tagged_by = sorted(_keys(model)), set(_discriminators(model))
+    return [_sentence(problem, data, keys, tagged_by) for problem in error.errors(include_url=False)]
+
+
+def _sentence(problem: Any, data: Any, keys: list[str], tagged_by: set[str]) -> str:
+    place, chosen = _spelled(problem, data, tagged_by)
+    path, kind, value = spelled(place) or "the file", problem["type"], problem["input"]
+    if kind.startswith("union_tag"):
+        return _about_a_tag(problem, place)
+    if kind == "extra_forbidden":
+        name = str(place[-1])
+        return f"{path}: unknown key{chosen}{nearest(name, keys) if name not in keys else ''}"
+    if kind == "missing":
+        return f"{path}: this {'value' if isinstance(place[-1], int) else 'key'} is needed{chosen}"
+    rule = _NEEDED.get(kind) or problem["msg"].removeprefix("Value error, ")
+    if kind in ("too_short", "too_long"):
+        return f"{path}: {rule.replace('Dictionary', 'Table')}"  # which says how many there are
+    if kind == "value_error" and isinstance(value, Mapping):
+        return f"{path}: {rule}"  # a rule between keys, which names them itself
+    near = _nearest(value, problem["ctx"]["expected"]) if kind == "literal_error" else ""
+    return f"{path}: {rule}, not {_shown(value)}{near}"
+
+
+def _about_a_tag(problem: Any, place: Place) -> str:
+    """Return what is wrong with the key that says which table stands at `place`, as `action` of an event."""
+    key, table = problem["ctx"]["discriminator"].strip("'"), problem["input"]
+    path = spelled([*place, key])
+    if problem["type"] == "union_tag_invalid":
+        tags = problem["ctx"]["expected_tags"]
+        known = " or ".join(tags.rsplit(", ", 1))
+        near = _nearest(table[key], tags)
+        return f"{path}: Input should be {known}, not {_shown(table[key])}{near}"
+    typo = next((name for name in table if nearest(name, [key])), None)
+    if typo is not None:
+        return f"{spelled([*place, typo])}: unknown key{nearest(typo, [key])}"
+    return f"{path}: this key is needed"
+
+
+def _spelled(problem: Any, data: Any, tagged_by: set[str]) -> tuple[list[str | int], str]:
+    """Return the place of a problem in the file, and " with KEY = VALUE" where that chose the table's kind.
+
+    pydantic puts names of its own between the keys: the kind that the key of a table chose (one of
+    `tagged_by`), the member of a union, "[key]". Whatever is no key or index there is such a name, but for
+    the key that is missing, which comes last.
+    """
+    place: list[str | int] = []
+    chosen, is_tag = "", False
+    for number, part in enumerate(problem["loc"], 1):
+        tags = [key for key in tagged_by if isinstance(data, Mapping) and data.get(key) == part]
+        missing = problem["type"] == "missing" and number == len(problem["loc"])
+        if tags and not is_tag:
+            chosen, is_tag = f' with {tags[0]} = "{part}"', True
+        elif missing or _is_in(data, part):
+            place.append(part)
+            data, is_tag = None if missing else data[part], False
+    return place, chosen
+
+
+def _is_in(data: Any, part: str | int) -> bool:
+    if isinstance(data, Mapping):
+        return part in data
+    return isinstance(data, list | tuple) and isinstance(part, int) and part < len(data)
+
+
+def spelled(place: Place) -> str:
+    """Return keys with dots and the number of an entry, counted from 1: `connect 2.via`."""
+    return "".join(f" {part + 1}" if isinstance(part, int) else f".{_key(part)}" for part in place)[1:]
+
+
+def _nearest(value: Any, words: str) -> str:
+    """Return the hint at the nearest of some quoted words; nothing for what is no text."""
+    return nearest(value, re.findall("'([^']*)'", words)) if isinstance(value, str) else ""
+
+
+def _key(name: str) -> str:
+    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        return name
+    return f"'{name}'" if name.isprintable() and "'" not in name else repr(name)
+
+
+def _shown(value: Any) -> str:
+    """Return a value as a file writes it, cut where it is long."""
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def _keys(model: type[BaseModel]) -> Iterator[str]:
+    """Yield all keys that may stand anywhere in a file of this model."""
+    for name, field in model.model_fields.items():
+        yield field.alias or name
+        for inner in _models_in(field.annotation):
+            if inner is not model:
+                yield from _keys(inner)
+
+
+def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _models_in(argument)
+
+
+def _discriminators(model: type[BaseModel]) -> Iterator[str]:
+    """Yield the keys, as `action`, by which tables of a file of this model say of which kind they are."""
+    for field in model.model_fields.values():
+        for info in (field, *_infos_in(field.annotation)):
+            if isinstance(info.discriminator, str):
+                yield info.discriminator
+        for inner in _models_in(field.annotation):
+            if inner is not model:
+                yield from _discriminators(inner)
+
+
+def _infos_in(annotation: Any) -> Iterator[FieldInfo]:
+    if isinstance(annotation, FieldInfo):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from _infos_in(argument)

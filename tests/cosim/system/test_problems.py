@@ -1,0 +1,100 @@
+"""Broken files: each message names the key as the file spells it, the rule and the value."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.swap.swap_file import SwapFile
+from evcosim.cosim.system.problems import spelled
+from evcosim.cosim.system.scenario import ScenarioFile
+from evcosim.cosim.system.system import SystemFile
+from evcosim.cosim.system.toml import validate
+
+HEAD = "name = 'x'\n[units.a]\nfmu = 'A'\n"
+FILES = {"system": SystemFile, "scenario": ScenarioFile, "swap": SwapFile}
+
+# kind of file, text, message
+BROKEN = [
+    ("system", "name = 'x'\n", "units: this key is needed"),
+    ("system", "name = 'x'\nunits = {}\n", "units: Table should have at least 1 item after validation, not 0"),
+    ("system", "name = 'x'\n[units.a]\n", "units.a.fmu: this key is needed"),
+    ("system", "name = 'x'\nunits = 3\n", "units: a table is needed, not 3"),
+    ("system", "name = 'x'\n[units.a]\nfmu = 3\n", "units.a.fmu: Input should be a valid string, not 3"),
+    ("system", HEAD.replace("'x'", "'my-car'"), "name: a name is made of letters, digits and '_', not 'my-car'"),
+    ("system", HEAD.replace(".a]", ".my-car]"), "units.my-car: a name is made of letters, digits and '_', not 'my-car'"),
+    ("system", HEAD.replace(".a]", ".'my car']"), "units.'my car': a name is made of letters, digits and '_', not 'my car'"),
+    ("system", HEAD + "fnu = 'B'\n", "units.a.fnu: unknown key (did you mean 'fmu'?)"),
+    ("system", HEAD + "parameters.mass = [1]\n", "units.a.parameters.mass: a value is a number, true, false or a text, not [1]"),
+    ("system", HEAD + "parameters.day = 2011-12-12\n", "units.a.parameters.day: a value is a number, true, false or a text, not datetime.date(2011, 12, 12)"),
+    ("system", HEAD + "parameters = 3\n", "units.a.parameters: a table is needed, not 3"),
+    ("system", HEAD + "substeps = 0\n", "units.a.substeps: Input should be greater than or equal to 1, not 0"),
+    ("system", HEAD + "isolation = 'proces'\n", "units.a.isolation: Input should be 'process' or 'none', not 'proces' (did you mean 'process'?)"),
+    ("system", HEAD + "map.inputs.x = 3\n", "units.a.map.inputs.x: a table is needed, not 3"),
+    ("system", HEAD + "map.inputs.x.unit = 'm'\n", "units.a.map.inputs.x.variable: this key is needed"),
+    ("system", HEAD + "map.inputs.'x y'.variable = 3\n", "units.a.map.inputs.'x y'.variable: Input should be a valid string, not 3"),
+    ("system", HEAD + "map.input.x = 'y'\n", "units.a.map.input: unknown key (did you mean 'inputs'?)"),
+    ("system", HEAD + "[connect]\nfrom = 'a.b'\n", "connect: a list is needed, not {'from': 'a.b'}"),
+    ("system", HEAD + "[[connect]]\nto = ['a.b']\n", "connect 1.from: this key is needed"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a'\n", "connect 1.from: a variable is written unit.variable, not 'a'"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nto = 'a.c'\n", "connect 1.to: a list is needed, not 'a.c'"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\n[[connect]]\nfrom = 'a.b'\nto = ['a.c', 'd']\n", "connect 2.to 2: a variable is written unit.variable, not 'd'"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nvia = 'can0.M'\n", "connect 1.via: a signal is written bus.message.signal, not 'can0.M'"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\ninitial = 1\n", "connect 1: 'initial' is what is there before the first message: it needs a 'via'"),
+    ("system", HEAD + "[buses.can0]\ndbc = 'x'\ncycle = 0\n", "buses.can0.cycle: Input should be greater than or equal to 1, not 0"),
+    ("system", HEAD + "[buses.can0]\ndbc = 'x'\nresolution = 'fine'\n", "buses.can0.resolution: a resolution is a factor from 1 on, or \"ideal\", not 'fine'"),
+    ("system", HEAD + "[experiment]\nstep_size = '10 ms'\n", "experiment.step_size: Input should be a valid number, unable to parse string as a number, not '10 ms'"),
+    ("system", HEAD + "[experiment]\nalgorithm = false\n", "experiment.algorithm: Input should be 'gauss_seidel' or 'jacobi', not false"),
+    ("system", HEAD + "[[figure.panels]]\nsignals = [{ name = 'a.b', style = 'dash' }]\n", "figure.panels 1.signals 1.style: Input should be 'solid', 'dashed', 'dotted' or 'dashdot', not 'dash' (did you mean 'dashed'?)"),
+    ("system", HEAD + "[[figure.panels]]\nsignals = [3]\n", "figure.panels 1.signals 1: a table is needed, not 3"),
+    ("system", HEAD + "[[figure.panels]]\nsignals = ['a.b']\nlimits = [1]\n", "figure.panels 1.limits 2: this value is needed"),
+    ("system", HEAD + "[[metrics]]\nname = 'signal'\n", "metrics 1.signal: this key is needed"),
+    ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nper.signall = 'a.c'\n", "metrics 1.per.signal: this key is needed\nmetrics 1.per.signall: unknown key (did you mean 'signal'?)"),
+    ("scenario", "[[stimuli]]\nto = 'a.b'\nconstant = 1\n", "stimuli: unknown key (did you mean 'stimulus'?)"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\n", "stimulus 1: a stimulus has exactly one of constant, table, csv, sine, ramp; this one has none"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\ntable = [[0, 1], [1]]\n", "stimulus 1.table 2 2: this value is needed"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\nsine = { amplitude = 1, period = 0 }\n", "stimulus 1.sine.period: Input should be greater than 0, not 0"),
+    ("scenario", "[[event]]\ntime = 1\naction = 'bias'\nvariable = 'a.b'\n", "event 1.value: this key is needed with action = \"bias\""),
+    ("scenario", "[parameters]\nmass = 1\n", "parameters.mass: a table is needed, not 1"),
+    ("scenario", "[parameters.vehicle]\nmass = {}\n", "parameters.vehicle.mass: a value is a number, true, false or a text"),
+    ("scenario", "[start]\n'my car'.x = []\n", "start.'my car'.x: a value is a number, true, false or a text, not []"),
+    ("scenario", "[identification]\noutput = 'a.b'\namplitude = 1\n", "identification.input: this key is needed"),
+    ("swap", "replaces = 'a.b'\n", "fmu: this key is needed"),
+    ("swap", "fmu = 'F'\n[map.output]\n", "map.output: unknown key (did you mean 'outputs'?)"),
+    ("swap", "fmu = 'F'\n[map.outputs]\nv = { variabel = 'x' }\n", "map.outputs.v.variable: this key is needed\nmap.outputs.v.variabel: unknown key (did you mean 'variable'?)"),
+    ("swap", "fmu = 'F'\n[units.vehicle]\nfmu = 'F'\n", "units: unknown key (did you mean 'unit'?)"),
+]  # fmt: skip # one file a line
+
+
+@pytest.mark.parametrize(("kind", "text", "said"), BROKEN)
+def test_each_problem_is_named_with_its_key(kind: str, text: str, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        validate(tomllib.loads(text), FILES[kind], "f.toml")
+    assert str(caught.value).splitlines() == [f"f.toml: {line}" for line in said.splitlines()]
+
+
+def test_a_long_value_is_cut() -> None:
+    with pytest.raises(ConfigError) as caught:
+        validate({"name": "x", "units": "y" * 1000}, SystemFile, "f.toml")
+    assert str(caught.value) == f"f.toml: units: a table is needed, not '{'y' * 76}..."
+
+
+@given(st.lists(st.text(max_size=5) | st.integers(0, 50), min_size=1, max_size=5))
+def test_a_place_is_spelled_as_a_file_spells_it(place: list[str | int]) -> None:
+    """Keys alone are a dotted key of TOML."""
+    keys = [part for part in place if isinstance(part, str) and part.isprintable() and "'" not in part]
+    assume(keys)
+    found: object = tomllib.loads(f"{spelled(keys)} = 1")
+    for key in keys:
+        assert isinstance(found, dict)
+        found = found[key]
+    assert found == 1
+
+
+def test_entries_are_counted_from_1() -> None:
+    assert spelled(["connect", 1, "to", 0]) == "connect 2.to 1"
+    assert spelled([]) == ""

@@ -1,0 +1,114 @@
+"""Reading TOML files and finding files by name, and what is said where nothing is found."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.system.system import SystemFile, load_system
+from evcosim.cosim.system.toml import (
+    DATA,
+    FileModel,
+    FileValue,
+    FiniteModel,
+    data_file,
+    find,
+    names_in,
+    read_toml,
+)
+
+
+class Numbers(FiniteModel):
+    """A table of finite numbers."""
+
+    x: float = 0.0
+
+
+class Values(FileModel):
+    """A table of values of any type."""
+
+    x: FileValue
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_files_of_other_editors(tmp_path: Path, mark: str, end: str) -> None:
+    path = tmp_path / "a.toml"
+    text = f'{mark}name = "a"{end}[units.u]{end}fmu = "F"{end}'
+    path.write_bytes(text.encode())
+    assert load_system(str(path)).file.units["u"].fmu == "F"
+
+
+def test_unknown_names_say_what_there_is(tmp_path: Path) -> None:
+    with pytest.raises(
+        ConfigError, match=r"unknown system 'scoter' \(did you mean 'scooter'\?\); known: .*scooter"
+    ):
+        load_system("scoter")
+    with pytest.raises(ConfigError, match="there is no such system file"):
+        load_system(str(tmp_path / "none.toml"))
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"name = 1\nname = 2\n", "is not valid TOML: Cannot overwrite a value"),
+        (b"name = '\xff'\n", "is not UTF-8 text: invalid start byte at byte 8"),
+        (None, "cannot be read: "),
+    ],
+)
+def test_what_cannot_be_read_is_said(tmp_path: Path, content: bytes | None, said: str) -> None:
+    path = tmp_path / "a.toml"
+    if content is None:
+        path.mkdir()
+    else:
+        path.write_bytes(content)
+    with pytest.raises(ConfigError) as caught:
+        read_toml(path, SystemFile)
+    assert str(caught.value).startswith(f"{path}: {said}")
+
+
+@pytest.mark.parametrize("x", [math.nan, math.inf, -math.inf])
+def test_a_finite_table_has_finite_numbers(x: float) -> None:
+    with pytest.raises(ValidationError, match="finite number"):
+        Numbers(x=x)
+
+
+@given(st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text())
+def test_a_value_keeps_its_type(value: bool | int | float | str) -> None:
+    read = Values(x=value).x
+    assert (type(read), read) == (type(value), value)
+
+
+@pytest.mark.parametrize("value", [None, [1], {"a": 1}, b"x"])
+def test_a_value_is_a_scalar(value: object) -> None:
+    with pytest.raises(ValidationError, match="a value is a number, true, false or a text"):
+        Values.model_validate({"x": value})
+
+
+def test_a_name_is_found_in_the_first_folder_that_has_it(tmp_path: Path) -> None:
+    folders = [tmp_path / "none", tmp_path / "a", tmp_path / "b"]
+    for folder, name in ((folders[1], "x"), (folders[2], "x"), (folders[2], "y")):
+        folder.mkdir(exist_ok=True)
+        (folder / f"{name}.toml").write_text("")
+    assert find("x", folders, "thing") == folders[1] / "x.toml"
+    assert find("y", folders, "thing") == folders[2] / "y.toml"
+    assert find(str(folders[2] / "x.toml"), folders, "thing") == folders[2] / "x.toml"
+    assert [names_in(folder) for folder in folders] == [[], ["x"], ["x", "y"]]
+    with pytest.raises(ConfigError, match=r"^unknown thing 'z'; known: x, x, y$"):
+        find("z", folders, "thing")
+
+
+def test_a_file_beside_comes_before_a_built_in_one(tmp_path: Path) -> None:
+    system = tmp_path / "s.toml"
+    assert data_file("can/ev.dbc", system) == DATA / "can" / "ev.dbc"
+    (tmp_path / "can").mkdir()
+    (tmp_path / "can" / "ev.dbc").write_text("")
+    assert data_file("can/ev.dbc", system) == tmp_path / "can" / "ev.dbc"
+    with pytest.raises(ConfigError, match=r"there is no file 'no.dbc', neither in .* nor built in"):
+        data_file("no.dbc", system)
