@@ -55,7 +55,7 @@ def prepare(
     # the FMUs, and the interfaces that they present to the system
     loaded = _read_fmus(read, driven, options.get("fmus") or {}, options.get("strict", False), runnable)
     interfaces = {
-        unit: present(fmu.interface, read.file.units[unit], f"{read.path}: units.{unit}")
+        unit: present(fmu.interface, read.file.units[unit], read.keys_of(unit))
         for unit, fmu in loaded.items()
     }
     for unit, interface in interfaces.items():
@@ -92,7 +92,7 @@ def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:
     """Raise ConfigError for a variable that the system file declares absent and the FMU has."""
     for name in system.file.units[unit].absent:
         if name in interface.variables:
-            raise ConfigError(f"{system.path}: units.{unit}.absent: {interface.place} has '{name}'")
+            raise ConfigError(f"{system.keys_of(unit)}absent: {interface.place} has '{name}'")
 
 
 def _check_complete(

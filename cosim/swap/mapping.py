@@ -1,4 +1,4 @@
-"""An FMU as the system sees it: other names, units of measure and signs, and what it does not have.
+"""An FMU under the names, units of measure and signs of a system, and the system without what it lacks.
 
 `present` renames the variables of an interface as a unit's `map` says; connections, stimuli, figures and
 results then work with the names of the system, and convert units of measure as they always do.
@@ -14,6 +14,7 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..system.figure_spec import FigureSpec
 from ..system.metric_spec import MetricSpec
+from ..system.problems import spelled
 from ..system.scenario import Scenario
 from ..system.system import Connection, MapEntry, System, UnitEntry
 from ..units import defined
@@ -23,13 +24,15 @@ _FROM: dict[str, tuple[str, ...]] = {
     "output": ("output", "local", "parameter", "calculatedParameter", "independent"),
     "parameter": ("parameter", "structuralParameter"),
 }
+"""The causalities that an FMU's variable may have behind an input, output or parameter of the system."""
 
 
-def present(interface: UnitInterface, entry: UnitEntry, place: str) -> UnitInterface:
-    """The interface of a unit's FMU as the system sees it. With an empty map, the interface itself.
+def present(interface: UnitInterface, entry: UnitEntry, keys: str) -> UnitInterface:
+    """Return the interface of a unit's FMU under the system's names; with an empty map, the interface itself.
 
-    A variable that is mapped is known by the system's name alone. Raises ConfigError, which begins with
-    `place`, for names that the FMU has not, causalities that do not fit and unknown units of measure.
+    A variable that is mapped is known by the system's name alone. `keys` is the beginning of the unit's keys
+    in messages (`System.keys_of`). Raises ConfigError for names that the FMU has not, causalities that do
+    not fit and unknown units of measure.
     """
     tables = entry.map.by_causality
     if not any(tables.values()):
@@ -37,7 +40,7 @@ def present(interface: UnitInterface, entry: UnitEntry, place: str) -> UnitInter
     renamed: dict[str, VariableInfo] = {}
     for causality, table in tables.items():
         for name, mapped in table.items():
-            here = f"{place}.map.{causality}s.{name}"
+            here = keys + spelled(["map", f"{causality}s", name])
             if name in renamed:
                 raise ConfigError(f"{here}: '{name}' is mapped twice")
             renamed[name] = _mapped(interface, name, mapped, causality, here)
@@ -84,14 +87,14 @@ def _check_unit(unit: str, interface: UnitInterface, place: str) -> None:
 
 
 def _inverted(v: VariableInfo) -> VariableInfo:
-    """The variable with the other sign, range and start with it."""
+    """Return the variable with the other sign: range and start with it."""
     start = -v.start if isinstance(v.start, int | float) else v.start
     low, high = (None if x is None else -x for x in (v.max, v.min))
     return dataclasses.replace(v, start=start, min=low, max=high, inverted=not v.inverted)
 
 
 def _with_names(v: VariableInfo, names: Mapping[str, str]) -> VariableInfo:
-    """The variable with its dependencies under the names that the system uses."""
+    """Return the variable with its dependencies under the names that the system uses."""
 
     def known(depends: tuple[str, ...] | None) -> tuple[str, ...] | None:
         return None if depends is None else tuple(names.get(n, n) for n in depends)
@@ -100,7 +103,7 @@ def _with_names(v: VariableInfo, names: Mapping[str, str]) -> VariableInfo:
 
 
 def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario, tuple[str, ...]]:
-    """The system and the scenario without what needs absent variables; a sentence for each thing left out."""
+    """Return system and scenario without what needs absent variables, and a sentence for each loss."""
     absent = {f"{unit}.{name}" for unit, entry in system.file.units.items() for name in entry.absent}
     if not absent:
         return system, scenario, ()
@@ -129,8 +132,8 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
             "figure": _figure(driven.figure, absent, left_out),
         }
     )
-    told = tuple(f"left out, since it is absent: {text}" for text in dict.fromkeys(left_out))
-    return dataclasses.replace(system, file=changed), dataclasses.replace(scenario, file=driven), told
+    sentences = tuple(f"left out, since it is absent: {text}" for text in dict.fromkeys(left_out))
+    return dataclasses.replace(system, file=changed), dataclasses.replace(scenario, file=driven), sentences
 
 
 def _connection(connection: Connection, absent: set[str], left_out: list[str]) -> Connection | None:

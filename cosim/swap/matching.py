@@ -1,8 +1,8 @@
-"""Whether an FMU fits into the place of a unit: what the system needs, and what the FMU has for it.
+"""Matches between the needs of a system from a unit and the variables of an FMU for its place.
 
-A variable of the same name is taken if its unit of measure converts. For the others all pairs are weighed by
-unit of measure, causality and likeness of name, and the best assignment of all together is taken; a pair that
-is weak, or hardly better than another one, is the user's to choose.
+A variable of the same name is taken if its unit of measure converts. For the others each pair of a need and a
+variable has a score from unit of measure, causality and likeness of name, and the assignment with the largest
+sum of scores is taken; a pair whose score is low, or hardly above another one's, is the user's to choose.
 """
 
 from __future__ import annotations
@@ -16,13 +16,15 @@ from ..interface import UnitInterface, VariableInfo
 from ..system.system import MapEntry, UnitEntry
 from ..units import conversion, defined
 from .name_likeness import likeness, unit_in
-from .requirements import Requirement
+from .requirements import ROLES, Requirement, Role
 
 Verdict = Literal["fits", "fits after conversion", "your choice", "missing", "unused"]
 
-_WEAK, _MARGIN, _CANDIDATES = 0.45, 0.1, 4
+_WEAK = 0.45  # a lower score is of the unit of measure alone
+_MARGIN = 0.1  # by which a score is above all others of its need
+_CANDIDATES = 4  # variables that are named beside the one that is taken
 _NOTHING = VariableInfo("")
-_CAUSALITIES = {
+_CAUSALITIES: dict[Role, tuple[str, ...]] = {
     "input": ("input",),
     "output": ("output", "local"),
     "parameter": ("parameter",),
@@ -30,17 +32,17 @@ _CAUSALITIES = {
 
 
 @dataclasses.dataclass(frozen=True)
-class Row:
-    """One line of a report: what the system needs ("" for what the FMU has beside it), the FMU's variable
-    ("" for none), and the reason of the verdict.
+class Match:
+    """A need of the system and the FMU's variable for it, with a verdict and its reason.
 
-    `needed` are who gives, takes or sets it in the system. `candidates` are the variables that could be
-    chosen, the best first. `unit` is the unit of measure that stands in for one that the FMU does not declare
-    ("": its own counts), `invert` whether a mapping that is there turns the sign.
+    `need` is "" for a variable that nothing needs, `variable` "" for a need without one. `needed` says who
+    gives, takes or sets it in the system. `candidates` are the variables that could be chosen, best first.
+    `unit` is the unit of measure that stands in for one that the FMU does not declare ("": its own counts);
+    `invert` is true where an existing mapping turns the sign.
     """
 
     need: str
-    role: str
+    role: Role
     variable: str
     verdict: Verdict
     reason: str
@@ -55,57 +57,60 @@ class Row:
         return [name for name in self.candidates if name != self.variable]
 
 
-def fit(needs: Sequence[Requirement], offer: UnitInterface, entry: UnitEntry | None = None) -> list[Row]:
-    """The rows for all needs, then one for each input of the FMU that nothing drives.
+def matches(
+    needs: Sequence[Requirement], offer: UnitInterface, entry: UnitEntry | None = None
+) -> list[Match]:
+    """Return a match for each need, then one for each input of the FMU that nothing drives.
 
-    `entry` is a mapping that is there already: what it maps is looked at as it is.
+    `offer` is the FMU's interface. What an existing mapping in `entry` maps is judged as it is.
     """
     mapped = entry.map.by_causality if entry else {}
-    rows: list[Row] = []
-    for role in ("input", "output", "parameter"):
+    found: list[Match] = []
+    for role in ROLES:
         wanted = [need for need in needs if need.role == role]
-        rows += _of_role(wanted, role, offer, mapped.get(role, {}), set(entry.absent if entry else ()))
-        rows += _beside(mapped.get(role, {}), role, {need.name for need in wanted})
-    used = {row.variable for row in rows}
+        found += _of_role(wanted, role, offer, mapped.get(role, {}), set(entry.absent if entry else ()))
+        found += _mapped_only(mapped.get(role, {}), role, {need.name for need in wanted})
+    used = {match.variable for match in found}
     for v in offer.of_causality("input"):
         if v.name not in used:
             start = "its start value" if v.start is None else f"{v.start} {v.unit}".strip()
-            rows.append(Row("", "input", v.name, "unused", f"nothing drives it: it keeps {start}"))
-    return rows
+            found.append(Match("", "input", v.name, "unused", f"nothing drives it: it keeps {start}"))
+    return found
 
 
 def _of_role(
     needs: Sequence[Requirement],
-    role: str,
+    role: Role,
     offer: UnitInterface,
     mapped: Mapping[str, MapEntry],
     absent: set[str],
-) -> list[Row]:
+) -> list[Match]:
     candidates = list(offer.of_causality(*_CAUSALITIES[role]))
     given = [need for need in needs if need.name not in mapped and need.name not in absent]
     chosen = _assigned(given, candidates, offer)
-    rows = []
+    found = []
     for need in needs:
         if need.name in absent:
-            rows.append(Row(need.name, role, "", "fits", "absent, as the mapping says", need.why))
+            found.append(Match(need.name, role, "", "fits", "absent, as the mapping says", need.needed))
         elif need.name in mapped:
-            rows.append(_as_mapped(need, mapped[need.name], offer))
+            found.append(_as_mapped(need, mapped[need.name], offer))
         else:
-            rows.append(_judged(need, chosen.get(need.name), candidates, offer))
-    return rows
+            found.append(_judged(need, chosen.get(need.name), candidates, offer))
+    return found
 
 
-def _beside(mapped: Mapping[str, MapEntry], role: str, needed: set[str]) -> list[Row]:
-    """What a mapping names and the system in this scenario does not need."""
+def _mapped_only(mapped: Mapping[str, MapEntry], role: Role, needed: set[str]) -> list[Match]:
+    """Return a match for each name that is mapped and that the system in this scenario does not need."""
     reason = "as mapped; nothing needs it in this scenario"
     return [
-        Row(name, role, entry.variable, "unused", reason, unit=entry.unit or "", invert=entry.invert)
+        Match(name, role, entry.variable, "unused", reason, unit=entry.unit or "", invert=entry.invert)
         for name, entry in mapped.items()
         if name not in needed
     ]
 
 
-def _as_mapped(need: Requirement, entry: MapEntry, offer: UnitInterface) -> Row:
+def _as_mapped(need: Requirement, entry: MapEntry, offer: UnitInterface) -> Match:
+    """Return the match that a mapping declares, judged by type and unit of measure alone."""
     found = offer.variables.get(entry.variable)
     unit, invert = entry.unit or "", entry.invert
     if found is None:
@@ -113,16 +118,16 @@ def _as_mapped(need: Requirement, entry: MapEntry, offer: UnitInterface) -> Row:
         reason = offer.unusable.get(entry.variable, "the FMU has no variable of this name")
     else:
         known = found if entry.unit is None else dataclasses.replace(found, unit=entry.unit)
-        verdict, told, _ = _converts(need, known, offer)
-        reason = f"as mapped{', inverted' if invert else ''}: {told}"
-    return Row(need.name, need.role, entry.variable, verdict, reason, need.why, unit=unit, invert=invert)
+        verdict, said, _ = _converts(need, known, offer)
+        reason = f"as mapped{', inverted' if invert else ''}: {said}"
+    return Match(need.name, need.role, entry.variable, verdict, reason, need.needed, unit=unit, invert=invert)
 
 
 def _assigned(
     needs: Sequence[Requirement], candidates: Sequence[VariableInfo], offer: UnitInterface
 ) -> dict[str, VariableInfo]:
-    """The variable for each need: that of its name, else the best one, all needs together; none where nothing
-    is like it at all."""
+    """Return the variable for each need, by its name: that of the same name, else by the best assignment of
+    all needs together. A need that no variable can be for is left out."""
     by_name = {v.name: v for v in candidates}
     same = {n.name: by_name[n.name] for n in needs if _score(n, by_name.get(n.name, _NOTHING), offer) == 2.0}
     needs = [need for need in needs if need.name not in same]
@@ -138,7 +143,7 @@ def _assigned(
 
 
 def _score(need: Requirement, v: VariableInfo, offer: UnitInterface) -> float:
-    """From 0 (cannot be) to 2 (the same name and a unit that converts)."""
+    """Return how well a variable suits a need: 0 it cannot be, up to 1 by likeness, 2 the same name."""
     if _converts(need, v, offer)[0] == "missing":
         return 0.0
     if v.name == need.name:
@@ -149,8 +154,8 @@ def _score(need: Requirement, v: VariableInfo, offer: UnitInterface) -> float:
 
 
 def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple[Verdict, str, str]:
-    """Whether the values of a variable can be those of a need, what happens to them, and the unit of measure
-    to assume where the FMU declares none ("": its own counts)."""
+    """Return a verdict by type and unit of measure alone, its reason, and the unit of measure to assume where
+    the FMU declares none ("": its own counts)."""
     if v.type != need.variable.type and "String" in (v.type, need.variable.type):
         return "missing", f"is a {v.type}, not a {need.variable.type}", ""
     wanted = need.variable.unit
@@ -167,8 +172,8 @@ def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple
         said = "" if v.unit else "its name says "
         return "missing", f"{said}[{unit}], no unit for what the system has in [{wanted}]", ""
     if not v.unit:
-        told = f"declares no unit of measure; its name says [{unit}], the system has [{wanted}]"
-        return "your choice", told, unit
+        reason = f"declares no unit of measure; its name says [{unit}], the system has [{wanted}]"
+        return "your choice", reason, unit
     if map_.identity:
         return "fits", f"[{unit}] is [{wanted}]", ""
     shift = f" + {map_.offset:g}" if map_.offset else ""
@@ -177,14 +182,15 @@ def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple
 
 def _judged(
     need: Requirement, v: VariableInfo | None, candidates: Sequence[VariableInfo], offer: UnitInterface
-) -> Row:
+) -> Match:
+    """Return the match of a need with the variable that was assigned to it, or with none."""
     scored = sorted(((_score(need, c, offer), c.name) for c in candidates), key=lambda pair: -pair[0])
     named = tuple(name for score, name in scored[:_CANDIDATES] if score > 0.0)
     if v is None:
         reason = "no variable is left that could be it"
         if not named:
             reason = f"nothing has a unit of measure for [{need.variable.unit}]"
-        return Row(need.name, need.role, "", "missing", reason, need.why, named)
+        return Match(need.name, need.role, "", "missing", reason, need.needed, named)
     verdict, reason, unit = _converts(need, v, offer)
     own = _score(need, v, offer)
     rival = max((score for score, name in scored if name != v.name), default=0.0)
@@ -194,9 +200,9 @@ def _judged(
         verdict, reason = "your choice", f"others are as likely; {reason}"
     if v.causality == "local":
         reason += "; a local variable, read as an output"
-    return Row(need.name, need.role, v.name, verdict, reason, need.why, named, unit)
+    return Match(need.name, need.role, v.name, verdict, reason, need.needed, named, unit)
 
 
-def fits(rows: Sequence[Row]) -> bool:
-    """Whether nothing is missing and nothing is left to choose."""
-    return all(row.verdict not in ("missing", "your choice") for row in rows)
+def fits(found: Sequence[Match]) -> bool:
+    """Return true where nothing is missing and nothing is left to choose."""
+    return all(match.verdict not in ("missing", "your choice") for match in found)

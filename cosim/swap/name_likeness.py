@@ -1,7 +1,7 @@
-"""How alike two names of signals are: in English and German, as Modelica, Simulink and C code write them.
+"""Likeness of two names of signals, in English and German, as Modelica, Simulink and C code write them.
 
-A name is taken apart (`VehFdbk.Body.Vel_mps`: path, words, unit of measure), each word stands for what it may
-mean, and two names are alike as far as their words mean the same.
+A name is split (`VehFdbk.Body.Vel_mps`: path, words, unit of measure), each word stands for the quantities
+that it may mean, and the likeness is the share of words that may mean the same.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import functools
 import math
 import re
 
-_MEANINGS = {
+_WORDS = {
     "speed": "speed spd velocity vel v vx geschwindigkeit tempo",
     "throttle": "throttle pedal accelerator u gas fahrpedal gaspedal pdl app",
     "acceleration": "acceleration accel acc a ax beschleunigung",
@@ -37,11 +37,14 @@ _MEANINGS = {
     "wheel": "wheel whl w reifen",
     "drive": "drive drv motor antrieb",
 }
+"""Quantities and places, each with the words, abbreviations and symbols that mean it."""
+
 _EMPTY = {
     *("the", "of", "and", "to", "at", "in", "is", "der", "die", "das", "value", "input", "output", "out"),
     *("vehicle", "veh", "car", "fahrzeug", "signal", "sig", "bus"),
 }
 """Words that say nothing of a signal."""
+
 _DERIVATIVES = {"distance": "speed", "speed": "acceleration", "displacement": "speed"}
 _UNITS = {
     "km_h": "km/h", "kmh": "km/h", "kmph": "km/h", "kph": "km/h", "mps": "m/s", "m_s": "m/s", "mph": "mph",
@@ -53,27 +56,32 @@ _ENDING = re.compile(rf"(?:_|(?<=[a-z])(?=[A-Z]))((?i:{'|'.join(sorted(_UNITS, k
 _COMPOUND = 4  # letters that a part of a compound word has at least
 
 Meanings = frozenset[str]
+"""The quantities that one word may mean, as keys of _WORDS; a word that is no key's stands for itself."""
 
 
 def unit_in(name: str) -> str:
-    """The unit of measure that a name ends in (`speed_kmh`, `vVehKmh`); "" where there is none."""
+    """Return the unit of measure that a name ends in (`speed_kmh`: km/h); "" where there is none."""
     found = _ENDING.search(name)
     return _UNITS[found[1].lower()] if found else ""
 
 
 def likeness(name: str, text: str, other: str, other_text: str) -> float:
-    """From 0 to 1, for two names with their descriptions."""
+    """Return the likeness, from 0 to 1, of a system's name and an FMU's `other` one, with their descriptions.
+
+    It is the largest of three: by the words of the names, of which the last part of the FMU's path counts
+    most; by the words of names and descriptions; by the letters.
+    """
     path, last = _meanings(other), _meanings(_last(other))
     own = _meanings(name)
     by_name = 0.6 * _agreement(own, last) + 0.4 * _agreement(own, path)
-    told, other_told = (*own, *_meanings(text)), (*path, *_meanings(other_text))
-    by_text = _agreement(tuple(dict.fromkeys(told)), tuple(dict.fromkeys(other_told)))
+    words, other_words = (*own, *_meanings(text)), (*path, *_meanings(other_text))
+    by_text = _agreement(tuple(dict.fromkeys(words)), tuple(dict.fromkeys(other_words)))
     look = difflib.SequenceMatcher(None, name.lower(), _last(other).lower()).ratio()
     return max(by_name, 0.9 * by_text, 0.8 * look)
 
 
 def _agreement(a: tuple[Meanings, ...], b: tuple[Meanings, ...]) -> float:
-    """The cosine of two sets of words, of which two are the same when they may mean the same."""
+    """Return the cosine of two sets of words, of which two are the same when they may mean the same."""
     if not a or not b:
         return 0.0
     shared = min(sum(any(x & y for y in b) for x in a), sum(any(x & y for x in a) for y in b))
@@ -81,14 +89,14 @@ def _agreement(a: tuple[Meanings, ...], b: tuple[Meanings, ...]) -> float:
 
 
 def _last(name: str) -> str:
-    """The last part of a path; of a derivative too, `der(v)` of `der(body.v)`."""
+    """Return the last part of a path; of a derivative too, `der(v)` of `der(body.v)`."""
     inner = re.fullmatch(r"der\((.*)\)", name)
     return f"der({_last(inner[1])})" if inner else name.rpartition(".")[2]
 
 
 @functools.cache
 def _meanings(text: str) -> tuple[Meanings, ...]:
-    """What the words of a name or a description may mean."""
+    """Return the meanings of each word of a name or a description, without repetitions."""
     inner = re.fullmatch(r"der\((.*)\)", text)
     derived = inner is not None or re.search(r"_?dot$", text, re.I) is not None
     plain = re.sub(r"_?dot$", "", inner[1] if inner else text, flags=re.I)
@@ -101,7 +109,7 @@ def _meanings(text: str) -> tuple[Meanings, ...]:
 
 
 def _parts(word: str) -> list[str]:
-    """A word, or the known words in a compound (`bremskraft`: brems, kraft)."""
+    """Return the known words in a compound (`bremskraft`: brems, kraft), else the word itself."""
     known = _vocabulary()
     if word in known or word in _EMPTY:
         return [word]
@@ -116,8 +124,9 @@ def _of_word(word: str) -> Meanings:
 
 @functools.cache
 def _vocabulary() -> dict[str, Meanings]:
+    """Return the meanings of each known word."""
     found: dict[str, set[str]] = {}
-    for meaning, words in _MEANINGS.items():
+    for meaning, words in _WORDS.items():
         for word in words.split():
             found.setdefault(word, set()).add(meaning)
     return {word: frozenset(meanings) for word, meanings in found.items()}

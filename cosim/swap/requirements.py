@@ -1,4 +1,4 @@
-"""What a system needs from a unit: the inputs it gives, the outputs it takes, the parameters it sets."""
+"""The needs of a system from a unit: the inputs it drives, the outputs it takes, the parameters it sets."""
 
 from __future__ import annotations
 
@@ -12,35 +12,37 @@ from ..system.selection import figure_spec, metric_specs
 from ..system.system import Connection, System
 
 Role = Literal["input", "output", "parameter"]
+"""The part that a variable plays at a unit, as the system sees it."""
+
+ROLES: tuple[Role, ...] = ("input", "output", "parameter")
 
 
 @dataclasses.dataclass(frozen=True)
 class Requirement:
-    """A variable that the system needs: its `role` at the unit, and `why` (who gives, takes or sets it).
+    """A variable that the system needs: its `role` at the unit, and who gives, takes or sets it (`needed`).
 
-    `variable` is what the unit that is there now declares: unit of measure, type, range, description.
+    `variable` is as the unit that is there now declares it: unit of measure, type, range, description.
     """
 
     name: str
     role: Role
-    why: tuple[str, ...]
+    needed: tuple[str, ...]
     variable: VariableInfo
 
 
 def requirements(
     system: System, scenario: Scenario, unit: str, present: UnitInterface
 ) -> tuple[Requirement, ...]:
-    """What the system in this scenario needs from a unit whose present FMU has the interface `present`.
+    """Return the needs of a system in a scenario from a unit whose present FMU has the interface `present`.
 
     Inputs first, then outputs, then parameters, each in the order in which the system names them.
     """
     found: dict[tuple[Role, str], list[str]] = {}
-    for role, name, why in _uses(system, scenario, unit):
-        found.setdefault((role, name), []).append(why)
-    order: tuple[Role, ...] = ("input", "output", "parameter")
+    for role, name, needed in _uses(system, scenario, unit):
+        found.setdefault((role, name), []).append(needed)
     return tuple(
         Requirement(name, role, tuple(dict.fromkeys(found[role, name])), present.variables[name])
-        for wanted in order
+        for wanted in ROLES
         for role, name in found
         if role == wanted and name in present.variables
         # a figure that shows an input of the unit shows what drives it
@@ -49,7 +51,7 @@ def requirements(
 
 
 def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface) -> list[str]:
-    """All that a system in this scenario needs of a unit and that `offer` does not have.
+    """Return all that a system in this scenario needs of a unit and that `offer` does not have.
 
     Each is a clause: the variable and who gives or takes it. Units that the scenario leaves out need nothing.
     """
@@ -65,14 +67,14 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
     shown += [name for metric in metric_specs(system, scenario) for name in metric.all_signals]
     used += [(name, "figure or metrics") for name in shown]
     found: dict[str, list[str]] = {}
-    for name, why in used:
+    for name, needed in used:
         if name.startswith(own) and name.removeprefix(own) not in offer.variables:
-            found.setdefault(name.removeprefix(own), []).append(why)
-    return [f"'{name}' ({'; '.join(dict.fromkeys(why))})" for name, why in found.items()]
+            found.setdefault(name.removeprefix(own), []).append(needed)
+    return [f"'{name}' ({'; '.join(dict.fromkeys(needed))})" for name, needed in found.items()]
 
 
 def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:
-    """The variables at the ends of a connection, each with what is at the other end."""
+    """Return the variables at the ends of a connection, each with what is at the other end."""
     via = f" over {c.via}" if c.via else ""
     taken = f"to {', '.join(takers)}{via}" if takers else f"to {c.via}"
     return [*((to, f"from {c.source}{via}") for to in takers), (c.source, taken)]
@@ -83,12 +85,12 @@ def _unit(variable: str) -> str:
 
 
 def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role, str, str]]:
-    """(role, name, why) for each place that names a variable of the unit."""
+    """Yield role, name and use for each place that names a variable of the unit."""
     own = f"{unit}."
     for c in system.file.connect:
-        for name, why in _ends(c, c.to):
+        for name, other_end in _ends(c, c.to):
             if name.startswith(own):
-                yield "output" if name == c.source else "input", name.removeprefix(own), why
+                yield "output" if name == c.source else "input", name.removeprefix(own), other_end
     for stimulus in scenario.file.stimuli:
         if stimulus.to.startswith(own):
             yield "input", stimulus.to.removeprefix(own), f"stimulus of {scenario.name}"
@@ -99,9 +101,9 @@ def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role,
         ("set by the system", system.file.units[unit].parameters),
         (f"set by {scenario.name}", scenario.file.parameters.get(unit, {})),
     )
-    for why, values in given:
+    for setter, values in given:
         for name, value in values.items():
-            yield "parameter", name, f"{why}: {value}"
+            yield "parameter", name, f"{setter}: {value}"
 
 
 def _shown(system: System, scenario: Scenario) -> Iterable[str]:

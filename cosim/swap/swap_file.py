@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import os
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import Field
 
 from ..errors import ConfigError, nearest
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
 from ..writing import replacing
-from .matching import Row
+from .matching import Match
+from .requirements import ROLES, Role
+
+if TYPE_CHECKING:
+    from tomlkit import TOMLDocument
+    from tomlkit.items import Comment, InlineTable, Item, Table
+
+_WRITTEN_APART = ("fmu", "absent", "map", "parameters", "start")
+"""The keys of a unit that have a place of their own in a swap file that is written."""
 
 
 class SwapFile(UnitEntry):
-    """What stands in a swap file: a unit's entry, and in `replaces` the "system.unit" it was written for."""
+    """Another FMU in the place of a unit: the keys of `[units.NAME]`, instead of the system's."""
 
-    replaces: str | None = None
+    replaces: str | None = Field(default=None, examples=["scooter.vehicle"])
+    """The unit that it was written for, as `system.unit`; in the place of another one it is refused."""
 
 
 def swapped(system: System, swaps: Mapping[str, str | Path]) -> System:
-    """The system with the swap files in the place of the named units' entries.
+    """Return the system with the entries of the swap files in the place of the named units' entries.
 
     The FMU's path is relative to the swap file; the period stays the system's unless the file has one.
     Raises ConfigError naming the swap file.
@@ -37,7 +47,11 @@ def swapped(system: System, swaps: Mapping[str, str | Path]) -> System:
                 f"{nearest(unit, units)}: {', '.join(units)}"
             )
         units[unit] = _entry(read_toml(path, SwapFile), path, f"{system.file.name}.{unit}", units[unit])
-    return dataclasses.replace(system, file=system.file.model_copy(update={"units": units}))
+    return dataclasses.replace(
+        system,
+        file=system.file.model_copy(update={"units": units}),
+        swaps={**system.swaps, **{unit: Path(name) for unit, name in swaps.items()}},
+    )
 
 
 def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEntry:
@@ -50,10 +64,28 @@ def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEn
     return UnitEntry(**{**given, "fmu": fmu, "period": period})
 
 
+def entry_of(fmu: str, matches: Sequence[Match], entry: UnitEntry | None = None) -> UnitEntry:
+    """Return the entry of a unit with an FMU mapped as the matches say, the other keys as in `entry`."""
+    tables: dict[str, dict[str, MapEntry]] = {}
+    for match in matches:
+        if match.need and match.variable and match.verdict != "missing":
+            mapped = MapEntry(variable=match.variable, unit=match.unit or None, invert=match.invert)
+            tables.setdefault(f"{match.role}s", {})[match.need] = mapped
+    return (entry or UnitEntry(fmu=fmu)).model_copy(
+        update={"fmu": fmu, "map": MapTables.model_validate(tables), "absent": _absent(matches)}
+    )
+
+
+def _absent(matches: Sequence[Match]) -> list[str]:
+    return [m.need for m in matches if m.need and (m.verdict == "missing" or not m.variable)]
+
+
 @dataclasses.dataclass(frozen=True)
 class Proposal:
-    """What a trial proposes for a swap file: `substeps` where it is more than 1, the sign of the variables
-    ("inputs" or "outputs", name of the system) in `invert`, each with its reason, and `remarks` above them.
+    """Changes that a trial proposes for a swap file.
+
+    `substeps` counts where it is more than 1; `invert` holds the variables ("inputs" or "outputs", name of
+    the system) that need the other sign, each with its reason; `remarks` stand above the mapping.
     """
 
     substeps: int = 1
@@ -62,97 +94,122 @@ class Proposal:
     remarks: tuple[str, ...] = ()
 
 
-def entry_of(fmu: str, rows: Sequence[Row], entry: UnitEntry | None = None) -> UnitEntry:
-    """The entry of a unit with an FMU mapped as the rows of a check say, the rest as in `entry`."""
-    tables: dict[str, dict[str, MapEntry]] = {}
-    for row in rows:
-        if row.need and row.variable and row.verdict != "missing":
-            mapped = MapEntry(variable=row.variable, unit=row.unit or None, invert=row.invert)
-            tables.setdefault(f"{row.role}s", {})[row.need] = mapped
-    return (entry or UnitEntry(fmu=fmu)).model_copy(
-        update={"fmu": fmu, "map": MapTables.model_validate(tables), "absent": _absent(rows)}
-    )
-
-
-def _absent(rows: Sequence[Row]) -> list[str]:
-    return [row.need for row in rows if row.need and (row.verdict == "missing" or not row.variable)]
-
-
-def written(
+def write(
     path: Path,
     fmu: str,
     place: str,
-    rows: Sequence[Row],
+    matches: Sequence[Match],
     entry: UnitEntry | None = None,
     proposal: Proposal | None = None,
 ) -> None:
-    """Write a swap file from the rows of a check, with the reason beside each; `entry`'s other keys are kept.
+    """Write a swap file of matches, with the reason beside each; the other keys of `entry` are kept.
 
-    What a trial proposes stands in it, marked as proposed. Raises ConfigError.
+    `place` is "system.unit". What a trial proposes stands in it, marked as proposed. Raises ConfigError when
+    the file cannot be written.
     """
-    proposal = proposal or Proposal()
-    lines = [
-        _comment(f"{Path(fmu).name} in the place of {place}; made by evcosim check, to be edited."),
-        f"fmu = {_value(os.path.relpath(fmu, path.parent or Path('.')))}",
-        f"replaces = {_value(place)}",
-        *_kept(entry, proposal),
-        "# names of the system that the FMU does not have; what needs them is left out",
-        f"absent = {_value(_absent(rows))}",
-        *([""] if proposal.remarks else []),
-        *map(_comment, proposal.remarks),
-    ]
-    for role in ("input", "output", "parameter"):
-        lines += ["", f"[map.{role}s]"]
-        lines += [_line(row, proposal) for row in rows if row.role == role]
-    for table in ("parameters", "start"):
-        values = getattr(entry, table, {})
-        lines += (
-            ["", f"[{table}]", *(f"{_key(n)} = {_value(x)}" for n, x in values.items())] if values else []
-        )
+    from tomlkit import dumps
+
+    relative = os.path.relpath(fmu, path.parent or Path("."))
+    text = dumps(_document(relative, place, matches, entry, proposal or Proposal()))
     with replacing(path) as file:
-        file.write(("\n".join(lines) + "\n").encode())
+        file.write(text.encode())
 
 
-def _kept(entry: UnitEntry | None, proposal: Proposal) -> list[str]:
-    """The lines of the plain keys that are not as usual, and of the substeps that are proposed."""
-    given = entry.model_dump(exclude_defaults=True) if entry else {}
-    names = ("period", "substeps", "isolation", "step_timeout", "strict")
-    values = {name: given[name] for name in names if given.get(name) is not None}
-    comment = ""
+def _document(
+    fmu: str, place: str, matches: Sequence[Match], entry: UnitEntry | None, proposal: Proposal
+) -> TOMLDocument:
+    import tomlkit
+
+    document = tomlkit.document()
+    about = f"{Path(fmu).name} in the place of {place}; made by evcosim check, to be edited."
+    document.add(_comment(about))
+    document.add("fmu", tomlkit.item(fmu))
+    document.add("replaces", tomlkit.item(place))
+    for name, item in _kept(entry, proposal).items():
+        document.add(name, item)
+    document.add(_comment("names of the system that the FMU does not have; what needs them is left out"))
+    document.add("absent", tomlkit.item(_absent(matches)))
+    if proposal.remarks:
+        document.add(tomlkit.nl())
+    for remark in proposal.remarks:
+        document.add(_comment(remark))
+    tables = tomlkit.table(is_super_table=True)
+    for role in ROLES:
+        tables.add(f"{role}s", _map_table([m for m in matches if m.role == role], role, proposal))
+    document.add("map", tables)
+    for name in ("parameters", "start"):
+        if values := getattr(entry, name, {}):
+            document.add(name, tomlkit.item(values))
+    return document
+
+
+def _kept(entry: UnitEntry | None, proposal: Proposal) -> dict[str, Item]:
+    """Return the plain keys that are not as usual, and the substeps that are proposed."""
+    import tomlkit
+
+    given = entry.model_dump(exclude_defaults=True, include=set(UnitEntry.model_fields)) if entry else {}
+    kept = {name: tomlkit.item(value) for name, value in given.items() if name not in _WRITTEN_APART}
     if proposal.substeps > 1:
-        values["substeps"] = proposal.substeps
-        comment = "  " + _comment(f"proposed: {proposal.why_substeps}")
-    return [f"{n} = {_value(x)}{comment if n == 'substeps' else ''}" for n, x in values.items()]
+        kept["substeps"] = _commented(proposal.substeps, f"proposed: {proposal.why_substeps}")
+    return kept
 
 
-def _line(row: Row, proposal: Proposal) -> str:
-    if not row.need:
-        return _comment(f"{row.variable}: {row.reason}")
-    name = _key(row.need)
-    if not row.variable or row.verdict == "missing":
-        also = f"; others: {', '.join(row.others)}" if row.others else ""
-        return _comment(f"{name} = ?  # {row.reason}{also}")
-    proposed = proposal.invert.get((f"{row.role}s", row.need))
-    invert = row.invert != (proposed is not None)
-    reasons = [row.reason + (": assumed" if row.unit and not row.reason.startswith("as mapped") else "")]
-    reasons += [f"others: {', '.join(row.others)}"] if row.others else []
+def _map_table(matches: Sequence[Match], role: Role, proposal: Proposal) -> Table:
+    """Return the table `[map.ROLEs]`; what is missing or unused stands in it as a comment."""
+    import tomlkit
+
+    table = tomlkit.table()
+    for match in matches:
+        if not match.need:
+            table.add(_comment(f"{match.variable}: {match.reason}"))
+        elif not match.variable or match.verdict == "missing":
+            others = f"; others: {', '.join(match.others)}" if match.others else ""
+            name = tomlkit.key(match.need).as_string()
+            table.add(_comment(f"{name} = ?  # {match.reason}{others}"))
+        else:
+            table.add(match.need, _mapped(match, proposal.invert.get((f"{role}s", match.need))))
+    return table
+
+
+def _mapped(match: Match, proposed: str | None) -> Item:
+    """Return the FMU's variable of a match with the reasons; `proposed` is the reason to turn its sign."""
+    invert = match.invert != (proposed is not None)
+    assumed = match.unit and not match.reason.startswith("as mapped")
+    reasons = [match.reason + (": assumed" if assumed else "")]
+    reasons += [f"others: {', '.join(match.others)}"] if match.others else []
     reasons += [f"proposed: invert = {str(invert).lower()}, since {proposed}"] if proposed else []
-    parts = [f"variable = {_value(row.variable)}"]
-    parts += [f"unit = {_value(row.unit)}"] if row.unit else []
-    parts += ["invert = true"] if invert else []
-    mapped = _value(row.variable) if len(parts) == 1 else f"{{ {', '.join(parts)} }}"
-    return f"{name} = {mapped}  {_comment('; '.join(reasons))}"
+    values: dict[str, object] = {"variable": match.variable}
+    values |= {"unit": match.unit} if match.unit else {}
+    values |= {"invert": True} if invert else {}
+    return _commented(match.variable if len(values) == 1 else _inline(values), "; ".join(reasons))
 
 
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _value(name)
+def _inline(values: Mapping[str, object]) -> InlineTable:
+    """Return a table on one line, with a space inside its braces."""
+    import tomlkit
+
+    table, items = tomlkit.inline_table(), [tomlkit.item(value) for value in values.values()]
+    items[0].trivia.indent, items[-1].trivia.trail = " ", " "
+    for name, item in zip(values, items, strict=True):
+        table.add(name, item)
+    return table
 
 
-def _value(value: object) -> str:
-    """A value as TOML writes it: as JSON does, but for the characters that it has no room for."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+def _commented(value: object, text: str) -> Item:
+    import tomlkit
+
+    item = tomlkit.item(value)
+    item.comment(_on_one_line(text))
+    item.trivia.comment_ws = "  "
+    return item
 
 
-def _comment(text: str) -> str:
-    """A comment on one line: what an FMU says must not end it."""
-    return "# " + "".join(c if c.isprintable() else " " for c in text)
+def _comment(text: str) -> Comment:
+    from tomlkit import comment
+
+    return comment(_on_one_line(text))
+
+
+def _on_one_line(text: str) -> str:
+    """Return the text of a comment: a name of an FMU must not end its line."""
+    return "".join(c if c.isprintable() else " " for c in text)

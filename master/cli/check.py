@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...cosim.interface import UnitInterface
-    from ...cosim.swap.matching import Row
+    from ...cosim.swap.matching import Match
     from ...cosim.swap.swap_file import SwapFile
     from ...cosim.system.scenario import Scenario
     from ...cosim.system.system import System
@@ -58,13 +58,13 @@ def check(
     duration = None if trial is None else seconds("--try", trial)
     checked = _checked(file, place, scenario, strict)
     if not as_json:
-        _show_rows(place, checked.rows)
+        _show_matches(place, checked.matches)
     tried = None if duration is None else _tried(checked, duration)
     if tried is not None and not as_json:
         _show_trial(tried)
     if write is not None:
         _write(checked, write, tried)
-    complete = fits(checked.rows)
+    complete = fits(checked.matches)
     if as_json:
         print_json(_as_data(checked, complete, tried))
     else:
@@ -74,7 +74,7 @@ def check(
 
 @dataclasses.dataclass(frozen=True)
 class _Checked:
-    """An FMU (by itself, or with a swap file) that was read, and a row for each need of the system."""
+    """An FMU (by itself, or with a swap file) that was read, and a match for each need of the system."""
 
     place: str
     system: System
@@ -82,12 +82,12 @@ class _Checked:
     unit: str
     fmu: Path
     entry: SwapFile | None
-    rows: list[Row]
+    matches: list[Match]
 
 
 def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
     from ...cosim.errors import ConfigError, nearest
-    from ...cosim.swap.matching import fit
+    from ...cosim.swap.matching import matches
     from ...cosim.swap.requirements import requirements
     from ...cosim.swap.swap_file import SwapFile
     from ...cosim.system.scenario import load_scenario
@@ -108,7 +108,7 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
     fmu = read_fmu(path, strict or (entry is not None and entry.strict))
     check_runnable(fmu)
     needs = requirements(system, driven, unit, _there_now(system, unit))
-    return _Checked(place, system, driven, unit, path, entry, fit(needs, fmu.interface, entry))
+    return _Checked(place, system, driven, unit, path, entry, matches(needs, fmu.interface, entry))
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:
@@ -118,31 +118,31 @@ def _there_now(system: System, unit: str) -> UnitInterface:
     from ..builtin import fmu_file
     from ..fmi.fmu import read_fmu
 
-    entry, where = system.file.units[unit], f"{system.path}: units.{unit}"
+    entry, keys = system.file.units[unit], system.keys_of(unit)
     try:
         interface = read_fmu(fmu_file(entry.fmu, system.path)).interface
     except ConfigError as error:
         raise ConfigError(
-            f"{where}.fmu = '{entry.fmu}' cannot be read, so that the interface of this unit, which its "
+            f"{keys}fmu = '{entry.fmu}' cannot be read, so that the interface of this unit, which its "
             f"place needs, is unknown:\n{error}\nput an FMU there that can be read, or a built-in one"
         ) from error
-    return present(interface, entry, where)
+    return present(interface, entry, keys)
 
 
 def _tried(checked: _Checked, duration: float) -> Trial:
     from ...cosim.swap.swap_file import entry_of
     from ..studies.trial.trial import try_unit
 
-    entry = entry_of(str(checked.fmu.resolve()), checked.rows, checked.entry)
-    names = [row.need for row in checked.rows if row.need and row.role != "parameter"]
+    entry = entry_of(str(checked.fmu.resolve()), checked.matches, checked.entry)
+    names = [match.need for match in checked.matches if match.need and match.role != "parameter"]
     return try_unit(checked.system, checked.scenario, checked.unit, entry, names, duration)
 
 
 def _write(checked: _Checked, path: Path, tried: Trial | None) -> None:
-    from ...cosim.swap.swap_file import written
+    from ...cosim.swap.swap_file import write
 
     proposal = tried.proposal if tried else None
-    written(path, str(checked.fmu), checked.place, checked.rows, checked.entry, proposal)
+    write(path, str(checked.fmu), checked.place, checked.matches, checked.entry, proposal)
 
 
 def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str, object]:
@@ -150,7 +150,7 @@ def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str
         "fmu": str(checked.fmu),
         "place": checked.place,
         "fits": complete,
-        "rows": list(map(dataclasses.asdict, checked.rows)),
+        "rows": list(map(dataclasses.asdict, checked.matches)),
     }
     if tried is not None:
         proposal = tried.proposal
@@ -163,18 +163,18 @@ def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str
     return data
 
 
-def _show_rows(place: str, rows: Sequence[Row]) -> None:
+def _show_matches(place: str, matches: Sequence[Match]) -> None:
     from .console import print_table
 
-    table = [(row.need or "-", row.role, row.variable or "-", row.verdict, _reason(row)) for row in rows]
+    table = [(m.need or "-", m.role, m.variable or "-", m.verdict, _reason(m)) for m in matches]
     print_table((place, "role", "variable of the FMU", "verdict", "why"), table)
     print()
 
 
-def _reason(row: Row) -> str:
-    open_ = row.verdict in ("your choice", "missing")
-    others = f"; others: {', '.join(row.others)}" if open_ and row.others else ""
-    return f"{row.reason}{others}" + (f" ({'; '.join(row.needed)})" if row.needed else "")
+def _reason(match: Match) -> str:
+    open_ = match.verdict in ("your choice", "missing") and match.others
+    others = f"; others: {', '.join(match.others)}" if open_ else ""
+    return f"{match.reason}{others}" + (f" ({'; '.join(match.needed)})" if match.needed else "")
 
 
 def _show_trial(tried: Trial) -> None:
@@ -189,8 +189,8 @@ def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, 
     from ...cosim.errors import counted
 
     counts: dict[str, int] = {}
-    for row in checked.rows:
-        counts[row.verdict] = counts.get(row.verdict, 0) + 1
+    for match in checked.matches:
+        counts[match.verdict] = counts.get(match.verdict, 0) + 1
     left = sum(counts.get(verdict, 0) for verdict in ("your choice", "missing"))
     problems = [f for f in tried.findings if f.verdict == "problem"] if tried else []
     remaining = [f"{counted(left, 'row')} to decide"] if left else []

@@ -87,7 +87,7 @@ def test_what_is_absent_is_left_out_and_told(tmp_path: Path) -> None:
         ('throttle = "pedal"', "", "unit 'vehicle' has no variable 'throttle'"),
         ('"Vehicle.fmu"', '"Other.fmu"', r"Other.fmu: there is no such FMU file"),
         ("[map.inputs]", "[map.input]", "map.input: unknown key .did you mean"),
-        ('absent = ["', 'absent = ["speed", "', r"units.vehicle.absent: .*Vehicle.fmu has 'speed'"),
+        ('absent = ["', 'absent = ["speed", "', r"\.toml: absent: .*Vehicle.fmu has 'speed'"),
     ],
 )
 def test_what_is_wrong_is_named_before_the_first_step(

@@ -60,7 +60,7 @@ class Bench:
     ) -> None:
         self.system, self.unit, self.entry = system, unit, entry
         self.fmu = read_fmu(fmu_file(entry.fmu, system.path), entry.strict)
-        self.interface = present(self.fmu.interface, entry, f"{system.path}: units.{unit}")
+        self.interface = present(self.fmu.interface, entry, system.keys_of(unit))
         self.ours = ours or self.interface
         self.isolation: Isolation | None = None if ours is None else "process"
         self.outputs = [name for name in outputs if name in self.interface.variables]

@@ -1,17 +1,17 @@
-"""Names as other tools write them, beside what our systems need."""
+"""Matches: names as other tools write them, for what our systems need."""
 
 from __future__ import annotations
 
 import functools
+from typing import get_args
 
 import pytest
 
 from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.swap.matching import Row, fit
-from evcosim.cosim.swap.name_likeness import likeness, unit_in
+from evcosim.cosim.swap.matching import Match, Verdict, fits, matches
 from evcosim.cosim.swap.requirements import Requirement, requirements
-from evcosim.cosim.system.scenario import load_scenario
-from evcosim.cosim.system.system import load_system
+from evcosim.cosim.system.scenario import load_scenario, scenario_names
+from evcosim.cosim.system.system import UnitEntry, load_system, system_names
 from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmu import read_fmu
 
@@ -58,8 +58,9 @@ def needs(place: str, scenario: str | None = None) -> tuple[Requirement, ...]:
     return requirements(read, load_scenario(read, scenario), unit, interface)
 
 
-def rows(place: str, text: str) -> dict[str, Row]:
-    return {row.need: row for row in fit(needs(place), offer(text)) if row.need}
+def found(place: str, text: str, entry: UnitEntry | None = None) -> dict[str, Match]:
+    """Return the matches by what they are for."""
+    return {match.need: match for match in matches(needs(place), offer(text), entry) if match.need}
 
 
 @pytest.mark.parametrize(
@@ -77,49 +78,96 @@ def rows(place: str, text: str) -> dict[str, Row]:
     ],
 )  # fmt: skip # a case a row
 def test_names_of_other_tools(text: str, place: str, names: tuple[str, ...], expected: str) -> None:
-    found = rows(place, text)
+    matched = found(place, text)
     for name, variable in zip(names, expected.split(), strict=True):
-        assert found[name].variable in variable.split("|"), found[name]
+        assert matched[name].variable in variable.split("|"), matched[name]
 
 
 def test_a_derivative_is_not_what_it_is_derived_from() -> None:
-    assert rows("scooter.vehicle", PLAIN)["speed"].candidates[0] == "speed_kmh"
-    own = ("speed", "Speed")
-    assert likeness(*own, "vehicle.v", "") > likeness(*own, "der(vehicle.v)", "") + 0.3
-    assert likeness(*own, "der(vehicle.s)", "") > likeness(*own, "vehicle.s", "") + 0.3
-    assert likeness("acceleration", "", "der(vehicle.v)", "") == likeness("acceleration", "", "a", "")
+    assert found("scooter.vehicle", PLAIN)["speed"].candidates[0] == "speed_kmh"
 
 
 def test_two_that_are_as_likely_are_the_users_to_choose() -> None:
-    power = rows("scooter.vehicle", DYMOLA)["power"]
+    power = found("scooter.vehicle", DYMOLA)["power"]
     assert power.verdict == "your choice"
     assert "others are as likely" in power.reason
     assert {power.variable, *power.others} >= {"battery.P", "motor.P"}
 
 
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("speed_kmh", "km/h"), ("vVehKmh", "km/h"), ("VxBody_mps", "m/s"), ("v_km_h", "km/h"),
-        ("a_mps2", "m/s2"), ("n_rpm", "rpm"), ("trq_Nm", "N.m"), ("PedalPct", "%"), ("delta_deg", "deg"),
-        ("speed", ""), ("rad", ""), ("psi_w", ""), ("mps", ""), ("programs", ""), ("Sperad", ""),
-    ],
-)  # fmt: skip # a table
-def test_units_of_measure_in_names(name: str, unit: str) -> None:
-    assert unit_in(name) == unit
-
-
-def test_a_unit_in_the_name_is_assumed_and_told_where_none_is_declared() -> None:
-    found = rows("scooter.vehicle", PLAIN)
-    speed = found["speed"]
+def test_a_unit_in_the_name_is_assumed_where_none_is_declared() -> None:
+    matched = found("scooter.vehicle", PLAIN)
+    speed = matched["speed"]
     assert (speed.verdict, speed.unit) == ("your choice", "km/h")
     assert speed.reason == "declares no unit of measure; its name says [km/h], the system has [m/s]"
-    assert (found["distance"].unit, found["power"].unit) == ("m", "kW")
-    assert rows("scooter.vehicle", "output v_Nm")["speed"].verdict == "missing"
-    declared = rows("scooter.vehicle", "output v_kmh m/s")["speed"]
+    assert (matched["distance"].unit, matched["power"].unit) == ("m", "kW")
+    assert found("scooter.vehicle", "output v_Nm")["speed"].verdict == "missing"
+    declared = found("scooter.vehicle", "output v_kmh m/s")["speed"]
     assert (declared.verdict, declared.unit) == ("fits", "")
 
 
-def test_rows_say_who_needs_them() -> None:
-    throttle = rows("scooter.vehicle", PLAIN)["throttle"]
+def test_matches_say_who_needs_them() -> None:
+    throttle = found("scooter.vehicle", PLAIN)["throttle"]
     assert throttle.needed == ("from ecu.throttle over can0.VCU_Request.VCU_ThrottleRequest",)
+
+
+PLACES = [(s, unit) for s in system_names() for unit in load_system(s).file.units]
+
+
+def matches_of(system: str, unit: str, scenario: str | None = None) -> list[Match]:
+    """The matches for a unit's own FMU in its own place."""
+    described = load_system(system)
+    interface = read_fmu(fmu_file(described.file.units[unit].fmu)).interface
+    return matches(requirements(described, load_scenario(described, scenario), unit, interface), interface)
+
+
+@pytest.mark.parametrize(("system", "unit"), PLACES)
+def test_every_unit_fits_in_its_own_place(system: str, unit: str) -> None:
+    for scenario in scenario_names(load_system(system)):
+        rows = matches_of(system, unit, scenario)
+        assert fits(rows), rows
+        assert all(row.variable == row.need and row.verdict == "fits" for row in rows if row.need)
+
+
+@pytest.mark.parametrize("text", [DYMOLA, PLAIN, SIMULINK, GERMAN])
+def test_every_need_has_one_match_and_no_variable_two(text: str) -> None:
+    wanted = needs("scooter.vehicle")
+    made = matches(wanted, offer(text))
+    assert [m.need for m in made if m.need] == [need.name for need in wanted]
+    taken = [m.variable for m in made if m.variable]
+    assert len(taken) == len(set(taken))
+    assert set(offer(text).variables) >= set(taken)
+
+
+@pytest.mark.parametrize("text", [DYMOLA, PLAIN, SIMULINK, GERMAN])
+def test_the_order_in_which_an_fmu_declares_does_not_count(text: str) -> None:
+    """But for variables that are as likely, of which either may come first."""
+    parts = [part.strip() for line in text.split("\n") for part in line.split("|") if part.strip()]
+    turned = found("scooter.vehicle", " | ".join(reversed(parts)))
+    for need, match in found("scooter.vehicle", text).items():
+        if "others are as likely" not in match.reason:
+            assert (turned[need].variable, turned[need].verdict) == (match.variable, match.verdict)
+
+
+def test_what_is_mapped_is_judged_as_it_is() -> None:
+    tables = {"inputs": {"throttle": "brake_force"}, "outputs": {"speed": "gone"}}
+    entry = UnitEntry.model_validate({"fmu": "F", "map": tables, "absent": ["power"]})
+    matched = found("scooter.vehicle", PLAIN, entry)
+    assert matched["throttle"].variable == "brake_force"
+    assert matched["throttle"].reason.startswith("as mapped: ")
+    assert (matched["speed"].verdict, matched["speed"].reason) == (
+        "missing",
+        "the FMU has no variable of this name",
+    )
+    assert (matched["power"].verdict, matched["power"].variable) == ("fits", "")
+
+
+def test_an_input_that_nothing_drives_is_unused() -> None:
+    made = matches(needs("scooter.vehicle"), offer(DYMOLA + "| input wind m/s"))
+    assert [(m.variable, m.verdict) for m in made if not m.need] == [("wind", "unused")]
+
+
+@pytest.mark.parametrize("verdict", get_args(Verdict))
+def test_what_is_missing_or_to_choose_does_not_fit(verdict: Verdict) -> None:
+    good = verdict in ("fits", "fits after conversion", "unused")
+    assert fits([Match("a", "input", "x", verdict, "")]) is good
+    assert fits([Match("b", "input", "y", "fits", ""), Match("a", "input", "x", verdict, "")]) is good

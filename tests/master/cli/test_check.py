@@ -9,43 +9,11 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.swap.matching import Row, fit, fits
-from evcosim.cosim.swap.requirements import requirements
 from evcosim.cosim.swap.swap_file import SwapFile
-from evcosim.cosim.system.scenario import load_scenario, scenario_names
-from evcosim.cosim.system.system import load_system, system_names
+from evcosim.cosim.system.system import load_system
 from evcosim.cosim.system.toml import read_toml
-from evcosim.master.builtin import fmu_file
-from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.simulation import simulate
 from support.c_fmu import mixed_fmu, vehicle_fmu
-
-PLACES = [(s, unit) for s in system_names() for unit in load_system(s).file.units]
-
-
-def rows_of(system: str, unit: str, scenario: str | None = None) -> list[Row]:
-    """The rows for a unit's own FMU in its own place."""
-    described = load_system(system)
-    interface = read_fmu(fmu_file(described.file.units[unit].fmu)).interface
-    return fit(requirements(described, load_scenario(described, scenario), unit, interface), interface)
-
-
-@pytest.mark.parametrize(("system", "unit"), PLACES)
-def test_every_unit_fits_in_its_own_place(system: str, unit: str) -> None:
-    for scenario in scenario_names(load_system(system)):
-        rows = rows_of(system, unit, scenario)
-        assert fits(rows), rows
-        assert all(row.variable == row.need and row.verdict == "fits" for row in rows if row.need)
-
-
-def test_what_a_system_needs_is_named_with_its_other_end() -> None:
-    system = load_system("scooter")
-    interface = read_fmu(fmu_file("Scooter")).interface
-    needs = {n.name: n for n in requirements(system, load_scenario(system, "udds"), "vehicle", interface)}
-    assert needs["throttle"].role == "input"
-    assert needs["throttle"].why == ("from ecu.throttle over can0.VCU_Request.VCU_ThrottleRequest",)
-    assert needs["power"].why == ("to battery.power", "figure or metrics")
-    assert "figure or metrics" in needs["speed"].why
 
 
 def check(evcosim, *arguments: object):
@@ -167,6 +135,26 @@ def test_all_that_a_swap_lacks_is_told_at_once(evcosim, tmp_path: Path) -> None:
         assert f"unit 'vehicle' has no variable '{name}' (" in found.err
     assert "brake_force" not in found.err  # fig8 leaves the rider out
     assert "'evcosim check swap.toml --as scooter.vehicle' shows" in found.err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("period = 0.015\n", "swap.toml: period = 0.015 s is not a multiple of the communication step"),
+        ("[parameters]\nmas = 1.0\n", "swap.toml: parameters.mas: unit 'vehicle' has no variable 'mas'"),
+        ("[start]\nspeed = 1.0\n", "swap.toml: start.speed: vehicle.speed is of causality output, not input"),
+        ("[map.inputs]\nx = 'throtle'\n", "swap.toml: map.inputs.x: "),
+        ("absent = ['speed']\n", "swap.toml: absent: "),
+        ("substep = 1\n", "swap.toml: substep: unknown key (did you mean 'substeps'?)"),
+    ],
+)
+def test_a_key_of_a_swap_file_is_named_as_it_stands_there(
+    evcosim, tmp_path: Path, text: str, said: str
+) -> None:
+    (tmp_path / "swap.toml").write_text(f"fmu = 'Scooter'\n{text}")
+    found = evcosim("run", "scooter", "--swap", "vehicle=swap.toml")
+    assert found.code == 2
+    assert f"evcosim: {said}" in found.err
 
 
 DEFECT = {'unit="kg" start="200"': 'unit="kg" start="heavy"'}

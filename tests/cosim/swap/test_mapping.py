@@ -1,0 +1,171 @@
+"""An FMU under the names of a system: names, units of measure and signs there and back, and what is absent."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.interface import UnitInterface, VariableInfo
+from evcosim.cosim.swap.mapping import present, without_absent
+from evcosim.cosim.system.scenario import Scenario, ScenarioFile
+from evcosim.cosim.system.system import System, SystemFile, UnitEntry
+
+FMU = UnitInterface(
+    "V.fmu",
+    {
+        v.name: v
+        for v in (
+            VariableInfo("pedal", causality="input", unit="%", start=5.0, min=0.0, max=100.0),
+            VariableInfo("mode", "Boolean", "input", "discrete"),
+            VariableInfo("v", causality="output", unit="m/s", depends=("pedal",), depends_initially=None),
+            VariableInfo("s", causality="local", unit="m"),
+            VariableInfo("m_total", causality="parameter", unit="kg", start=200.0),
+        )
+    },
+    unusable={"w": "is of type Binary, which no one can ask for"},
+)
+
+
+def shown(**tables: object) -> UnitInterface:
+    """Return the FMU with these tables of a map."""
+    return present(FMU, UnitEntry.model_validate({"fmu": "V.fmu", "map": tables}), "s.toml: units.u.")
+
+
+def test_without_a_map_it_is_the_interface_itself() -> None:
+    assert shown() is FMU
+    assert shown(inputs={}) is FMU
+
+
+def test_a_variable_is_known_by_the_systems_name_alone() -> None:
+    known = shown(inputs={"throttle": "pedal"}, outputs={"speed": "v"}, parameters={"mass": "m_total"})
+    assert set(known.variables) == {"throttle", "mode", "speed", "s", "mass"}
+    assert {v.declared_name for v in known.variables.values()} == set(FMU.variables)
+    assert known.variables["s"] == FMU.variables["s"]
+
+
+def test_dependencies_follow_the_names() -> None:
+    speed = shown(inputs={"throttle": "pedal"}, outputs={"speed": "v"}).variables["speed"]
+    assert (speed.depends, speed.depends_initially) == (("throttle",), None)
+
+
+def test_a_local_variable_is_an_output_of_the_system() -> None:
+    distance = shown(outputs={"distance": "s"}).variables["distance"]
+    assert (distance.causality, distance.declared) == ("output", "s")
+
+
+def test_inverting_turns_start_and_range_and_twice_is_nothing() -> None:
+    throttle = shown(inputs={"throttle": {"variable": "pedal", "invert": True}}).variables["throttle"]
+    assert (throttle.start, throttle.min, throttle.max) == (-5.0, -100.0, 0.0)
+    assert throttle.inverted
+    once = shown(inputs={"pedal": {"variable": "pedal", "invert": True}})
+    entry = UnitEntry.model_validate(
+        {"fmu": "V.fmu", "map": {"inputs": {"pedal": {"variable": "pedal", "invert": True}}}}
+    )
+    twice = present(once, entry, "").variables["pedal"]
+    before = FMU.variables["pedal"]
+    assert (twice.start, twice.min, twice.max, twice.inverted) == (
+        before.start,
+        before.min,
+        before.max,
+        before.inverted,
+    )
+
+
+def test_a_unit_of_measure_takes_the_place_of_the_declared_one() -> None:
+    known = shown(inputs={"throttle": {"variable": "pedal", "unit": "1"}}).variables["throttle"]
+    assert known.unit == "1"
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"inputs": {"x": "pedall"}}, "map.inputs.x: V.fmu has no variable 'pedall' (did you mean 'pedal'?)"),
+        ({"inputs": {"x": "v"}}, "map.inputs.x: v is of causality output, not input"),
+        ({"parameters": {"x": "pedal"}}, "map.parameters.x: pedal is of causality input, not parameter or structuralParameter"),
+        ({"outputs": {"x": "w"}}, "map.outputs.x: w is of type Binary, which no one can ask for"),
+        ({"inputs": {"x": {"variable": "pedal", "unit": "blub"}}}, "map.inputs.x: unit of measure 'blub' is not known"),
+        ({"inputs": {"x": {"variable": "mode", "invert": True}}}, "map.inputs.x: mode is a Boolean: it has no sign to invert"),
+        ({"inputs": {"x": "pedal"}, "outputs": {"x": "v"}}, "map.outputs.x: 'x' is mapped twice"),
+        ({"inputs": {"my x": "v"}}, "map.inputs.'my x': v is of causality output, not input"),
+    ],
+)  # fmt: skip # one case a line
+def test_what_cannot_be_mapped_is_named_with_its_key(tables: dict[str, object], said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        shown(**tables)
+    assert str(caught.value).startswith(f"s.toml: units.u.{said}")
+
+
+# ---- what is absent
+
+SYSTEM = {
+    "name": "s",
+    "units": {"u": {"fmu": "F", "absent": ["x", "y"]}, "w": {"fmu": "F"}},
+    "buses": {"can0": {"dbc": "x.dbc"}},
+    "connect": [
+        {"from": "u.y", "to": ["w.a"]},
+        {"from": "w.b", "to": ["u.x", "w.c"]},
+        {"from": "w.b", "to": ["u.x"], "via": "can0.M.S"},
+        {"from": "w.b", "to": ["u.x"]},
+        {"from": "u.z", "to": ["w.d"]},
+    ],
+    "figure": {"panels": [{"signals": ["u.y", "u.z"]}]},
+    "metrics": [{"name": "of y", "signal": "u.y"}, {"name": "of z", "signal": "u.z"}],
+    "budget": {"metric": "of y", "limit": 1.0},
+}
+DRIVEN = {
+    "stimulus": [{"to": "u.x", "constant": 1.0}, {"to": "w.e", "constant": 1.0}],
+    "event": [
+        {"time": 1.0, "action": "reset", "variable": "u.x"},
+        {"time": 1.0, "action": "reset", "variable": "w.e"},
+    ],
+    "parameters": {"u": {"x": 1.0, "p": 2.0}},
+    "start": {"u": {"x": 1.0}},
+}
+
+
+def left(**system: object) -> tuple[System, Scenario, tuple[str, ...]]:
+    return without_absent(
+        System(Path("s.toml"), SystemFile.model_validate(SYSTEM | system)),
+        Scenario("t", Path("t.toml"), ScenarioFile.model_validate(DRIVEN)),
+    )
+
+
+def test_what_needs_absent_variables_is_left_out_and_said() -> None:
+    system, scenario, said = left()
+    assert [(c.source, c.to) for c in system.file.connect] == [
+        ("w.b", ["w.c"]),
+        ("w.b", []),  # still sent over the bus
+        ("u.z", ["w.d"]),
+    ]
+    assert [m.name for m in system.file.metrics] == ["of z"]
+    assert system.file.budget is None
+    assert [s.name for s in system.file.figure.panels[0].signals] == ["u.z"] if system.file.figure else False
+    assert [s.to for s in scenario.file.stimuli] == ["w.e"]
+    assert [e.needs for e in scenario.file.events] == [("w.e",)]
+    assert scenario.file.parameters == {"u": {"p": 2.0}}
+    assert scenario.file.start == {"u": {}}
+    assert "left out, since it is absent: u.y -> w.a; a receiver keeps its start value" in said
+    assert "left out, since it is absent: metric 'of y'" in said
+    assert len(said) == len(set(said))
+
+
+def test_nothing_of_what_is_left_names_what_is_absent() -> None:
+    system, scenario, _ = left()
+    text = system.file.model_dump_json(exclude={"units"}) + scenario.file.model_dump_json()
+    assert "u.x" not in text
+    assert "u.y" not in text
+
+
+def test_leaving_out_twice_is_leaving_out_once() -> None:
+    system, scenario, _ = left()
+    assert without_absent(system, scenario) == (system, scenario, ())
+
+
+def test_with_nothing_absent_all_stays() -> None:
+    units = {"u": {"fmu": "F"}, "w": {"fmu": "F"}}
+    system, scenario, said = left(units=units)
+    assert system.file == SystemFile.model_validate(SYSTEM | {"units": units})
+    assert scenario.file == ScenarioFile.model_validate(DRIVEN)
+    assert said == ()
