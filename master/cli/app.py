@@ -19,6 +19,7 @@ from .listing import list_
 from .plot import plot
 from .reproduce import reproduce
 from .run import run
+from .schema import schema
 
 
 def command() -> Any:
@@ -44,6 +45,7 @@ def command() -> Any:
         "build": build,
         "compile": compile_,
         "budget": budget,
+        "schema": schema,
     }
     for name, verb in verbs.items():
         app.command(name)(verb)

@@ -1,0 +1,61 @@
+"""`evcosim schema`: the JSON schema of a file, by which an editor completes and checks it."""
+
+from __future__ import annotations
+
+import enum
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+
+class Kind(enum.StrEnum):
+    """The kinds of files that evcosim reads."""
+
+    system = "system"
+    scenario = "scenario"
+    swap = "swap"
+
+
+def schema(
+    kind: Annotated[
+        Kind,
+        typer.Argument(metavar="[KIND]", help="system (the default), scenario or swap.", show_default=False),
+    ] = Kind.system,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="PATH", help="Write it: a file, or a folder to put it into."),
+    ] = None,
+) -> None:
+    """Print the JSON schema of a kind of file, for editors.
+
+    An editor that knows TOML completes and checks a file whose first line is #:schema ./system.schema.json
+    """
+    from ...cosim.system.schema import json_schema
+    from ...cosim.writing import replacing
+
+    text = json.dumps(json_schema(_model(kind), f"evcosim {kind} file"), indent=2, ensure_ascii=False) + "\n"
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    path = output / f"{kind}.schema.json" if output.is_dir() else output
+    with replacing(path) as file:
+        file.write(text.encode())
+    typer.echo(path)
+
+
+def _model(kind: Kind) -> type[BaseModel]:
+    from ...cosim.swap.swap_file import SwapFile
+    from ...cosim.system.scenario import ScenarioFile
+    from ...cosim.system.system import SystemFile
+
+    models: dict[Kind, type[BaseModel]] = {
+        Kind.system: SystemFile,
+        Kind.scenario: ScenarioFile,
+        Kind.swap: SwapFile,
+    }
+    return models[kind]
