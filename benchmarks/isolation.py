@@ -4,7 +4,9 @@ A ring of equal units in C with ten signals each way is stepped with all units i
 with each in its own, under both algorithms, in many short stretches that take turns. What is printed are
 microseconds for a unit and step: the median stretch of each, and the difference between the two, of the
 medians, of the 10th percentiles and of the fastest stretches. On a machine that does other things too the
-last two say more. Then, the share of a core that the processes take while nobody steps. Needs a C compiler.
+last two say more. Then, the share of a core that the processes take while nobody steps. Below the table: the
+processor time of a process from its start to its end, with an FMU that is loaded and initialized and not
+stepped. Needs a C compiler.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import resource
 import tempfile
 import time
 from pathlib import Path
@@ -20,7 +23,7 @@ import numpy as np
 
 from evcosim.master.simulation import Simulation
 
-from .case import Case
+from .case import Case, Kind
 from .runners.evcosim import write_system
 
 _SIGNALS = 10
@@ -35,6 +38,7 @@ def main() -> None:
         prog="python -m benchmarks.isolation", description=(__doc__ or "").split("\n\n")[0]
     )
     parser.add_argument("--stretches", type=int, default=400, help="of 25 steps (default: 400)")
+    parser.add_argument("--starts", type=int, default=20, help="of processes (default: 20)")
     parser.add_argument("--units", type=int, nargs="+", default=[1, 2, 4], help="units in the ring")
     arguments = parser.parse_args()
     machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
@@ -44,6 +48,11 @@ def main() -> None:
     for units in arguments.units:
         for algorithm in ("gauss_seidel", "jacobi"):
             print(row(units, algorithm, arguments.stretches), flush=True)
+    in_c, in_python = start_time("c", arguments.starts), start_time("python", arguments.starts)
+    print(
+        f"\na process from start to end, with no step: {in_c:.0f} ms of processor time with an FMU in C, "
+        f"{in_python:.0f} ms with one of pythonfmu (medians of {arguments.starts})"
+    )
 
 
 def row(units: int, algorithm: str, stretches: int) -> str:
@@ -61,6 +70,24 @@ def row(units: int, algorithm: str, stretches: int) -> str:
     costs = [found[1] - found[0] for found in (medians, low, np.min(times, axis=0))]
     cells = [f"{x:.1f}" for x in (*medians, *costs)]
     return f"| {units} | {algorithm} | " + " | ".join(cells) + f" | {100 * idle:.1f} % |"
+
+
+def start_time(kind: Kind, starts: int) -> float:
+    """The median processor time, in ms, of the process of one unit that is initialized and then freed."""
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        system = write_system(Case(kind, 1, 1, record=False), Path(folder))
+        for _ in range(starts):
+            before = _time_of_ended()
+            Simulation(system, isolation="process", engine="python").close()
+            found.append(1e3 * (_time_of_ended() - before))
+    return float(np.median(found))
+
+
+def _time_of_ended() -> float:
+    """Seconds of processor time that the processes have taken that this one started and that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _stretch(simulation: Simulation) -> float:

@@ -1,9 +1,9 @@
 """Opening and extracting the archive of an FMU, which may be damaged or hostile.
 
-Before anything is written: no entry stands outside the archive's folder, none is a link, a device or
-encrypted, no two are the same file, and sizes, their ratio and their number are within limits. While it is
-written, bytes are counted again, since an archive can lie about sizes. The limits are those that no honest
-FMU meets; EVCOSIM_FMU_LIMITS ("size=8e9 ratio=1000 entries=50000", sizes in bytes) sets others.
+Checked before anything is written: no entry stands outside the archive's folder, none is a link, a device or
+encrypted, no two are the same file, and sizes, their ratio and their number are within limits. While files
+are written, bytes are counted again, since an archive can lie about sizes. No honest FMU meets the limits;
+EVCOSIM_FMU_LIMITS ("size=8e9 ratio=1000 entries=50000", sizes in bytes) sets others.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class FmuError(ConfigError):
 
 @dataclasses.dataclass(frozen=True)
 class ArchiveLimits:
-    """What an archive may hold: `size` bytes in all, `ratio` of unpacked to packed bytes, `entries`."""
+    """The limits of an archive: `size` bytes in all, `ratio` of unpacked to packed bytes, `entries`."""
 
     size: float = 4e9
     ratio: float = 500.0
@@ -48,7 +48,7 @@ class ArchiveLimits:
 
 
 def archive_limits() -> ArchiveLimits:
-    """The limits, with those that the environment sets. Raises ConfigError for what is no limit."""
+    """Return the limits, those of the environment among them. Raises ConfigError for any other text there."""
     given = {}
     for part in os.environ.get(_VARIABLE, "").split():
         name, _, value = part.partition("=")
@@ -65,7 +65,7 @@ def archive_limits() -> ArchiveLimits:
 
 
 def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
-    """The entries of an archive, none of which breaks a rule. Raises FmuError."""
+    """Return the entries of an archive. Raises FmuError for one that cannot be read or breaks a rule."""
     if path.is_dir():
         raise FmuError(f"{path}: is a folder, not an FMU; an FMU is one file (zip its content)")
     try:
@@ -113,7 +113,7 @@ def _check(path: Path, entries: tuple[zipfile.ZipInfo, ...], allowed: ArchiveLim
 
 
 def _folded(entry: zipfile.ZipInfo) -> str:
-    """An entry's name as a file system that ignores case sees it."""
+    """Return an entry's name as a file system that ignores case sees it."""
     return unicodedata.normalize("NFC", entry.filename.rstrip("/")).casefold()
 
 
@@ -122,12 +122,12 @@ def _folders(name: str) -> Iterator[str]:
 
 
 def _shown(name: str) -> str:
-    """A name in a message."""
+    """Return a name for a message, shortened."""
     return repr(name if len(name) <= _LONGEST_SHOWN else name[:_LONGEST_SHOWN] + "...")
 
 
 def _problem(entry: zipfile.ZipInfo, allowed: ArchiveLimits) -> str:
-    """What is wrong with an entry; "" when nothing is."""
+    """Return the rule that an entry breaks, as a clause; "" when it breaks none."""
     name = entry.orig_filename  # zipfile cuts `filename` at a NUL and turns separators
     parts = re.split(r"[/\\]", name)
     if not name or "\0" in name or name[0] in "/\\" or ".." in parts or re.match(r"[A-Za-z]:", name):
@@ -150,7 +150,7 @@ def _problem(entry: zipfile.ZipInfo, allowed: ArchiveLimits) -> str:
 
 
 def read_entry(path: Path, name: str) -> bytes:
-    """The bytes of one entry of at most 64 MiB. Raises FmuError."""
+    """Return the bytes of one entry of at most 64 MiB. Raises FmuError."""
     try:
         with zipfile.ZipFile(path) as archive, archive.open(name) as file:
             content = file.read(_DESCRIPTION + 1)
@@ -190,7 +190,7 @@ def extract(path: Path) -> Path:
 
 
 def _copied(path: Path, entry: zipfile.ZipInfo, source: IO[bytes], target: IO[bytes], left: float) -> int:
-    """Copy an entry; how many bytes it had. Raises FmuError when they are more than it declares."""
+    """Copy an entry and return its bytes. Raises FmuError for more than it declares, or than `left`."""
     count = 0
     while block := source.read(_BLOCK):
         count += len(block)

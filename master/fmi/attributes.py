@@ -1,4 +1,4 @@
-"""The parts of a description beside its variables: what FMPy would not read is left out and told."""
+"""The parts of a description beside its variables: defects that FMPy does not read are mended."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def mend_attributes(root: Any) -> list[str]:
-    """Mend what stands in a description beside its variables; a sentence for each defect."""
+    """Mend the parts of a description beside its variables, and return a sentence for each defect."""
     defects = []
     if root.get("fmiVersion") == "1.0" and root.get("numberOfContinuousStates") is None:
         root.set("numberOfContinuousStates", "0")
@@ -35,7 +35,7 @@ def mend_attributes(root: Any) -> list[str]:
 
 
 def _mend_units(root: Any) -> list[str]:
-    """A unit of measure whose factor is no number has no definition: any other factor would be a guess."""
+    """Leave out the definition of a unit of measure whose factor is no number: any other would be a guess."""
     defects = []
     for base in root.findall("UnitDefinitions/Unit/BaseUnit"):
         wrong = [n for n in _EXPONENTS if not _is_number(base.get(n, "0"), _WHOLE)]
@@ -55,7 +55,7 @@ def _mend_units(root: Any) -> list[str]:
 
 
 def _mend_types(root: Any) -> list[str]:
-    """Types without content are left out, and attributes that no type has."""
+    """Leave out types without content, and attributes that no type has."""
     defects = []
     for declared in [*root.findall("TypeDefinitions/SimpleType"), *root.findall("TypeDefinitions/Type")]:
         if not [child for child in declared if isinstance(child.tag, str)]:

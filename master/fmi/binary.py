@@ -1,4 +1,4 @@
-"""Whether a file can be a shared library of this machine, from its header.
+"""The check of a shared library's header, before this machine loads it.
 
 The system's loader says "No such file" of a library for another machine, and ends the process over one that
 is cut off. Only ELF (Linux) is looked into; elsewhere the loader's own words must do.
@@ -23,7 +23,7 @@ _LOADED = 1  # the type of a segment that is mapped into memory
 
 
 def problem(path: Path) -> str:
-    """What keeps this machine from loading a library, as a clause ("it is empty"); "": nothing seen."""
+    """Return what keeps this machine from loading a library, as a clause ("it is empty"); else ""."""
     if sys.platform != "linux":
         return ""
     size = path.stat().st_size

@@ -17,7 +17,7 @@ from .archive import FmuError, extract, read_entry
 from .description import parsed_xml
 from .fmu import Fmu, read_fmu
 
-_SHOWN = 3000  # characters of what the compiler says
+_SHOWN = 3000  # characters of the compiler's messages
 _TIME = 600.0  # s
 
 
@@ -42,7 +42,7 @@ def compile_fmu(path: Path, output: Path | None = None) -> Path:
 
 
 def _interfaces(fmu: Fmu) -> list[Fmu]:
-    """The FMU by each of its interfaces, one for each library."""
+    """Return the FMU by each of its interfaces, one for each library."""
     about = fmu.description
     kinds = (("co_simulation", about.coSimulation), ("model_exchange", about.modelExchange))
     found = [fmu.using(name) for name, kind in kinds if kind is not None]  # type: ignore[arg-type] # two of them
@@ -50,7 +50,7 @@ def _interfaces(fmu: Fmu) -> list[Fmu]:
 
 
 def _library(fmu: Fmu, folder: Path) -> bytes:
-    """Compile the sources in `folder` and answer the library."""
+    """Compile the sources in `folder` and return the bytes of the library. Raises FmuError."""
     sources, flags = _declared(fmu)
     target = folder / "evcosim-library"
     headers = Path(_fmpy_folder()) / "c-code"
@@ -83,7 +83,7 @@ def _fmpy_folder() -> str:
 
 
 def _declared(fmu: Fmu) -> tuple[list[str], list[str]]:
-    """The entries to compile and the compiler's flags, as the FMU declares them; else each C file there is.
+    """Return the entries to compile and the compiler's flags, as the FMU declares them; else each C file.
 
     Raises FmuError for a declared file that is not in the archive.
     """
@@ -104,7 +104,7 @@ def _of_fmi_2(fmu: Fmu) -> tuple[list[str], list[str]]:
 
 
 def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
-    """From the first build configuration for the library, with its definitions."""
+    """Return sources and definitions of the first build configuration for the library."""
     entry = "sources/buildDescription.xml"
     if entry not in fmu.entries:
         return [], []
@@ -120,7 +120,7 @@ def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
 
 
 def _written(path: Path, output: Path, made: dict[str, bytes]) -> Path:
-    """Write the archive beside `output` first, so that no half of one is ever there."""
+    """Write the archive beside `output`, then put it in place, so that no half of one is ever there."""
     part = output.with_name(f"{output.name}.{os.getpid()}.part")
     try:
         shutil.copyfile(path, part)

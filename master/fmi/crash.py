@@ -1,4 +1,4 @@
-"""The lines about units that this process writes on stderr when it crashes; the command line asks for them.
+"""The lines about units that this process writes on stderr when it crashes; the command line enables them.
 
 A signal such as SIGSEGV ends the process without a return to Python. `faulthandler` writes the Python stack
 then, but no name of a unit stands in it. So on Linux a signal handler in machine code, which faulthandler
@@ -9,6 +9,7 @@ Python crashes with a stack that shows where.
 
 from __future__ import annotations
 
+import ctypes
 import faulthandler
 import signal
 import sys
@@ -33,46 +34,46 @@ def enable() -> None:
 
 
 def report() -> CrashReport | None:
-    """Return the report that units take part in; None where nobody asked for one."""
+    """Return the report that units take part in; None where it is not enabled."""
     return _report
+
+
+class _Text:
+    """A text in memory: `row` are two int64, its address and its length in bytes."""
+
+    def __init__(self, text: str) -> None:
+        self._content = ctypes.create_string_buffer(text.encode("ascii", "backslashreplace"))
+        self.row = (ctypes.c_int64 * 2)(ctypes.addressof(self._content), len(self._content) - 1)
+        self.address = ctypes.addressof(self.row)
 
 
 class CrashReport:
     """The texts for the handler: that of the unit called last, and that of all units in this process.
 
-    In memory a text is a row of two int64: address and length in bytes. The handler finds the row of the unit
-    in a table, at the place that stands in a cell; what it reads first is `_root`: the addresses of the
-    table, of the cell and of the row about all units.
+    The handler finds the row of the first text in a table, at the place that stands in a cell. It begins at
+    `_root`: the addresses of the table, of the cell and of the row of the second text.
     """
 
     def __init__(self) -> None:
-        import ctypes  # here, since `evcosim --help` needs none
-
-        self._ctypes: Any = ctypes
-        self._first_place = ctypes.c_int64(0)
-        self._nothing, self._all = self._row(""), self._row("")
-        self._units: dict[object, tuple[str, Any]] = {}  # what is shown of each, and its row
         self._root = (ctypes.c_int64 * 3)()
+        self._first = ctypes.c_int64(0)  # the cell for a table of one row
+        self._nothing = self._all = _Text("")
+        self._units: dict[object, tuple[str, _Text]] = {}  # name and file of each, and the text about it
+        self._kept: list[_Text] = []
         self._handler: Any = None
-        self._tell()
+        self._list()
         self.rest()
-
-    def _row(self, text: str) -> Any:
-        """A text in memory with its row; the row keeps the text alive."""
-        content = self._ctypes.create_string_buffer(text.encode("ascii", "backslashreplace"))
-        row = (self._ctypes.c_int64 * 2)(self._ctypes.addressof(content), len(content) - 1)
-        row.content = content
-        return row
 
     def add(self, unit: object, name: str, file: str, in_python: bool) -> Callable[[], None]:
         """Take up a unit in this process, and return a call that notes that it is called now."""
         shown = f"{name} ({file})"
-        row = self._row(f"\nevcosim: this process crashed; the unit called last was {shown}\n")
-        self._units[unit] = shown, row
-        self._tell()
+        text = _Text(f"\nevcosim: this process crashed; the unit called last was {shown}\n")
+        self._units[unit] = shown, text
+        self._kept.append(text)  # the note may be called once more when the unit was removed
+        self._list()
         if not in_python and self._handler is None:
             self._install()
-        root, address = self._root, self._ctypes.addressof(row)
+        root, address = self._root, text.address
 
         def note() -> None:
             root[0] = address
@@ -83,42 +84,41 @@ class CrashReport:
         """Leave out a unit that is freed."""
         self.rest()
         if self._units.pop(unit, None) is not None:
-            self._tell()
+            self._list()
 
-    def _tell(self) -> None:
+    def _list(self) -> None:
         """Make the text about all units."""
         shown = ", ".join(shown for shown, _ in self._units.values())
-        self._all = self._row(f"evcosim: units in this process: {shown}\n{_ADVICE}\n" if shown else "")
-        self._root[2] = self._ctypes.addressof(self._all)
+        text = _Text(f"evcosim: units in this process: {shown}\n{_ADVICE}\n" if shown else "")
+        self._root[2] = text.address
+        self._all = text
 
     def row(self, unit: object) -> tuple[int, int]:
-        """The row of a unit, for a table; that of no text for anything else."""
-        _, row = self._units.get(unit, ("", self._nothing))
-        return row[0], row[1]
+        """Return the row of the text about a unit, for a table; that of no text for anything else."""
+        _, text = self._units.get(unit, ("", self._nothing))
+        return text.row[0], text.row[1]
 
-    def follow(self, table: int, place: int) -> None:
-        """From now on the row at the int64 at address `place` counts, in the table at address `table`.
+    def follow(self, table: int, cell: int) -> None:
+        """Let the int64 at the address `cell` choose the row in the table at the address `table`.
 
         `rest` ends it.
         """
-        self._root[0], self._root[1] = table, place
+        self._root[0], self._root[1] = table, cell
 
     def rest(self) -> None:
-        """No unit is called."""
-        self._root[0] = self._ctypes.addressof(self._nothing)
-        self._root[1] = self._ctypes.addressof(self._first_place)
+        """Note that no unit is called."""
+        self._root[0], self._root[1] = self._nothing.address, ctypes.addressof(self._first)
 
     def _install(self) -> None:
-        library = self._ctypes.CDLL(None)
-        functions = [
-            self._ctypes.cast(library[name], self._ctypes.c_void_p).value
-            for name in ("write", "signal", "raise")
-        ]
-        self._handler = _machine_code(self._ctypes.addressof(self._root), *functions)
-        address = self._ctypes.c_void_p(self._handler.get_function_address("crashed"))
+        library = ctypes.CDLL(None)
+        write, handle, again = (
+            ctypes.cast(library[name], ctypes.c_void_p).value or 0 for name in ("write", "signal", "raise")
+        )
+        self._handler = _machine_code(ctypes.addressof(self._root), write, handle, again)
+        address = ctypes.c_void_p(self._handler.get_function_address("crashed"))
         faulthandler.disable()
         for name in _SIGNALS:
-            library.signal(self._ctypes.c_int(getattr(signal, name)), address)
+            library.signal(ctypes.c_int(getattr(signal, name)), address)
         faulthandler.enable(_STDERR, all_threads=False)  # after ours, so that it is called before
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from .archive import FmuError
 
 Function = Callable[[float, ctypes.c_void_p, ctypes.c_void_p], int]
-"""(time [s], states, where the answer goes) -> 0; 1: not possible here, a smaller step may be; -1: failed."""
+"""(time [s], states, address of the answer) -> 0; 1: not possible here, a smaller step may be; -1: failed."""
 
 _BDF, _ONE_STEP, _ROOT = 2, 2, 2
 _CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
@@ -90,7 +90,7 @@ class Cvode:
             raise SolverError(f"{name} gave {flag}")
 
     def _guarded(self, function: Function, answer: Callable[[int], ctypes.c_void_p]) -> Callable[..., int]:
-        """`function` as CVODE calls it: an exception cannot pass through C, so it waits for its return."""
+        """Return `function` as CVODE calls it: an exception waits for the return, since C passes none on."""
 
         def guarded(time: float, states: int, target: int, _: Any) -> int:
             self._last = time, states
@@ -103,7 +103,7 @@ class Cvode:
         return guarded
 
     def _data(self, vector: int) -> ctypes.c_void_p:
-        """Where the values of a vector stand: a view of the pointer, since CVODE exchanges pointers."""
+        """Return a view of the pointer to a vector's values: a view, since CVODE exchanges pointers."""
         if (view := self._views.get(vector)) is None:
             from fmpy.sundials.nvector_serial import _N_VectorContent_Serial as Content
 
@@ -113,7 +113,7 @@ class Cvode:
         return view
 
     def restart(self, time: float) -> None:
-        """Begin at `time` [s] from `x`, without a memory of what was before."""
+        """Begin at `time` [s] from `x`, without a memory of the steps before."""
         at = ctypes.c_double(time)
         if self._started:
             self._call("CVodeReInit", at, self._y)
@@ -128,9 +128,10 @@ class Cvode:
         self.time = time
 
     def step(self, stop: float) -> bool:
-        """One step of the solver's own size, to `stop` [s] at the most; `time` and `x` are then its end.
+        """Do one step of the solver's own size, to `stop` [s] at the most; `time` and `x` are then its end.
 
-        Whether it ended where an indicator changed its sign. Raises SolverError, and what the functions do.
+        Returns True if it ended where an indicator changed its sign. Raises SolverError, and the errors of
+        the functions.
         """
         self._stop.value, before = stop, self.time
         self._set_stop_time(self._memory, self._stop)
@@ -151,7 +152,10 @@ class Cvode:
         raise SolverError(_REASONS.get(flag, f"CVODE gave {flag}"))
 
     def last_derivatives(self) -> list[float]:
-        """The derivatives where the functions were evaluated last, once more; zeros where they cannot be."""
+        """Evaluate the derivatives once more where the functions were called last, and return them.
+
+        They are zeros where the functions were not called yet.
+        """
         (time, states), answer = self._last, (ctypes.c_double * len(self.x))()
         if states:
             self._derivatives(time, self._data(states), ctypes.cast(answer, ctypes.c_void_p))
@@ -174,7 +178,7 @@ def _nothing(_time: float, _states: ctypes.c_void_p, answer: ctypes.c_void_p) ->
 
 
 def _library() -> Callable[..., Any]:
-    """(library, function, result) -> the C function; Python's lock is kept, as the callbacks come back."""
+    """Return (library, function, result) -> the C function, which keeps Python's lock for the callbacks."""
     try:
         from fmpy.sundials import libraries
     except Exception as error:  # OSError; FMPy raises a plain Exception for another version

@@ -1,8 +1,8 @@
-"""Reading modelDescription.xml: nothing is expanded or fetched, and what can be borne is mended and told.
+"""Reading modelDescription.xml: nothing is expanded or fetched, and small defects are mended and reported.
 
-FMPy reads the description of every FMI version, but raises what comes up for the small defects that the
-descriptions of real tools have. Each of them that has one sensible reading is mended before, and becomes a
-sentence that says what was assumed; what has none is a FmuError.
+FMPy reads the description of every FMI version, but raises unrelated errors for the small defects that the
+descriptions of real tools have. A defect that has one sensible reading is mended before, and becomes a
+sentence that says what was assumed; any other is a FmuError.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ _VERSIONS = ("1.0", "2.0", "3.0")
 
 
 def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], frozenset[str]]:
-    """FMPy's ModelDescription, the defects that were mended, and the negated aliases. Raises FmuError."""
+    """Return FMPy's ModelDescription, the defects that were mended, and the negated aliases.
+
+    Raises FmuError that names the place.
+    """
     from fmpy.model_description import read_model_description
 
     root = _parsed(path, xml)
@@ -42,7 +45,7 @@ def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], froz
 
 
 def parsed_xml(place: str, xml: bytes) -> Any:
-    """The root of a document of an FMU. Raises FmuError that begins with `place`."""
+    """Return the root of a document of an FMU. Raises FmuError that begins with `place`."""
     from lxml import etree
 
     # in UTF-16 too: no description needs a document type, and entities are how XML reads files and explodes
@@ -72,7 +75,7 @@ def _parsed(path: Path, xml: bytes) -> Any:
 
 
 def _check_identifiers(place: str, root: Any) -> None:
-    """A modelIdentifier names a file of the archive and C functions: it is a plain name or nothing of it."""
+    """Raise FmuError for a modelIdentifier that is no plain name: it names a file and C functions."""
     kinds = [root, *(root.find(k) for k in ("CoSimulation", "ModelExchange", "ScheduledExecution"))]
     for kind in kinds:
         name = None if kind is None else kind.get("modelIdentifier")
@@ -171,7 +174,7 @@ _ALLOWED = {
 
 
 def _illegal_variability(v: Any) -> str | None:
-    """The variability, given or by default, that a variable of this causality cannot have."""
+    """Return a variability, given or by default, that this causality cannot have; None where all is well."""
     version = v.getroottree().getroot().get("fmiVersion")
     variability: str | None = v.get("variability", "continuous" if version == "2.0" else None)
     allowed = _ALLOWED.get(v.get("causality", "local"))

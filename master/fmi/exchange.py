@@ -1,10 +1,10 @@
-"""What the units of FMI 2.0 and 3.0 Model Exchange share: the FMU gives equations, and we solve them.
+"""Units of FMI 2.0 and 3.0 Model Exchange: the FMU gives equations, and we solve them.
 
 Between two communication points the inputs are held and the states follow their derivatives (`cvode`) until
 an event: a state event (an event indicator z passes between z > 0 and z <= 0), a time event (the FMU named
-the time), or a step event (it asks for one after a step of the solver). Discrete inputs that change at a
+the time), or a step event (it wants one after a step of the solver). Discrete inputs that change at a
 communication point are an event too, and so are continuous ones that change the sign of an indicator. In an
-event the FMU is asked for new discrete states until it needs no more, and the solver begins anew; so it does
+event the FMU computes new discrete states until it needs no more, and the solver begins anew; so it does
 after any change of an input, which bends the solution. An event at the end of a step is part of that step:
 the outputs there are those after it.
 """
@@ -42,11 +42,11 @@ _CLOSE = 16 * sys.float_info.epsilon  # of a time: what the solver cannot step o
 
 
 class ModelExchange(Instance):
-    """See `Instance`. A class for a version of FMI defines, beside what stands there:
+    """An `Instance` with a solver. A class for a version of FMI defines, beside what stands there:
 
     `_flag`             the type of a C Boolean that the FMU writes
     `_derivatives`      the name of the function that gives the derivatives
-    `_discrete_states`  makes the call that asks for new discrete states once
+    `_discrete_states`  makes the call for new discrete states, which is then made many times
     `_answer`           the structure that this call writes, with the members of fmi2EventInfo
     """
 
@@ -72,7 +72,7 @@ class ModelExchange(Instance):
 
     @property
     def tolerance(self) -> float:
-        """The relative tolerance: what the system says, else what the FMU does, else 1e-6."""
+        """The relative tolerance of the solver: the system's, else the FMU's own, else 1e-6."""
         if self._tolerance is not None:
             return self._tolerance
         with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
@@ -81,7 +81,7 @@ class ModelExchange(Instance):
         return _TOLERANCE
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        """See `unit.Unit`. Discrete inputs may be set in an event alone, so they are told apart."""
+        """Make the calls of a turn. Discrete inputs, which only events may set, have calls of their own."""
         super().bind(memory, plan)
         for group in plan.groups:
             for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
@@ -93,7 +93,6 @@ class ModelExchange(Instance):
         self.set_inputs = self._noting(self._take_inputs)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
         self._time = ctypes.c_double(start_time)
         super().enter_initialization(start_time, stop_time)
 
@@ -109,7 +108,7 @@ class ModelExchange(Instance):
         self._get_indicators = self._of_all("GetEventIndicators", self._z)
         self._wants_event, self._wants_end = self._flag(), self._flag()
         self._complete = self._completed()
-        self._ask = self._discrete_states()
+        self._update = self._discrete_states()
         if self._nx or self._nz:
             self._make_solver()
         self._iterate()
@@ -117,7 +116,7 @@ class ModelExchange(Instance):
         self._held[False] = [float(self.get(v.name)) for _, v in self._inputs[False]]
 
     def _bound(self, what: str, *arguments: Any) -> Call:
-        """A call of a function of the FMU with these arguments behind the component, judged."""
+        """Return a call of a function of the FMU with these arguments behind the component, judged."""
         name, component = f"{self.fmi}{what}", self._component
         function = self.function(name)
 
@@ -128,7 +127,7 @@ class ModelExchange(Instance):
         return call
 
     def _of_all(self, what: str, buffer: Any) -> Call:
-        """A call that moves all states or indicators; nothing where there are none."""
+        """Return a call that moves all states or indicators, and does nothing where there are none."""
         count = self._nz if what == "GetEventIndicators" else self._nx
         return self._bound(what, buffer, ctypes.c_size_t(count)) if count else one_after_the_other()
 
@@ -143,7 +142,7 @@ class ModelExchange(Instance):
             self._get_nominals = self._of_all("GetNominalsOfContinuousStates", solver.absolute)
 
     def _completed(self) -> Call | None:
-        """What tells the FMU of a step of the solver; None where it need not be told."""
+        """Return the call that reports a step of the solver to the FMU; None where it needs none."""
         what = "CompletedIntegratorStep"
         if not self.fmu.kind.needsCompletedIntegratorStep or not self._library.has(self.fmi + what):
             return None
@@ -153,7 +152,7 @@ class ModelExchange(Instance):
     # ---- for the solver
 
     def _evaluating(self, what: str, count: int) -> Function | None:
-        """Sets time and states, and gets `count` values; None where there are none to get."""
+        """Return a function that sets time and states and gets `count` values; None for no values."""
         if not count:
             return None
         component, time = self._component, self._time
@@ -175,20 +174,20 @@ class ModelExchange(Instance):
         return evaluated
 
     def _rejects(self, what: str, status: int) -> bool:
-        """Whether the FMU cannot be evaluated there, so that a smaller step may help; else judged."""
+        """Return True if the FMU cannot be evaluated there, so that a smaller step may help; else judge."""
         if status != _DISCARD:
             self._judge(what, status)
         return status == _DISCARD
 
     def _scale(self, solver: Cvode) -> None:
-        """The absolute tolerances, which follow from the nominal values of the states."""
+        """Set the absolute tolerances, which follow from the nominal values of the states."""
         solver.absolute[:] = [1.0] * len(solver.absolute)
         self._get_nominals()
         factor = _ABSOLUTE * self.tolerance
         solver.absolute[:] = [factor * (abs(x) if math.isfinite(x) and x else 1.0) for x in solver.absolute]
 
     def _why_not(self) -> str:
-        """The derivatives that were no finite numbers where the solver was last, as a clause."""
+        """Return a clause with the derivatives that were no finite numbers where the solver was last."""
         solver, names = self._solver, [u.variable.name for u in self.fmu.description.derivatives]
         if solver is None or len(names) != self._nx:
             return ""
@@ -199,9 +198,9 @@ class ModelExchange(Instance):
     # ---- events
 
     def _iterate(self) -> None:
-        """From event mode to continuous-time mode, with the discrete states that follow."""
+        """Compute new discrete states until there are no more, and enter continuous-time mode."""
         for _ in range(_ITERATIONS):
-            self._ask()
+            self._update()
             answer = self._answer
             if answer.terminateSimulation:
                 self._give_up("asks to terminate the simulation")
@@ -215,7 +214,7 @@ class ModelExchange(Instance):
         self._begins_anew = True
 
     def _handle_event(self, change: Call | None = None) -> None:
-        """An event now; `change` is what happens to the FMU in it."""
+        """Handle an event now; `change` is the call that changes the FMU in it."""
         self._enter_event_mode()
         if change is not None:
             change()
@@ -223,24 +222,24 @@ class ModelExchange(Instance):
         self._settle()
 
     def _settle(self) -> None:
-        """Take over what an event has changed, beside the states."""
+        """Take over nominal values and domains after an event."""
         if self._nominals_changed and self._solver is not None:
             self._scale(self._solver)
         self._nominals_changed = False
         self._domains = self._domains_now()
 
     def _domains_now(self) -> list[bool]:
-        """The domains of the event indicators, z > 0 or not."""
+        """Return the domains of the event indicators: True for z > 0."""
         self._get_indicators()
         return [z > 0.0 for z in self._z]
 
     def _give_up(self, why: str) -> NoReturn:
         raise UnitError(f"unit '{self.name}': {why}, at t = {self._time.value:.12g} s{self._said()}")
 
-    # ---- see `unit.Unit`
+    # ---- the calls of `unit.Unit`
 
     def _take_inputs(self) -> None:
-        """`set_inputs`, where something has changed."""
+        """Set the inputs that have changed since the last call; a discrete one is an event."""
         view, held = self._view, self._held
         continuous, discrete = ([view[slot] for slot, _ in self._inputs[kind]] for kind in (True, False))
         if continuous == held[True] and discrete == held[False]:
@@ -256,7 +255,7 @@ class ModelExchange(Instance):
                 self._handle_event()
 
     def set(self, name: str, value: Value) -> None:
-        """See `unit.Unit`; after the initialization this is an event."""
+        """Set a variable; after the initialization this is an event."""
         change = functools.partial(super().set, name, value)
         if self._initialized:
             self._handle_event(change)
@@ -264,7 +263,7 @@ class ModelExchange(Instance):
             change()
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
-        """See `unit.Unit`. No step of the solver is longer than `step_size`."""
+        """Integrate over `count` steps. No step of the solver is longer than `step_size` [s]."""
         try:
             for i in range(1, count + 1):
                 self._advance(time + i * step_size)
@@ -272,7 +271,7 @@ class ModelExchange(Instance):
             self._give_up(f"CVODE cannot go on: {error}{self._why_not()}")
 
     def _advance(self, stop: float) -> None:
-        """To `stop` [s], through all events up to it and at it."""
+        """Integrate to `stop` [s], through all events up to it and at it."""
         time = self._time
         for _ in range(_EVENTS):
             event = self._integrate(min(stop, self._next_event))
@@ -286,7 +285,10 @@ class ModelExchange(Instance):
         self._give_up(f"has more than {_EVENTS} events in one step")
 
     def _integrate(self, target: float) -> bool:
-        """To `target` [s], or to an event before: whether there is one (a time event is not looked for)."""
+        """Integrate to `target` [s] or to an event before it, and return True for an event.
+
+        A time event is not looked for.
+        """
         time, solver = self._time, self._solver
         if target - time.value <= _close(target):
             return False
@@ -311,7 +313,7 @@ class ModelExchange(Instance):
         return self._give_up(f"CVODE needs more than {_SOLVER_STEPS} steps to get to t = {target:.12g} s")
 
     def _completes(self) -> bool:
-        """Tell the FMU of a completed step; whether it asks for an event."""
+        """Report a completed step to the FMU, and return True if it needs an event."""
         if self._complete is None:
             return False
         self._complete()
@@ -320,7 +322,6 @@ class ModelExchange(Instance):
         return bool(self._wants_event)
 
     def free(self) -> None:
-        """See `unit.Unit`."""
         solver, self._solver = self._solver, None
         if solver is not None:
             solver.close()
@@ -332,7 +333,7 @@ def _nothing(*_: Any) -> int:
 
 
 def _close(time: float) -> float:
-    """The interval before a time that counts as nothing."""
+    """Return the interval [s] before a time that counts as nothing."""
     return _CLOSE * abs(time)
 
 

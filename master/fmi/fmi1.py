@@ -1,7 +1,7 @@
 """A unit of FMI 1.0 Co-Simulation.
 
-It has no initialization mode: values are set on the instantiated slave, fmiInitializeSlave fixes them, and
-before it no value can be asked for, so that a variable then answers with its start value.
+It has no initialization mode: values are set on the instantiated slave, and fmiInitializeSlave fixes them.
+Before that the slave gives no values; the unit returns the value that was set, else the start value.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _FALSE, _TRUE = ctypes.c_char(0), ctypes.c_char(1)  # fmiBoolean
 
 
 class Fmi1Unit(Instance):
-    """See `Instance`."""
+    """An `Instance` of FMI 1.0; it takes no tolerance."""
 
     fmi = "fmi"
     _true = _TRUE
@@ -58,7 +58,7 @@ class Fmi1Unit(Instance):
         return component
 
     def get(self, name: str) -> Value:
-        """See `unit.Unit`; before the initialization, the value that was set, else the start value."""
+        """Return the value of a variable; before the initialization the one set, else the start value."""
         if self._initialized:
             return super().get(name)
         if name in self._given:
@@ -67,18 +67,15 @@ class Fmi1Unit(Instance):
         return self.type_of(variable).kind.zero if variable.start is None else variable.start
 
     def set(self, name: str, value: Value) -> None:
-        """See `unit.Unit`."""
         super().set(name, value)
         if not self._initialized:
             self._given[name] = value
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
         known = _FALSE if stop_time is None else _TRUE
         self._experiment: Any = ctypes.c_double(start_time), known, ctypes.c_double(stop_time or 0.0)
 
     def exit_initialization(self) -> None:
-        """See `unit.Unit`."""
         self._call("fmiInitializeSlave", self._component, *self._experiment)
         self._initialized = True
         self._do_step = self.function("fmiDoStep")
@@ -86,7 +83,6 @@ class Fmi1Unit(Instance):
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
-        """See `unit.Unit`."""
         self._step_size.value = step_size
         for i in range(count):
             self._time.value = time + i * step_size
@@ -95,14 +91,12 @@ class Fmi1Unit(Instance):
                 self.judge_step(status)
 
     def judge_step(self, status: int) -> None:
-        """See `Instance`."""
         self._judge_step("fmiDoStep", status)
 
     def _listen_to_trouble(self) -> None:
         """FMI 1.0 has no log categories to choose from."""
 
     def terminate(self) -> None:
-        """See `unit.Unit`."""
         if self._initialized:
             self._initialized = False
             self._end("fmiTerminateSlave")

@@ -16,7 +16,7 @@ _MODEL_EXCHANGE, _CO_SIMULATION = ctypes.c_int(0), ctypes.c_int(1)
 
 
 class Fmi2Unit(Instance):
-    """See `Instance`."""
+    """An `Instance` of FMI 2.0."""
 
     fmi = "fmi2"
     _kind = _CO_SIMULATION
@@ -35,7 +35,6 @@ class Fmi2Unit(Instance):
         return component
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
         known = stop_time is not None
         self._call(
             "fmi2SetupExperiment", self._component,
@@ -45,7 +44,6 @@ class Fmi2Unit(Instance):
         self._call("fmi2EnterInitializationMode", self._component)
 
     def exit_initialization(self) -> None:
-        """See `unit.Unit`."""
         self._call("fmi2ExitInitializationMode", self._component)
         self._initialized = True
         self._prepare_steps()
@@ -57,7 +55,6 @@ class Fmi2Unit(Instance):
         self._no_set_state = ctypes.c_int(1)
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
-        """See `unit.Unit`."""
         self._step_size.value = step_size
         for i in range(count):
             self._time.value = time + i * step_size
@@ -66,12 +63,11 @@ class Fmi2Unit(Instance):
                 self.judge_step(status)
 
     def judge_step(self, status: int) -> None:
-        """See `Instance`."""
         self._judge_step("fmi2DoStep", status)
 
 
 class Fmi2ModelExchange(ModelExchange, Fmi2Unit):
-    """See `ModelExchange`."""
+    """A `ModelExchange` of FMI 2.0."""
 
     _kind = _MODEL_EXCHANGE
     _flag = ctypes.c_int

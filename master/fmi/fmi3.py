@@ -16,7 +16,7 @@ _FALSE, _TRUE = ctypes.c_bool(False), ctypes.c_bool(True)
 
 
 class Fmi3Unit(Instance):
-    """See `Instance`."""
+    """An `Instance` of FMI 3.0."""
 
     fmi = "fmi3"
     _true = _TRUE
@@ -37,7 +37,7 @@ class Fmi3Unit(Instance):
         return component
 
     def _about(self, folder: Path, token: str) -> tuple[Any, ...]:
-        """The arguments that all kinds of FMI 3.0 have: name, token, resources, invisible, logging."""
+        """Return the arguments that all kinds of FMI 3.0 have: name, token, resources, invisible, logging."""
         return (
             ctypes.c_char_p(self.name.encode()),
             ctypes.c_char_p(token.encode()),
@@ -47,18 +47,16 @@ class Fmi3Unit(Instance):
         )
 
     def arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
-        """See `Instance`; the values have a count of their own."""
+        """Return the arguments of a get or set function: the values have a count of their own."""
         return self._component, references, ctypes.c_size_t(count), values, ctypes.c_size_t(count)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
         stop = ctypes.c_bool(stop_time is not None), ctypes.c_double(stop_time or 0.0)
         start = ctypes.c_double(start_time)
         tolerance = ctypes.c_bool(self.tolerance is not None), ctypes.c_double(self.tolerance or 0.0)
         self._call("fmi3EnterInitializationMode", self._component, *tolerance, start, *stop)
 
     def exit_initialization(self) -> None:
-        """See `unit.Unit`."""
         self._call("fmi3ExitInitializationMode", self._component)
         self._initialized = True
         self._prepare_steps()
@@ -72,10 +70,9 @@ class Fmi3Unit(Instance):
         self._step_arguments = (
             self._component, self._time, self._step_size, _TRUE, ctypes.byref(self._event),
             ctypes.byref(self._ending), ctypes.byref(self._early), ctypes.byref(self._reached),
-        )  # fmt: skip # the last four are what the step answers
+        )  # fmt: skip # the step writes the last four
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
-        """See `unit.Unit`."""
         self._step_size.value = step_size
         for i in range(count):
             self._time.value = time + i * step_size
@@ -84,7 +81,7 @@ class Fmi3Unit(Instance):
                 self.judge_step(status)
 
     def judge_step(self, status: int) -> None:
-        """See `Instance`; a step may neither end the simulation nor, since that is not allowed, end early."""
+        """Judge a step, which may neither end the simulation nor, since that is not allowed, end early."""
         if status:
             self._judge("fmi3DoStep", status)
         if self._ending:
@@ -97,7 +94,7 @@ class Fmi3Unit(Instance):
 
 
 class _DiscreteStates(ctypes.Structure):
-    """What fmi3UpdateDiscreteStates answers, in its order, under the names of FMI 2.0."""
+    """The results of fmi3UpdateDiscreteStates, in its order, under the names of FMI 2.0."""
 
     _fields_ = [
         ("newDiscreteStatesNeeded", ctypes.c_bool),
@@ -110,7 +107,7 @@ class _DiscreteStates(ctypes.Structure):
 
 
 class Fmi3ModelExchange(ModelExchange, Fmi3Unit):
-    """See `ModelExchange`."""
+    """A `ModelExchange` of FMI 3.0."""
 
     _flag = ctypes.c_bool
     _derivatives = "GetContinuousStateDerivatives"

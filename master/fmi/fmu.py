@@ -1,4 +1,4 @@
-"""FMU files: reading the description, extracting the archive, and what they tell the plan."""
+"""FMU files: reading the description, extracting the archive, and the interface that a plan is made of."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _SHOWN_DEFECTS = 5
 class Fmu:
     """An FMU file that was read: `description` is FMPy's ModelDescription.
 
-    `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are what is wrong with
-    the description and was tolerated, one sentence each with what was assumed;
-    `negated` the variables of FMI 1.0 whose value is that of their reference with the other sign;
-    `wanted` the interface that shall be used, where it is not the default (see `using`).
+    `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are those of the
+    description that were tolerated, one sentence each with what was assumed;
+    `negated` are the variables of FMI 1.0 whose value is that of their reference with the other sign;
+    `wanted` is the interface to use, where it is not the default (see `using`).
     """
 
     path: Path
@@ -42,7 +42,7 @@ class Fmu:
     wanted: InterfaceType | None = None
 
     def using(self, interface: InterfaceType | None) -> Fmu:
-        """The same FMU by this interface (None: Co-Simulation where there is one, else Model Exchange).
+        """Return the FMU by this interface (None: Co-Simulation where there is one, else Model Exchange).
 
         Raises FmuError when it does not have it.
         """
@@ -59,7 +59,7 @@ class Fmu:
 
     @functools.cached_property
     def interface(self) -> UnitInterface:
-        """What the FMU offers, as the plan needs it. Raises FmuError for numbers that are none."""
+        """The variables and units of measure, as a plan needs them. Raises FmuError for malformed numbers."""
         try:
             return _interface(self)
         except ValueError as error:
@@ -73,7 +73,7 @@ class Fmu:
 
     @property
     def binary(self) -> str:
-        """Where the library for this machine stands, or would stand, in the archive."""
+        """The entry of the library for this machine, which need not be there."""
         from fmpy import platform, platform_tuple, sharedLibraryExtension
 
         folder = platform if self.description.fmiVersion[0] in "12" else platform_tuple
@@ -81,7 +81,7 @@ class Fmu:
 
     @property
     def interface_type(self) -> InterfaceType:
-        """Which interface is used. Raises FmuError for an FMU that has none of the two."""
+        """The interface that is used. Raises FmuError for an FMU that has none of the two."""
         md = self.description
         if md.coSimulation is None and md.modelExchange is None:
             raise FmuError(f"{self.path}: has neither a Co-Simulation nor a Model Exchange interface")
@@ -100,7 +100,7 @@ class Fmu:
 
     @property
     def holds_python(self) -> bool:
-        """Whether it was made with pythonfmu, so that its steps run in this process's interpreter."""
+        """True of an FMU made with pythonfmu, whose steps run in this process's interpreter."""
         return "resources/slavemodule.txt" in self.entries
 
     def extract(self) -> Path:
@@ -108,10 +108,10 @@ class Fmu:
         return extract(self.path)
 
     def resources_uri(self, folder: Path) -> bytes:
-        """The URI of the resources in an extracted folder, as the library takes it.
+        """Return the URI of the resources in an extracted folder, as the library takes it.
 
         That of pythonfmu decodes %20 and nothing else, and without its resources it ends the process: it gets
-        the other characters as they are. Raises FmuError for a folder that cannot be told to it.
+        the other characters as they are. Raises FmuError for a folder that no such URI names.
         """
         resources = folder / "resources"
         if not self.holds_python or sys.platform == "win32":
@@ -131,7 +131,7 @@ class Fmu:
 def read_fmu(path: Path, strict: bool = False) -> Fmu:
     """Read an FMU's description. Raises FmuError when it is none, or is damaged.
 
-    What can be tolerated is a defect of the Fmu; with `strict` it is a FmuError too.
+    A tolerable defect is kept in `Fmu.defects`; with `strict` it is a FmuError too.
     """
     entries = entries_of(path)
     names = tuple(entry.filename for entry in entries)
@@ -149,7 +149,7 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
 
 
 def _elsewhere(names: tuple[str, ...]) -> str:
-    """Where the description stands instead."""
+    """Return a clause that names the place where the description stands instead."""
     deeper = next((n for n in names if n.endswith(f"/{_DESCRIPTION}")), None)
     if deeper is not None:
         folder = deeper.removesuffix(_DESCRIPTION)
@@ -173,7 +173,7 @@ def check_runnable(fmu: Fmu) -> None:
 
 
 def is_true(kind: Any, capability: str) -> bool:
-    """Whether an interface (`Fmu.kind`) declares a capability; FMPy leaves some as text."""
+    """Return True if an interface (`Fmu.kind`) declares a capability; FMPy leaves some as text."""
     return str(getattr(kind, capability, None)).strip().lower() in ("true", "1")
 
 
@@ -196,7 +196,7 @@ def _names(variables: Any) -> tuple[str, ...] | None:
 
 
 def _unusable(fmu: Fmu) -> dict[str, str]:
-    """The variables that no one can ask for, with the reason."""
+    """Return the variables that cannot be used, with the reason."""
     found: dict[str, str] = {}
     inputs: dict[tuple[str, int], str] = {}
     version = fmu.description.fmiVersion
@@ -214,7 +214,7 @@ def _unusable(fmu: Fmu) -> dict[str, str]:
 
 
 def _why_unusable(v: Any, kind: FmiType | None, negated: bool) -> str:
-    """Why no value of a variable can be asked for ("": it can)."""
+    """Return the reason why a variable cannot be used; "" for one that can."""
     if negated and (kind is None or kind.kind not in (REAL, INTEGER)):
         return f"is a negated alias of type {v.type}, which is not supported"
     if v.clocks:
@@ -255,7 +255,7 @@ def _variable(
 
 
 def _inherited(v: Any, attribute: str) -> Any:
-    """An attribute of a variable, else of its declared type (FMI 2.0 section 2.2.3)."""
+    """Return an attribute of a variable, else of its declared type (FMI 2.0, section 2.2.3)."""
     own = getattr(v, attribute, None)
     return own if own is not None else getattr(v.declaredType, attribute, None)
 

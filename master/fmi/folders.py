@@ -1,4 +1,4 @@
-"""Where FMUs are extracted to: all units of an FMU in this process have one folder, and so one library.
+"""The folders that FMUs are extracted to: all units of an FMU in this process have one, and so one library.
 
 Its code then stands in the processor's caches once, however many units there are. The library is unloaded and
 the folder removed with the last of them.
@@ -25,7 +25,7 @@ _lock = threading.Lock()
 
 
 def take(fmu: Fmu, unit: str) -> Path:
-    """The folder of an FMU for one more unit.
+    """Return the folder of an FMU for one more unit.
 
     Raises FmuError where it cannot be extracted, or can be instantiated once in a process and is.
     """
@@ -44,7 +44,7 @@ def take(fmu: Fmu, unit: str) -> Path:
 
 
 def give_back(fmu: Fmu, unit: str) -> None:
-    """A unit no longer needs the folder; its library is closed."""
+    """Remove the folder if this was the last unit that needs it; the unit's library is closed."""
     with _lock:
         folder = _folders[fmu.digest]
         folder.units.remove(unit)

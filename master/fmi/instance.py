@@ -1,11 +1,10 @@
-"""What the units of all FMI versions share: the transfers of a step, single values, statuses, the end.
+"""An FMU in this process: its life from loading to freeing, single values, and the statuses of its calls.
 
 FMI 1.0, 2.0 and 3.0 differ in the names of types, in the order of the calls before the first step, and in
-what a step answers. In a step we call the function pointers with arguments made once: value references,
-counts, and buffers that are parts of the run's memory where the FMI type is that of the memory.
+what a step returns. In a step we call function pointers with arguments made once (`binding`).
 
-A class for a version or a kind (Co-Simulation, Model Exchange) defines, see there:
-  `fmi`               what the names of its C functions begin with; `_prefix`: what stands before that
+A class for a version or a kind (Co-Simulation, Model Exchange) defines, described there:
+  `fmi`               the first part of the names of its C functions; `_prefix`: the text before that
   `_instantiate`      the one call that makes the component
   `arguments`         those of a function that gets or sets values, where they are not those of FMI 2.0
   `enter_initialization`, `exit_initialization`, `start_step`; `_free_instance`, where it has another name
@@ -45,20 +44,20 @@ _TROUBLE = ("warn", "discard", "error", "fatal", "pending")
 
 
 class Instance:
-    """An instance of an FMU in this process. See `unit.Unit` for the order of the calls.
+    """An instance of an FMU in this process: a `unit.Unit`, which describes the calls and their order.
 
-    `interface` is how the system sees it, where that is not as the FMU declares it.
+    `interface` is the system's view of the unit, where that is not as the FMU declares it.
     Raises FmuError when the FMU cannot be run here or instantiated, UnitError when a call fails.
     """
 
     fmi: str
-    """What the names of the C functions begin with."""
+    """The first part of the names of the C functions."""
     _true: Any = ctypes.c_int(1)
     """True as an argument of a C function."""
     _statuses = 6
-    """How many statuses the version knows."""
+    """The number of statuses of the version."""
     step_call: StepCall | None = None
-    """What does a step, known when the initialization is left."""
+    """The C step function with its arguments; None before `exit_initialization`."""
 
     def __init__(
         self,
@@ -78,7 +77,7 @@ class Instance:
         self._library: Any = None
         self._initialized = False
         self._folder: Path | None = None
-        self._crash_note = self._take_part_in_crash_report()
+        self._crash_note = self._joined_crash_report()
         try:
             folder = self._folder = folders.take(fmu, name)
             self._library = self._load(folder)
@@ -92,7 +91,7 @@ class Instance:
         except BaseException:
             self.free()
             raise
-        # what `bind` makes: the transfers of a turn, and the calls (see `unit.Unit`) that do them
+        # made by `bind`: the transfers of a turn, and the calls of `unit.Unit` that do them
         self.inputs: list[Transfer] = []
         self.through: list[Transfer | Copy] = []
         self.outputs: list[Transfer] = []
@@ -100,8 +99,8 @@ class Instance:
         self.get_feedthrough: Call = one_after_the_other()
         self.get_outputs: Call = one_after_the_other()
 
-    def _take_part_in_crash_report(self) -> Call:
-        """Return a call that notes that this unit is called; it does nothing where no one asked for that."""
+    def _joined_crash_report(self) -> Call:
+        """Return a call that notes that this unit is called now; without a report it does nothing."""
         report = crash.report()
         if report is None:
             return one_after_the_other()
@@ -110,28 +109,28 @@ class Instance:
         return note
 
     def _noting(self, call: Call) -> Call:
-        """A call of a step, which notes before that this unit is called, where someone asked for that."""
+        """Return a call of a turn; where there is a crash report, it notes first that this unit is called."""
         return call if crash.report() is None else one_after_the_other(self._crash_note, call)
 
     def _listen_to_trouble(self) -> None:
-        """Leave out the log categories that tell of each call: they cost more than steps, and drown the
-        reason of a failure. An FMU that declares no category of trouble goes on telling all."""
+        """Choose the log categories of trouble. Those that log each call cost more than steps, and drown the
+        reason of a failure. An FMU that declares no category of trouble goes on logging all."""
         names = [c.name or "" for c in self.fmu.description.logCategories]
         chosen = [name for name in names if any(word in name.lower() for word in _TROUBLE)]
         function = f"{self.fmi}SetDebugLogging"
         if chosen and len(chosen) < len(names) and self._library.has(function):
             texts = (ctypes.c_char_p * len(chosen))(*(name.encode() for name in chosen))
-            # an FMU that refuses goes on telling all
+            # an FMU that refuses goes on logging all
             self.function(function)(self._component, self._true, ctypes.c_size_t(len(chosen)), texts)
 
     # ---- what differs between the versions
 
     def _instantiate(self, folder: Path) -> int | None:
-        """Call the version's function; the component, or None (0) when the FMU refuses."""
+        """Call the version's function and return the component, or None (0) when the FMU refuses."""
         raise NotImplementedError
 
     def arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
-        """The arguments of a function that gets or sets values."""
+        """Return the arguments of a function that gets or sets `count` values."""
         return self._component, references, ctypes.c_size_t(count), values
 
     def _load(self, folder: Path) -> Library:
@@ -148,7 +147,7 @@ class Instance:
         return ""
 
     def function(self, name: str, result: Any = ctypes.c_int) -> Any:
-        """A C function of the FMU. Raises FmuError when its library lacks it."""
+        """Return a C function of the FMU. Raises FmuError when its library lacks it."""
         try:
             return self._library.function(name, result)
         except AttributeError as error:
@@ -156,22 +155,21 @@ class Instance:
 
     @property
     def warnings(self) -> int:
-        """See `unit.Unit`."""
         return self.log.warnings
 
     @property
     def tolerance(self) -> float | None:
-        """The relative tolerance that the FMU is told; None: none."""
+        """The relative tolerance that the FMU gets; None: none."""
         return self._tolerance
 
     # ---- before the steps
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
+        """Set the experiment up and enter initialization mode (times in s)."""
         raise NotImplementedError
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        """See `unit.Unit`. Makes the calls of a turn, with all their arguments."""
+        """Make the calls of a turn, with all their arguments. `memory` has the shape (size,)."""
         binding = self._binding = Binding(self, memory)
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
@@ -187,11 +185,11 @@ class Instance:
         self.get_outputs = self._noting(binding.calls(self.outputs))
 
     def judge_transfer(self, transfer: Transfer, status: int) -> None:
-        """Count the warning, or raise the UnitError, that the status of a transfer is."""
+        """Count a warning, or raise UnitError, for the status of a transfer."""
         self._judge(transfer.function, status)
 
     def judge_step(self, status: int) -> None:
-        """The same for a step, also one that ended with status OK but answered that it shall be the last."""
+        """Count a warning, or raise UnitError, for the status of a step, or for one that was the last."""
         raise NotImplementedError
 
     @property
@@ -214,19 +212,18 @@ class Instance:
         )
 
     def type_of(self, variable: VariableInfo) -> FmiType:
-        """The FMI type of a variable of the unit's interface."""
+        """Return the FMI type of a variable of the unit's interface."""
         kind = fmi_type(self.fmu.description.fmiVersion, self._declared[variable.declared_name].type)
         assert kind is not None  # the interface has no other variables
         return kind
 
     def reference(self, name: str) -> int:
-        """The value reference of a variable, by the name that the system uses."""
+        """Return the value reference of a variable, by the name that the system uses."""
         return int(self._declared[self.interface.variables[name].declared_name].valueReference)
 
     # ---- single values
 
     def get(self, name: str) -> Value:
-        """See `unit.Unit`."""
         variable = self.interface.variables[name]
         kind = self.type_of(variable)
         buffer = (kind.c_type * 1)()
@@ -237,7 +234,6 @@ class Instance:
         return -value if variable.inverted else value
 
     def set(self, name: str, value: Value) -> None:
-        """See `unit.Unit`."""
         variable = self.interface.variables[name]
         kind = self.type_of(variable)
         if isinstance(value, str):
@@ -281,23 +277,21 @@ class Instance:
     # ---- the end
 
     def finish_step(self) -> None:
-        """See `unit.Unit`: nothing is left to do."""
+        """Return at once: `start_step` has done the steps."""
 
     def terminate(self) -> None:
-        """See `unit.Unit`."""
         if self._initialized:
             self._initialized = False
             self._end(f"{self.fmi}Terminate")
 
     def _end(self, name: str) -> None:
-        """Call the function that terminates; a library that lacks it is not kept from ending."""
+        """Call the function that terminates; a library that lacks it ends without."""
         if self._library.has(name):
             self._call(name, self._component)
         else:
             self.log.add(_WARNING, f"the library lacks the function {name}")
 
     def free(self) -> None:
-        """See `unit.Unit`."""
         component, self._component = self._component, None
         library, self._library = self._library, None
         self._crash_note()
@@ -316,10 +310,10 @@ class Instance:
     def _free_instance(self, library: Library, component: Any) -> None:
         library.function(f"{self.fmi}FreeInstance", None)(component)
 
-    # ---- what a call answers
+    # ---- statuses
 
     def _call(self, name: str, *arguments: Any, of: str = "") -> None:
-        """Call a C function and judge its status; `of` is the variable that it is about."""
+        """Call a C function and judge its status; `of` is the variable of the call."""
         self._crash_note()
         status = self.function(name)(*arguments)
         if status:
@@ -331,25 +325,25 @@ class Instance:
         self.log.warnings += 1
 
     def _judge_step(self, what: str, status: int) -> None:
-        """`_judge`, with what FMI 1.0 and 2.0 tell of a step that was not done."""
+        """Judge the status of a step, with the reason that FMI 1.0 and 2.0 give for one that was not done."""
         also = beside(status, self.fmi, self._library, self._component)
         if also:
             self._fail(what, status, also)
         self._judge(what, status)
 
     def _fail(self, what: str, status: int, also: str = "") -> NoReturn:
-        """Raise UnitError; `also` is what is known beyond the status, with what joins it to that."""
+        """Raise UnitError; `also` is a clause that follows the status, with its punctuation."""
         if self.fmu.holds_python and "KeyboardInterrupt" in self.log.last(1):
             raise KeyboardInterrupt  # Ctrl-C reached the interpreter while it was inside the model
         word = STATUS[status] if 0 <= status < self._statuses else "no FMI status"
         raise UnitError(f"unit '{self.name}': {what} returned {word} ({status}){also}{self._said()}")
 
     def _said(self) -> str:
-        """The unit's last words on lines of their own; "" where it said nothing."""
+        """Return the unit's last messages on lines of their own; "" where there are none."""
         said = self.log.last()
         return f"\n{said}" if said else ""
 
 
 def resources_path(folder: Path) -> bytes:
-    """FMI 3.0's resourcePath: the path of the resources with a separator behind it."""
+    """Return FMI 3.0's resourcePath: the path of the resources with a separator behind it."""
     return os.fsencode(folder / "resources") + os.sep.encode()

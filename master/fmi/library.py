@@ -1,8 +1,8 @@
 """The shared library of an FMU: its C functions by name, without the argument lists of any FMI version.
 
-What is passed must be ctypes objects, which ctypes then passes on as they are: that takes a third of the time
-of functions with declared arguments. A function that the library lacks is missed only when it is asked for:
-real FMUs leave out what the standard demands and nobody calls.
+Arguments must be ctypes objects, which ctypes then passes on as they are: that takes a third of the time of
+functions with declared arguments. A function that the library lacks is missed only when it is looked up: real
+FMUs leave out functions that the standard demands and nobody calls.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class Library:
             os.chdir(before)
 
     def function(self, name: str, result: Any = ctypes.c_int) -> Any:
-        """A C function; `result` is its ctypes type. Raises AttributeError when the library lacks it."""
+        """Return a C function with a result of a ctypes type. Raises AttributeError for a missing one."""
         function = self._library[self.prefix + name]
         function.restype = result
         return function
 
     def has(self, name: str) -> bool:
-        """Whether the library has a function."""
+        """Return True if the library has a function."""
         return hasattr(self._library, self.prefix + name)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""From an FMU that was read to a unit of a run: which class answers `unit.Unit` for it."""
+"""From an FMU that was read to a unit of a run, of the class for its version and interface."""
 
 from __future__ import annotations
 

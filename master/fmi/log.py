@@ -23,7 +23,7 @@ _KEPT = 100
 _RECENT = 20
 _LONGEST = 2000  # characters of a message that are kept
 _queues: dict[int, UnitLog] = {}
-# FMI 1.0 tells units apart by their component, which is known only when instantiation ends
+# a unit of FMI 1.0 is known by its component, which there is only when instantiation ends
 _instantiating: list[UnitLog] = []
 _ids = itertools.count(1)
 
@@ -32,7 +32,7 @@ class UnitLog:
     """The last messages of one unit, and how many warnings it gave."""
 
     listener: ClassVar[Callable[[int, str], None] | None] = None
-    """In the process of an isolated unit: told of each message at once, since the process may end with it."""
+    """Called with each message at once, in the process of an isolated unit, which may end with it."""
 
     def __init__(self) -> None:
         self.id = next(_ids)
@@ -42,7 +42,7 @@ class UnitLog:
         _queues[self.id] = self
 
     def callbacks(self) -> fmi2CallbackFunctions:
-        """FMI 2.0's callback structure to instantiate the unit with; keep it as long as the unit lives."""
+        """Return FMI 2.0's callback structure for the instantiation; keep it as long as the unit lives."""
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = _receive
         callbacks.allocateMemory = AllocateMemory(calloc)
@@ -54,7 +54,7 @@ class UnitLog:
         return callbacks
 
     def callbacks_1(self) -> fmi1CallbackFunctions:
-        """The same for FMI 1.0."""
+        """Return FMI 1.0's callback structure; keep it as long as the unit lives."""
         callbacks = fmi1CallbackFunctions()
         callbacks.logger = ctypes.cast(_receive, Logger1)
         callbacks.allocateMemory = AllocateMemory1(calloc)
@@ -65,7 +65,7 @@ class UnitLog:
 
     @contextlib.contextmanager
     def instantiating(self) -> Iterator[None]:
-        """What an FMI 1.0 unit says in here is this log's."""
+        """Take the messages of an FMI 1.0 unit without a component in the `with` block as this log's."""
         _instantiating.append(self)
         try:
             yield
@@ -73,7 +73,7 @@ class UnitLog:
             _instantiating.remove(self)
 
     def belongs_to(self, component: int) -> None:
-        """Receive what the FMI 1.0 unit with this component says."""
+        """Receive the messages of the FMI 1.0 unit with this component."""
         self._keys.append(component)
         _queues[component] = self
 
@@ -86,7 +86,7 @@ class UnitLog:
         self.warnings += status == 1
 
     def last(self, count: int = 3) -> str:
-        """The last messages, one in a line; empty when there is none.
+        """Return the last messages, one in a line; "" when there is none.
 
         Of the last 20 those that are not of status OK, where there are any: they are the reason.
         """

@@ -1,4 +1,4 @@
-"""Why an FMU was not instantiated, as far as it can be known."""
+"""The reason why an FMU was not instantiated, as far as it can be known."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 from .fmu import Fmu, is_true
 
 _GUID = re.compile(rb"[0-9a-fA-F]{8}(?:-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}")
-_TELLS = re.compile(r"^(?!\[OK\]).*(guid|instantiation ?token)", re.IGNORECASE | re.MULTILINE)
+_ABOUT_GUID = re.compile(r"^(?!\[OK\]).*(guid|instantiation ?token)", re.IGNORECASE | re.MULTILINE)
 
 
 def why_refused(fmu: Fmu, library: Path, said: str) -> str:
-    """A clause that begins with ": ", with the FMU's own words `said` where there are any.
+    """Return a clause that begins with ":" and ends with the FMU's own words `said`, where there are any.
 
     The usual reason is a GUID (FMI 3.0: instantiationToken) that is not that of the library: the FMU says so,
     or its library holds another one. Another is the absence of the tool that the FMU needs.
@@ -26,7 +26,7 @@ def why_refused(fmu: Fmu, library: Path, said: str) -> str:
         return (
             f": modelDescription.xml has the {name} '{declared}', its library holds '{other}': {apart}{words}"
         )
-    if _TELLS.search(said):
+    if _ABOUT_GUID.search(said):
         return f": it does not accept the {name} '{declared}' of modelDescription.xml: {apart}{words}"
     if is_true(fmu.kind, "needsExecutionTool") and not fmu.holds_python:
         tool = description.generationTool or "it does not say which"
@@ -35,7 +35,7 @@ def why_refused(fmu: Fmu, library: Path, said: str) -> str:
 
 
 def _other_guid(library: Path, declared: str) -> str:
-    """The one GUID in a library that does not hold the declared one; "" when that cannot be said."""
+    """Return the one GUID in a library that does not hold the declared one; "" when there is no such."""
     content = library.read_bytes()
     bare = declared.strip("{} ").encode()
     if not bare or bare in content:

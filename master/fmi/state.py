@@ -1,6 +1,6 @@
 """Saving and restoring the state of a unit of FMI 2.0 or 3.0. No run needs it; a trial tests it.
 
-Whether an FMU can is not asked here: what it declares is often wrong, in both directions.
+The FMU's own declaration that it can is not looked at here: it is often wrong, in both directions.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class States:
         self._numbers = itertools.count(1)
 
     def save(self) -> int:
-        """Save the state; its number. Raises FmuError where a function is missing, UnitError otherwise."""
+        """Save the state and return its number. Raises FmuError for a missing function, else UnitError."""
         saved, number = ctypes.c_void_p(), next(self._numbers)
         self._call("Get", ctypes.byref(saved))
         if not saved:

@@ -1,4 +1,4 @@
-"""The ModelStructure of a description: what it says of variables that are not there is left out and told."""
+"""The ModelStructure of a description: entries for variables that are not there are left out and reported."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _OF_FMI_3 = ("Output", "ContinuousStateDerivative", "ClockedState", "InitialUnkn
 
 
 def mend_structure(root: Any, places: Mapping[int, int]) -> list[str]:
-    """Leave out unknowns that name no variable, and say so.
+    """Leave out unknowns that name no variable, and return a sentence for each.
 
     `places` are the indices of the variables of FMI 2.0, from 1 on, as the file counts them, and as they are
     without those that were left out.

@@ -1,4 +1,4 @@
-"""What FMPy's reader of descriptions leaves out: most of FMI 1.0, and the limits of FMI 3.0's UInts."""
+"""The parts that FMPy's reader of descriptions leaves out: most of FMI 1.0, the limits of FMI 3.0's UInts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def supplement(description: Any, root: Any) -> None:
 
 
 def _capabilities(description: Any, root: Any) -> None:
-    """Those of a slave of FMI 1.0; one of the type CoSimulation_Tool needs its tool."""
+    """Read those of a slave of FMI 1.0; one of the type CoSimulation_Tool needs its tool."""
     for found in root.findall("Implementation/*"):
         if found.tag == "CoSimulation_Tool":
             description.coSimulation.needsExecutionTool = True
@@ -54,5 +54,5 @@ def _is_unsigned(root: Any, name: str) -> bool:
 
 
 def negated_aliases(root: Any) -> frozenset[str]:
-    """The variables of FMI 1.0 whose value is that of their reference with the other sign."""
+    """Return the variables of FMI 1.0 whose value is that of their reference with the other sign."""
     return frozenset(v.get("name") for v in root.iter("ScalarVariable") if v.get("alias") == "negatedAlias")

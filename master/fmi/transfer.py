@@ -1,6 +1,6 @@
 """The values of a turn between the run's memory, which holds doubles, and a unit, which has FMI types.
 
-Real values in the order of the memory are given and taken in place. All others pass through a buffer of
+Doubles that stand in the memory in order are given and taken in place. All others pass through a buffer of
 their C type: a number that the type does not hold is refused there, since C would make another one of it.
 """
 
@@ -15,7 +15,7 @@ from .types import BOOLEAN, LARGEST_WHOLE, REAL, FmiType
 
 Call = Callable[[], None]
 Refusal = Callable[[int, Any], NoReturn]
-"""Raises the error for a value that does not fit: its place in the buffer, and the value."""
+"""(place in the buffer, value): raises the error for a value that does not fit."""
 
 
 class Item(NamedTuple):
@@ -46,8 +46,11 @@ class Transfer:
 
 @dataclasses.dataclass(frozen=True)
 class StepCall:
-    """The C function that does a step; FMI 3.0's is given where to answer `answers`: whether there was an
-    event, whether the simulation shall end, whether the step ended early, and the time reached."""
+    """The C function that does a step.
+
+    `answers` are the variables that FMI 3.0's function writes: flags for an event, for the end of the
+    simulation and for an early end of the step, and the time reached.
+    """
 
     pointer: Any
     answers: tuple[Any, ...] = ()
@@ -55,7 +58,7 @@ class StepCall:
 
 @dataclasses.dataclass(frozen=True)
 class Copy:
-    """`count` slots of the memory are copied."""
+    """A copy of `count` slots of the memory, from `source` on to `target` on."""
 
     source: int
     target: int

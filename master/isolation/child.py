@@ -1,7 +1,7 @@
 """The process of one unit: python -m evcosim.master.isolation.child, with the file descriptors of the socket,
 of the shared memory and of the pipe that ends with the master, and the limits of memory and files in bytes.
 
-It does what the master asks for until the socket ends. Its limits hold before any code of the FMU runs.
+It carries out the master's requests until the socket ends. Its limits hold before any code of the FMU runs.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ import threading
 from typing import Any
 
 from . import framing, shared
-from .handover import Line
+from .handover import Side
 from .shared import Shared
 
 _SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 
 
 def main() -> None:
-    """Serve one unit."""
+    """Load one unit, and serve it to the end."""
     connection, memory, life = map(int, sys.argv[1:4])
     for descriptor in (connection, memory, life):
-        os.set_inheritable(descriptor, False)  # what the FMU starts shall not keep them open
+        os.set_inheritable(descriptor, False)  # processes of the FMU do not keep them open
     _end_with_master(life)
     _adopt()
     _limit(resource.RLIMIT_CORE, 0.0)
@@ -38,7 +38,7 @@ def main() -> None:
     with open(framing.LOADING, "rb") as file:
         arguments = pickle.load(file)  # the master's, and no code of the FMU has run
     os.remove(framing.LOADING)
-    _Server(socket.socket(fileno=connection), Shared(memory)).serve(arguments)
+    Server(socket.socket(fileno=connection), Shared(memory)).serve(arguments)
 
 
 def _end_with_master(life: int) -> None:
@@ -64,7 +64,7 @@ def _watch(life: int) -> None:
 
 
 def _adopt() -> None:
-    """What a process that we started leaves behind becomes our child, so that the master finds it."""
+    """Adopt processes whose own parent, a process of ours, has ended, so that the master finds them."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
@@ -76,25 +76,25 @@ def _limit(kind: int, most: float) -> None:
         resource.setrlimit(kind, (limit, limit))
 
 
-class _Server:
-    """The unit, and what is asked of it."""
+class Server:
+    """The unit, and the requests to it: a turn, a method of the unit, or one of the methods do_... here."""
 
     def __init__(self, connection: socket.socket, memory: Shared) -> None:
         self.connection, self.memory, self.slots = connection, memory, memory.slots
         mine, theirs = (shared.ANSWER, shared.CHILD_SLEEPS), (shared.REQUEST, shared.MASTER_SLEEPS)
-        self.line = Line(connection, memory.slots, mine, theirs, memory.slots[shared.SPIN])
+        self.side = Side(connection, memory.slots, mine, theirs, memory.slots[shared.SPIN])
         self.unit: Any = None
 
     def serve(self, loading: tuple[Any, ...]) -> None:
         """Load the unit, then answer until the master has gone."""
-        line, number = self.line, 1.0
+        side, number = self.side, 1.0
         try:
             self._answer(number, "load", loading)
             while True:
                 number += 1.0
-                frame = b"" if line.comes(number) else line.sleep_until(number, sys.maxsize)
+                frame = b"" if side.comes(number) else side.sleep_until(number, sys.maxsize)
                 if self.slots[shared.KIND] == shared.CALL:
-                    self._answer(number, *pickle.loads(frame or line.frame(sys.maxsize)))
+                    self._answer(number, *pickle.loads(frame or side.frame(sys.maxsize)))
                 else:
                     self._turn(number)
         except EOFError:
@@ -127,12 +127,12 @@ class _Server:
         self._post(number, answer)
 
     def _post(self, number: float, frame: bytes) -> None:
-        """Say that a request is done, with a frame where there is more to say than that."""
+        """Hand the turn over: the request is done, with a frame where there is an answer or an error."""
         slots = self.slots
         if self.unit is not None:
             slots[shared.WARNINGS] = self.unit.warnings
         slots[shared.FRAME] = 1.0 if frame else 0.0
-        self.line.post(number)
+        self.side.post(number)
         if frame:
             framing.send(self.connection, frame)
 

@@ -1,4 +1,4 @@
-"""Whether a unit gets a process of its own."""
+"""The decision for or against a process of its own for a unit."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .process import ProcessLimits
 
 
 def chosen(name: str, fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> Isolation:
-    """What is asked for, for all units or for this one; else processes for FMUs that evcosim did not build.
+    """Return the isolation wanted for all units or for this one; else "none" for our FMUs alone.
 
-    Raises ConfigError where that is a process and the system has none: nobody else's code comes into this
-    process unasked.
+    Raises ConfigError for "process" on a system that has none: nobody else's code comes into this process
+    unasked.
     """
     asked = wanted or entry.isolation
     found = asked or ("none" if is_builtin(fmu.description.modelName, fmu.path) else "process")
@@ -29,10 +29,10 @@ def chosen(name: str, fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> I
 
 
 def available() -> bool:
-    """Whether this system has what processes of units need: Windows has not."""
+    """Return True on a system where units can have processes: not on Windows."""
     return os.name == "posix"
 
 
 def process_limits(entry: UnitEntry) -> ProcessLimits:
-    """The limits of a unit's process."""
+    """Return the limits of a unit's process from its entry in the system file."""
     return ProcessLimits(entry.memory_limit, entry.file_limit, entry.load_timeout, entry.step_timeout)

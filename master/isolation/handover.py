@@ -1,8 +1,9 @@
-"""Handing a turn over between two processes: both look at a number in the shared memory, then sleep.
+"""The handover of a turn between two processes: both look at a number in the shared memory, then sleep.
 
-A request has a number, and so has the answer to it. Who waits looks at the other's number for a short time
-and gives its core away between two looks, so that more processes than cores do not stop each other. Then it
-says that it sleeps and reads from the socket, and who writes a number rings the bell of one that sleeps.
+A request has a number, and the answer to it has the same. The side that waits looks at the other's number
+for a short time and gives its core away between two looks, so that more processes than cores do not stop each
+other. Then it sets the flag that it sleeps and reads from the socket; a side that writes a number rings the
+bell of one that sleeps.
 
 Memory order: x86 makes the stores of one core visible in their order and does loads in theirs, so that
 whoever sees a number sees what was written before it. A store may pass a later load, though: each side,
@@ -26,17 +27,20 @@ _LOOKS = 20  # between two readings of the clock
 _give_way: Callable[[], None] = getattr(os, "sched_yield", lambda: time.sleep(0.0))  # macOS has none
 
 SPIN = 300e-6
-"""How long a side looks before it sleeps [s]: a few times what sleeping and waking costs."""
+"""The time [s] that a side looks before it sleeps: a few times what sleeping and waking costs."""
 
 
 def spin_time() -> float:
-    """How long a side looks on this machine [s]; 0: it sleeps at once, and a bell follows each number."""
+    """Return the time [s] that a side looks here; 0: it sleeps at once, and a bell follows each number."""
     return SPIN if _ORDERED else 0.0
 
 
-class Line:
-    """One side. `mine` is the slot of the number that it writes, `theirs` of that which it waits for;
-    `i_sleep` and `they_sleep` say who sleeps. `spin` [s] is the same on both sides."""
+class Side:
+    """One of the two sides of the handover.
+
+    `mine` are the slots of the number that this side writes and of the flag that it sleeps, `theirs` those of
+    the other side. `spin` [s] is the same on both sides.
+    """
 
     def __init__(
         self,
@@ -52,7 +56,7 @@ class Line:
         self._lock = threading.Lock()
 
     def post(self, number: float) -> None:
-        """Write a number; all that belongs to it stands in the memory. Raises OSError."""
+        """Write a number, when all that belongs to it stands in the memory. Raises OSError."""
         slots = self._slots
         slots[self._mine] = number
         self._exchange()
@@ -64,7 +68,7 @@ class Line:
         self._lock.release()
 
     def comes(self, number: float) -> bool:
-        """Look for a number; whether it came in the time."""
+        """Look for a number, and return True if it came in the time."""
         slots, place, give_way = self._slots, self._theirs, _give_way
         if not self._spin:
             return False
@@ -96,7 +100,7 @@ class Line:
             slots[self._i_sleep] = 0.0
 
     def frame(self, most: int, impatience: framing.Impatience = framing.nothing) -> bytes:
-        """The next frame; bells that were rung for nothing are passed over."""
+        """Receive the next frame, passing over bells. Raises as `framing.receive`."""
         while not (frame := framing.receive(self._connection, most, impatience)):
             impatience()
         return frame

@@ -1,4 +1,4 @@
-"""The process of an isolated unit as the master holds it: its start, what it printed, its end."""
+"""The process of an isolated unit as the master holds it: its start, its output, its end."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LOOK = 0.25  # s between two looks at a process that does not answer
 
 @dataclasses.dataclass(frozen=True)
 class ProcessLimits:
-    """What a process may take.
+    """The limits of a process.
 
     `memory` [bytes] of address space and `file` [bytes] of each file that it writes, both may be infinite;
     `loading` [s] for an answer up to the first step, `step` [s] for one after it.
@@ -37,7 +37,7 @@ class ProcessLimits:
 
 
 class Process:
-    """A child that was started, and loads `loading` (see `child`) as soon as it is there.
+    """A child that was started, and loads the FMU of `loading` (arguments of `child.Server.do_load`) at once.
 
     `connection` is its socket; a call of it raises TimeoutError when a quarter of a second has passed.
     """
@@ -67,7 +67,7 @@ class Process:
             stderr=subprocess.STDOUT,
             pass_fds=descriptors,
             cwd=self._folder,
-            start_new_session=True,  # Ctrl-C is the master's alone; what it starts ends with it
+            start_new_session=True,  # Ctrl-C is the master's alone; its own processes end with it
             env=os.environ | {"TMPDIR": str(self._folder), "OPENBLAS_NUM_THREADS": "1"},
         )
 
@@ -77,7 +77,7 @@ class Process:
             raise EOFError("the process ended")
 
     def ending(self) -> str:
-        """How it ended, in words that follow "its process"."""
+        """Wait for its end, and return how it ended, in words that follow "its process"."""
         assert self._process is not None
         try:
             code = self._process.wait(_ENDING)
@@ -93,13 +93,13 @@ class Process:
         return f"ended by itself with exit code {code}"
 
     def printed(self) -> str:
-        """The end of what it printed."""
+        """Return the end of its output, at most 2000 characters."""
         size = self._output.seek(0, os.SEEK_END)
         self._output.seek(max(0, size - 4 * _SAID))
         return self._output.read().decode("utf-8", "replace").strip()[-_SAID:]
 
     def kill(self) -> None:
-        """End it and what it started, also what left its process group, as long as it lives itself."""
+        """End it and the processes that it started, while it lives also those that left its process group."""
         if self._process is not None:
             if self._process.poll() is None:
                 _end_descendants(self._process.pid)
@@ -117,7 +117,7 @@ class Process:
 
 
 def _end_descendants(process: int) -> None:
-    """Kill what a process started, and what that started; where /proc does not tell, nobody."""
+    """Kill the processes that a process started, and theirs; none where there is no /proc that shows them."""
     with contextlib.suppress(OSError):
         for thread in Path(f"/proc/{process}/task").iterdir():
             for child in map(int, (thread / "children").read_text().split()):

@@ -26,7 +26,7 @@ REQUEST, KIND, TIME, STEP_SIZE, COUNT, MASTER_SLEEPS, SPIN = range(7)
 ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES = range(16, 21)
 
 CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
-"""Kinds of requests: a frame says what; steps; steps after the outputs that feed through; outputs alone."""
+"""Kinds of requests: the call in a frame; steps; steps after the outputs that feed through; outputs alone."""
 
 _RING, _KEPT, _TEXT = 32, 20, 2048  # first slot, messages, bytes of one
 _RECORD = 2 + _TEXT // 8  # status, length, text
@@ -34,7 +34,7 @@ _VALUES = -(-(_RING + _KEPT * _RECORD) // 16) * 16
 
 
 def create(count: int) -> int:
-    """A descriptor of a memory for `count` values. The caller closes it."""
+    """Return the descriptor of a new memory for `count` values; the caller closes it."""
     size = 8 * (_VALUES + count)
     import fcntl  # Windows has none, and needs none
 
@@ -49,7 +49,7 @@ def create(count: int) -> int:
 
 
 class Shared:
-    """The memory behind a descriptor: `slots` are the first, `values` those of the unit's slot groups."""
+    """The memory behind a descriptor: `slots` are all of it, `values`, shape (size,), those of the unit."""
 
     def __init__(self, descriptor: int) -> None:
         self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
@@ -58,11 +58,11 @@ class Shared:
         self.values = whole[_VALUES:]
 
     def warnings(self) -> int:
-        """How many warnings the child counts."""
+        """Return the number of warnings that the child has counted."""
         return _count(self.slots[WARNINGS])
 
     def hear(self, status: int, text: str) -> None:
-        """The child's: keep a log message."""
+        """Keep a log message; the child calls it."""
         number = _count(self.slots[_MESSAGES])
         place = _RING + number % _KEPT * _RECORD
         content = text.encode("utf-8", "replace")[:_TEXT]
@@ -72,7 +72,7 @@ class Shared:
         self.slots[WARNINGS] += status == 1  # the exact number comes with the answer, if one comes
 
     def heard(self) -> list[tuple[int, str]]:
-        """The last log messages: status and text."""
+        """Return the last log messages, at most 20, as (status, text)."""
         number = _count(self.slots[_MESSAGES])
         found = []
         for i in range(max(0, number - _KEPT), number):
@@ -84,12 +84,12 @@ class Shared:
 
 
 def _count(number: float) -> int:
-    """A count that stands in a slot; 0 for what is none."""
+    """Return the count that stands in a slot; 0 for a number that is none."""
     return int(number) if 0.0 <= number < 2.0**53 else 0
 
 
 def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
-    """The plan of a unit with its groups at the start of a memory of their own, and their size."""
+    """Return the plan of a unit with its groups in a memory of their own, from 0 on, and the size of that."""
     groups, place = [], 0
     for group in plan.groups:
         n = len(group.variables)
@@ -100,5 +100,5 @@ def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
 
 
 def shown(group: SlotGroup) -> int:
-    """The first slot into which a unit writes the outputs of a group after its step."""
+    """Return the first slot into which a unit writes the outputs of a group after its step."""
     return group.latest if group.kind == "continuous" else group.slot

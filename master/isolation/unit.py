@@ -28,7 +28,7 @@ _OF_ONE_VARIABLE = ("get", "set")
 
 
 class IsolatedUnit:
-    """See `unit.Unit`. Its process starts at once and loads while the caller goes on; `bind` waits for it.
+    """A `unit.Unit` in a process of its own, which loads while the caller goes on; `bind` waits for it.
 
     Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
     """
@@ -57,7 +57,7 @@ class IsolatedUnit:
             self._process = Process((there, name, interface, tolerance), descriptor, limits)
         finally:
             os.close(descriptor)
-        self._line = handover.Line(
+        self._side = handover.Side(
             self._process.connection,
             self._slots,
             (shared.REQUEST, shared.MASTER_SLEEPS),
@@ -67,13 +67,12 @@ class IsolatedUnit:
 
     @property
     def warnings(self) -> int:
-        """See `unit.Unit`."""
         return self._shared.warnings()
 
     # ---- requests
 
     def _call(self, name: str, *arguments: Any) -> Any:
-        """Ask for something that happens once or seldom."""
+        """Request a call of the unit's method, once or seldom in a run, and return its value."""
         if not self._loaded:
             self._loaded = True  # whatever the answer is, there is no other
             self._answer(self._frame())
@@ -95,14 +94,14 @@ class IsolatedUnit:
         self._number += 1.0
         self._pending = True
         try:
-            self._line.post(self._number)
+            self._side.post(self._number)
         except OSError as error:
             self._ended(error)
 
     def _finish(self) -> None:
-        """Wait until the request is done. Raises what the unit reports."""
+        """Wait until the request is done. Raises UnitError or FmuError with the unit's own message."""
         with WAITING:
-            frame = b"" if self._line.comes(self._number) else self._sleep()
+            frame = b"" if self._side.comes(self._number) else self._sleep()
         if frame or self._slots[shared.FRAME]:
             self._answer(frame or self._frame())
         self._pending = False
@@ -110,7 +109,7 @@ class IsolatedUnit:
     def _sleep(self) -> bytes:
         self._deadline = time.monotonic() + self._time
         try:
-            return self._line.sleep_until(self._number, framing.LONGEST, self._impatience)
+            return self._side.sleep_until(self._number, framing.LONGEST, self._impatience)
         except (OSError, EOFError) as error:
             self._ended(error)
 
@@ -118,7 +117,7 @@ class IsolatedUnit:
         self._deadline = time.monotonic() + self._time
         try:
             with WAITING:
-                return self._line.frame(framing.LONGEST, self._impatience)
+                return self._side.frame(framing.LONGEST, self._impatience)
         except (OSError, EOFError) as error:
             self._ended(error)
 
@@ -128,14 +127,14 @@ class IsolatedUnit:
             raise TimeoutError
 
     def _answer(self, frame: bytes) -> Any:
-        """The value in an answer. Raises FmuError or UnitError when it tells of one, or is none."""
+        """Return the value in an answer. Raises FmuError or UnitError for an error or an invalid answer."""
         self._pending = False
         try:
             answer = json.loads(frame)
         except (ValueError, RecursionError):
             answer = None
         if not isinstance(answer, dict):
-            raise UnitError(f"unit '{self.name}': its process answers what is no answer to {self._asked}")
+            raise UnitError(f"unit '{self.name}': its process sent an invalid answer to {self._asked}")
         if "error" in answer:
             of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
             raise (FmuError if of_the_file else UnitError)(_printable(str(answer["error"])))
@@ -159,10 +158,10 @@ class IsolatedUnit:
         log.close()
         return [("its last messages", log.last()), ("it printed", self._process.printed())]
 
-    # ---- see `unit.Unit`
+    # ---- the calls of `unit.Unit`
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
-        """See `unit.Unit`. What an input or output passes through is a slice of one memory, at once."""
+        """Keep the pairs of slices, of the run's memory and of the shared one, that a turn copies at once."""
         theirs, _ = shared.private(plan)
         ours, view = floats(self._shared.values), floats(memory)
         pairs = list(zip(plan.groups, theirs.groups, strict=True))
@@ -185,23 +184,19 @@ class IsolatedUnit:
         self._call("bind", theirs)
 
     def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """See `unit.Unit`."""
         self._call("enter_initialization", start_time, stop_time)
 
     def exit_initialization(self) -> None:
-        """See `unit.Unit`."""
         self._call("exit_initialization")
         self._time, self._key = self._limits.step, "step_timeout"
 
     def get(self, name: str) -> Value:
-        """See `unit.Unit`."""
         value = self._call("get", name)
         if not isinstance(value, bool | int | float | str):
-            raise UnitError(f"unit '{self.name}': its process answers no value for {name}")
+            raise UnitError(f"unit '{self.name}': its process sent no value for {name}")
         return value
 
     def set(self, name: str, value: Value) -> None:
-        """See `unit.Unit`."""
         self._call("set", name, value)
 
     def save_state(self) -> int:
@@ -217,16 +212,16 @@ class IsolatedUnit:
         self._call("free_state", number)
 
     def set_inputs(self) -> None:
-        """See `unit.Unit`; the unit takes them with the next request."""
+        """Copy the inputs into the shared memory; the unit takes them with the next request."""
         for target, place, values in self._inputs:
             target[place] = values
 
     def get_feedthrough(self) -> None:
-        """See `unit.Unit`; the unit shows them with the step that follows."""
+        """Note that the unit shows outputs before the step that follows."""
         self._shows = True
 
     def start_step(self, time: float, step_size: float, count: int) -> None:
-        """See `unit.Unit`: the process steps while the caller goes on."""
+        """Request the steps; the process does them while the caller goes on."""
         self._check_free()
         slots = self._slots
         slots[shared.TIME], slots[shared.STEP_SIZE], slots[shared.COUNT] = time, step_size, count
@@ -234,7 +229,6 @@ class IsolatedUnit:
         self._request(shared.STEP_SHOWN if self._shows else shared.STEP)
 
     def finish_step(self) -> None:
-        """See `unit.Unit`."""
         self._finish()
         self._fresh = True
         if self._shows:
@@ -243,7 +237,7 @@ class IsolatedUnit:
                 target[place] = values
 
     def get_outputs(self) -> None:
-        """See `unit.Unit`; after a step they are there already."""
+        """Copy the outputs out of the shared memory, where a step has left them, else after a request."""
         if not self._fresh:
             self._check_free()
             self._asked = "its outputs"
@@ -254,11 +248,10 @@ class IsolatedUnit:
             target[place] = values
 
     def terminate(self) -> None:
-        """See `unit.Unit`."""
         self._call("terminate")
 
     def free(self) -> None:
-        """See `unit.Unit`. A unit that does not let go is ended."""
+        """Release everything; a unit that does not answer within two seconds is ended."""
         if not self._freed:
             self._freed = True
             if not self._pending:  # one that still works hears nothing
@@ -269,5 +262,5 @@ class IsolatedUnit:
 
 
 def _printable(text: str) -> str:
-    """The text without what steers a terminal."""
+    """Return the text without characters that steer a terminal."""
     return "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)

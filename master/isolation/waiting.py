@@ -1,14 +1,14 @@
-"""Whether the master waits for a unit in a process of its own, so that Ctrl-C may break the wait off.
+"""The mark that the master waits for a unit in a process of its own, so that Ctrl-C may break the wait off.
 
-Anywhere else Ctrl-C is noted and looked at between steps: in a unit of this process an exception would end in
-the unit's library.
+At any other time Ctrl-C is noted and looked at between steps: an exception in a unit of this process would
+end in the unit's library.
 """
 
 from __future__ import annotations
 
 
 class _Waiting:
-    """A `with` block in which `waits` is true."""
+    """A `with` block in which `waits` returns True."""
 
     now = False
 
@@ -23,5 +23,5 @@ WAITING = _Waiting()
 
 
 def waits() -> bool:
-    """Whether the main thread waits for such a unit at this moment."""
+    """Return True while the main thread waits for such a unit."""
     return WAITING.now
