@@ -102,7 +102,8 @@ def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes]) -> list[st
 
 
 @pytest.mark.parametrize(
-    "name", ["evcosim/cosim/left_over.py", "evcosim/old/__init__.py", "models/scooter.py", "benchmarks/case.py"]
+    "name",
+    ["evcosim/cosim/left_over.py", "evcosim/old/__init__.py", "models/scooter.py", "benchmarks/case.py"],
 )
 def test_a_wheel_with_more_fails(check_wheel, tmp_path, name):
     found = found_in(check_wheel, tmp_path, contents(check_wheel) | {name: b""})

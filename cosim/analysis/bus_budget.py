@@ -165,6 +165,7 @@ def _point(budget: Budget, point: Point) -> dict[str, Any]:
 def as_markdown(budget: Budget, figure: str) -> str:
     """Return a page: the requirement, where each series breaks, the table, the figure in file `figure`."""
     name = " ".join(part for part in (budget.system, budget.scenario) if part)
+    headers, *rows = _without_emphasis([("variation", "", budget.metric, "verdict"), *budget.rows()])
     return "\n".join(
         [
             f"# Bus budget of {name}",
@@ -173,7 +174,7 @@ def as_markdown(budget: Budget, figure: str) -> str:
             "",
             *(f"- {each.name}: {budget.summary(each)}" for each in budget.series),
             "",
-            *markdown_table(("variation", "", budget.metric, "verdict"), _without_emphasis(budget.rows())),
+            *markdown_table(headers, rows),
             "",
             f"![{budget.metric} over each variation]({figure})",
             "",

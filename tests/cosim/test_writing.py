@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.writing import in_place_of, replacing
+from evcosim.cosim.writing import in_place_of, markdown_table, replacing
 
 
 def test_the_file_takes_its_place_at_the_end(tmp_path: Path) -> None:
@@ -60,3 +60,7 @@ def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
 def test_a_file_that_was_not_written_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="cannot be written: No such file"), in_place_of(tmp_path / "a"):
         pass
+
+
+def test_a_cell_stays_a_cell() -> None:
+    assert markdown_table(("a|b", "c"), [("1", "2\n3")]) == [r"| a\|b | c |", "|---|---|", "| 1 | 2 3 |"]

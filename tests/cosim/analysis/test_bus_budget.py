@@ -8,7 +8,7 @@ import math
 
 import pytest
 
-from evcosim.cosim.analysis.bus_budget import as_data, as_markdown, series, table
+from evcosim.cosim.analysis.bus_budget import as_data, as_markdown, series
 from evcosim.cosim.can.bus_settings import BusVariation
 from support.judged_budget import judged
 
@@ -68,7 +68,3 @@ def test_a_limit_that_is_reached_is_kept(kind):
     found = judged([1.5] * 5, kind)
     assert not any(found.broken(point) for point in found.series[0].points)
     assert found.first_broken(found.series[0]) is None
-
-
-def test_marks_of_markdown_are_text_in_a_table():
-    assert table(("a|b", "c"), [("1*", "2")]) == [r"| a\|b | c |", "|---|---|", r"| 1\* | 2 |"]
