@@ -17,6 +17,7 @@ from evcosim.cosim.swap.swap_file import SwapFile
 from evcosim.cosim.system.scenario import ScenarioFile
 from evcosim.cosim.system.schema import json_schema, type_text
 from evcosim.cosim.system.system import SystemFile
+from evcosim.cosim.writing import markdown_table
 
 PAGE = Path(__file__).parents[2] / "docs" / "system-file.md"
 MODELS = {"system": SystemFile, "scenario": ScenarioFile, "swap": SwapFile}
@@ -34,8 +35,8 @@ def table(kind: str, path: str) -> str:
     schema = json_schema(MODELS[kind], kind)
     members = _tables(schema, schema, path.split(".") if path else [])
     rows = [_row(key, [m for m in members if key in m["properties"]], members) for key in _keys(members)]
-    about = [_cell(members[0]["description"]), ""] if len(members) == 1 else []
-    return "\n".join(["", *about, "| key | meaning |", "|---|---|", *rows, "", ""])
+    about = [_escaped(members[0]["description"]), ""] if len(members) == 1 else []
+    return "\n".join(["", *about, *markdown_table(("key", "meaning"), rows), "", ""])
 
 
 def paths(page: str) -> list[tuple[str, str]]:
@@ -71,7 +72,7 @@ def _is_needed(key: str, members: Sequence[dict[str, Any]]) -> bool:
     return all(key in member.get("required", ()) for member in members)
 
 
-def _row(key: str, having: Sequence[dict[str, Any]], members: Sequence[dict[str, Any]]) -> str:
+def _row(key: str, having: Sequence[dict[str, Any]], members: Sequence[dict[str, Any]]) -> list[str]:
     """Return the row of a key; where tables of several kinds stand there, what it means in each."""
     abouts = [member["properties"][key] for member in having]
     types = " or ".join(dict.fromkeys(map(type_text, abouts)))
@@ -84,15 +85,12 @@ def _row(key: str, having: Sequence[dict[str, Any]], members: Sequence[dict[str,
     elif len(having) < len(members):
         text = f"For {' and '.join(f'`{kind}`' for kind in kinds)}. {text}"
     text = re.sub(r"Default: (.*)\.$", r"Default: `\1`.", text)
-    return f"| `{key}`<br>{_marked(types)}{needed} | {_cell(text)} |"
+    types = re.sub(r'"[^"]*"', r"`\g<0>`", _escaped(types))
+    return [f"`{key}`<br>{types}{needed}", _escaped(text)]
 
 
-def _marked(types: str) -> str:
-    return re.sub(r'"[^"]*"', r"`\g<0>`", _cell(types))
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", r"\|").replace("<", "&lt;")
+def _escaped(text: str) -> str:
+    return text.replace("<", "&lt;")
 
 
 def main() -> None:
