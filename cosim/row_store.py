@@ -150,8 +150,8 @@ class RowStore:
     """Rows of `width` numbers, appended in order.
 
     Beyond `memory` bytes they are in a temporary file without a name in `folder` (default: the system's,
-    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. An error
-    names `what` cannot be kept there, and the `advice` with which it could.
+    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. Where it
+    cannot be written, the error names the rows by `what`, and what to do by `advice`.
     """
 
     def __init__(
