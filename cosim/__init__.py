@@ -1,4 +1,4 @@
-"""What is connected to what: system and scenario files, units of measure, the CAN channel, results.
+"""Descriptions of what is connected to what: files, units of measure, the CAN channel, plans and results.
 
 Nothing here knows FMI binaries or models; `evcosim.master` runs what this package describes.
 """

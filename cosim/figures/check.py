@@ -15,13 +15,16 @@ from ..system.system import System
 
 
 def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:
-    """Check that a figure can be drawn from these variables. Raises ConfigError naming `place`."""
+    """Check that a figure can be drawn from these variables.
+
+    Raises ConfigError, which starts with `place`, that of the figure's table, and names the key.
+    """
     for i, panel in enumerate(spec.panels, 1):
-        for signal in panel.signals:
-            here = f"{place}: panel {i}"
+        for j, signal in enumerate(panel.signals, 1):
+            here = f"{place}.panels {i}.signals {j}"
             panel_conversion(_known(signal.name, variables, here), panel.unit, here)
-    if spec.shade is not None and not _known(spec.shade, variables, f"{place}: shade").items:
-        raise ConfigError(f"{place}: shade: '{spec.shade}' is not an enumeration, so it has no states")
+    if spec.shade is not None and not _known(spec.shade, variables, f"{place}.shade").items:
+        raise ConfigError(f"{place}.shade: '{spec.shade}' is not an enumeration, so it has no states")
 
 
 def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> ResultVariable:

@@ -15,7 +15,10 @@ from evcosim.cosim.system.system import load_system, system_names
 from support.outlined_scooter import scooter
 
 WRONG = [
-    ({"signals": ["vehicle.sped"]}, r"panel 1: no variable 'vehicle.sped' .*did you mean 'vehicle.speed'"),
+    (
+        {"signals": ["vehicle.sped"]},
+        r"^figure.panels 1.signals 1: no variable 'vehicle.sped' .*did you mean 'vehicle.speed'",
+    ),
     (
         {"unit": "N", "signals": ["vehicle.speed"]},
         r"'vehicle.speed' \[m/s\] in \[N\]: .*different quantities",
