@@ -1,0 +1,64 @@
+"""An FMU that evcosim did not build gets a process of its own, unless someone says otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.system.system import Isolation, UnitEntry
+from evcosim.master.builtin import fmu_file
+from evcosim.master.fmi.fmu import read_fmu
+from evcosim.master.isolation import decision
+from evcosim.master.isolation.decision import chosen, process_limits
+from evcosim.master.simulation import simulate
+from support.c_fmu import mixed_fmu
+from support.pairs import pair
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_what_we_did_not_build_is_isolated(tmp_path: Path, fmi: int) -> None:
+    path = pair(tmp_path, 0, fmi)
+    results = simulate(path)
+    found = {name: unit["isolation"] for name, unit in results.manifest["units"].items()}
+    assert found == {"rider": "none", "a": "process"}
+    assert np.array_equal(results.data, simulate(path, isolation="none").data)
+
+
+def test_no_processes_where_the_system_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = pair(tmp_path, 0)
+    monkeypatch.setattr(decision, "available", lambda: False)
+    with pytest.raises(ConfigError, match=r"unit 'a': evcosim did not build mixed.fmu, .*--isolation none"):
+        simulate(path)
+    assert simulate(path, isolation="none").manifest["units"]["a"]["isolation"] == "none"
+
+
+def entry(**keys: object) -> UnitEntry:
+    return UnitEntry.model_validate({"fmu": "any.fmu"} | keys)
+
+
+@pytest.mark.parametrize("own", [None, "none", "process"])
+@pytest.mark.parametrize("wanted", [None, "none", "process"])
+def test_the_wish_for_all_units_is_before_that_of_one(
+    tmp_path: Path, wanted: Isolation | None, own: Isolation | None
+) -> None:
+    ours, foreign = read_fmu(fmu_file("Rider")), read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 2))
+    settings = entry() if own is None else entry(isolation=own)
+    assert chosen("a", ours, settings, wanted) == (wanted or own or "none")
+    assert chosen("a", foreign, settings, wanted) == (wanted or own or "process")
+
+
+def test_a_copy_of_a_built_in_fmu_is_ours_and_a_changed_one_is_not(tmp_path: Path) -> None:
+    copy = tmp_path / "Rider.fmu"
+    content = fmu_file("Rider").read_bytes()
+    copy.write_bytes(content)
+    assert chosen("a", read_fmu(copy), entry(), None) == "none"
+    copy.write_bytes(content[:-2] + b"\1\0?")  # the archive has a comment
+    assert chosen("a", read_fmu(copy), entry(), None) == "process"
+
+
+def test_the_limits_are_those_of_the_entry() -> None:
+    limits = process_limits(entry(memory_limit=1e9, file_limit=2e6, load_timeout=3.0, step_timeout=4.0))
+    assert (limits.memory, limits.file, limits.loading, limits.step) == (1e9, 2e6, 3.0, 4.0)

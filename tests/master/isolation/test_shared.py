@@ -1,0 +1,109 @@
+"""The memory of a unit: the master reads it within its bounds, and messages outlive the child."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim.errors import RunError
+from evcosim.cosim.interface import UnitInterface, VariableInfo
+from evcosim.cosim.plan.unit_plan import Route, SlotGroup, SlotGroupKind, UnitPlan
+from evcosim.master.isolation import shared
+from evcosim.master.isolation.shared import Shared
+from evcosim.master.simulation import simulate
+from support.pairs import pair
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_the_last_messages_of_a_unit_that_crashes_reach_the_error(tmp_path: Path, fmi: int) -> None:
+    with pytest.raises(RunError, match=r"SIGSEGV .*\n.*its last messages:\n\[Error\] out of coffee"):
+        simulate(pair(tmp_path, 64, fmi))
+
+
+def test_warnings_are_counted_as_in_the_master(tmp_path: Path) -> None:
+    path = pair(tmp_path, 11)
+    apart, here = (simulate(path, isolation=isolation) for isolation in ("process", "none"))
+    assert apart.manifest["warnings"] == here.manifest["warnings"] != []
+
+
+@pytest.fixture
+def memory() -> Iterator[tuple[Shared, Shared]]:
+    """The memory as the master has it, and as the child does."""
+    descriptor = shared.create(10)
+    yield Shared(descriptor), Shared(descriptor)
+    os.close(descriptor)
+
+
+def test_one_side_reads_what_the_other_writes(memory: tuple[Shared, Shared]) -> None:
+    master, child = memory
+    assert master.values.shape == (10,)
+    child.values[:] = range(10)
+    child.slots[shared.ANSWER] = 7.0
+    assert master.values.tolist() == list(range(10))
+    assert master.slots[shared.ANSWER] == 7.0
+    master.slots[shared.REQUEST] = 8.0
+    assert child.slots[shared.REQUEST] == 8.0
+
+
+def test_the_child_cannot_make_it_smaller(memory: tuple[Shared, Shared]) -> None:
+    descriptor = shared.create(10)
+    try:
+        with pytest.raises(PermissionError):
+            os.ftruncate(descriptor, 8)
+    finally:
+        os.close(descriptor)
+
+
+def test_the_last_twenty_messages_are_kept_and_warnings_counted(memory: tuple[Shared, Shared]) -> None:
+    master, child = memory
+    for i in range(33):
+        child.hear(i % 3, f"message {i}")
+    assert master.heard() == [(i % 3, f"message {i}") for i in range(13, 33)]
+    assert master.warnings() == 11
+    child.hear(1, "Grüße " + "x" * 5000)
+    status, text = master.heard()[-1]
+    assert (status, text[:7], len(text.encode())) == (1, "Grüße x", 2048)
+
+
+@pytest.mark.parametrize("claim", [math.nan, math.inf, -1.0, 2.0**60])
+def test_a_count_that_is_none_is_taken_as_0(memory: tuple[Shared, Shared], claim: float) -> None:
+    master, child = memory
+    child.hear(1, "message")
+    child.slots[shared.WARNINGS] = claim
+    assert master.warnings() == 0
+    child.slots[shared._RING + 1] = claim  # the length of the message
+    assert [len(text) for _, text in master.heard()] == [0]
+    child.slots[shared._MESSAGES] = claim
+    assert master.heard() == []
+
+
+def plan_of(*groups: tuple[SlotGroupKind, int]) -> UnitPlan:
+    """A unit's plan with groups (kind, number of variables) far behind each other in the run's memory."""
+    found = []
+    for place, (kind, count) in enumerate(groups, 1):
+        variables = tuple(VariableInfo(f"{kind}{place}_{i}") for i in range(count))
+        latest = 100 * place + 50 if kind == "continuous" else -1
+        found.append(SlotGroup(kind, "Real", variables, 100 * place, latest))
+    interface = UnitInterface("mock", {v.name: v for group in found for v in group.variables})
+    return UnitPlan("a", "mock.fmu", interface, {}, {}, 1, 1, tuple(found), (Route(1, 100),))
+
+
+def test_a_unit_of_its_own_has_its_groups_side_by_side() -> None:
+    plan = plan_of(("input", 3), ("discrete", 2), ("continuous", 4), ("input", 1))
+    private, size = shared.private(plan)
+    assert private.routes == ()
+    assert [group.variables for group in private.groups] == [group.variables for group in plan.groups]
+    taken = []
+    for group in private.groups:
+        for first in (group.slot, group.latest) if group.kind == "continuous" else (group.slot,):
+            taken += range(first, first + len(group.variables))
+    assert sorted(taken) == list(range(size)) and size == 3 + 2 + 2 * 4 + 1
+
+
+def test_outputs_stand_in_their_latest_slots_where_they_have_some() -> None:
+    discrete, continuous = plan_of(("discrete", 2), ("continuous", 4)).groups
+    assert (shared.shown(discrete), shared.shown(continuous)) == (discrete.slot, continuous.latest)
