@@ -319,27 +319,12 @@ def test_nominal_values_that_are_none_are_one(tmp_path: Path) -> None:
     np.testing.assert_allclose(results["a.x0"], np.exp(-results.time), atol=1e-6)
 
 
-def test_an_interface_that_an_fmu_lacks_is_refused(tmp_path: Path) -> None:
-    for kinds, wanted in (("CS", "model_exchange"), ("ME", "co_simulation")):
-        fmu = equations_fmu(tmp_path / "decay.fmu", "decay", 3, kinds)
-        with pytest.raises(
-            ConfigError, match=rf'decay.fmu: interface = "{wanted}": it has no such interface'
-        ):
-            run(fmu, f'interface = "{wanted}"')
-
-
 def test_info_says_how_it_is_solved(tmp_path: Path, capsys) -> None:
     for kinds, count in (("ME", 1), ("ME CS", 1), ("CS", 0)):
         assert main(["info", str(equations_fmu(tmp_path / "decay.fmu", "decay", 3, kinds))]) == 0
         shown = capsys.readouterr().out
         assert shown.count("CVODE with events solves Model Exchange") == count, kinds
         assert ("asks for it" in shown) == (kinds == "ME CS")
-
-
-def test_co_simulation_is_the_default_where_there_are_both(tmp_path: Path) -> None:
-    for kinds, default in (("ME CS", "co_simulation"), ("ME", "model_exchange")):
-        results = run(equations_fmu(tmp_path / "decay.fmu", "decay", 2, kinds), stop=0.1)
-        assert results.manifest["units"]["a"]["interface"] == default
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)

@@ -1,4 +1,4 @@
-"""The same unit in FMI 1.0, 2.0 and 3.0 gives the same numbers; all types come through; statuses are told."""
+"""The same unit in FMI 1.0, 2.0 and 3.0: the same numbers, every common type, every status of a step."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.interface import UnitInterface
+from evcosim.cosim.errors import RunError
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
 from evcosim.master.simulation import simulate
@@ -82,60 +81,6 @@ def test_every_common_type_can_be_set_and_read(tmp_path: Path, fmi: int) -> None
         unit.free()
 
 
-@pytest.mark.parametrize(
-    ("kind", "value"),
-    [
-        ("int8", -128), ("uint8", 254), ("int16", -32768), ("uint16", 65534), ("uint32", 2**32 - 2),
-        ("int64", -(2**53)), ("uint64", 2**53 - 1),
-    ],
-)  # fmt: skip # pairs
-def test_the_integers_of_fmi_3(tmp_path: Path, kind: str, value: int) -> None:
-    unit = unit_of(mixed_fmu(tmp_path / "mixed.fmu", 3))
-    try:
-        unit.enter_initialization(0.0, None)
-        unit.exit_initialization()
-        unit.set(f"{kind}_in", value)
-        unit.start_step(0.0, 0.01, 1)
-        assert unit.get(kind) == value + 1
-    finally:
-        unit.free()
-
-
-def test_types_of_fmi_3_in_a_run(tmp_path: Path) -> None:
-    """Inputs of eight C types in one block of the plan; a Float32 is rounded as one."""
-    fmu = mixed_fmu(tmp_path / "mixed.fmu", 3)
-    start = (
-        "start = { single_in = 0.1, int8_in = -3, uint64_in = 77, int64_in = 9007199254740991, count_in = 5 }"
-    )
-    (tmp_path / "one.toml").write_text(
-        f'name = "one"\n[experiment]\nstop_time = 0.02\n'
-        f'[units.a]\nfmu = "{fmu}"\nisolation = "none"\n{start}\n'
-    )
-    results = simulate(tmp_path / "one.toml")
-    assert results["a.single"][-1] == float(np.float32(0.1))
-    found = [int(results[f"a.{n}"][-1]) for n in ("int8", "uint64", "int64", "count", "uint8")]
-    assert found == [-2, 78, 2**53, 6, 1]
-
-
-def test_an_integer_that_no_double_holds_is_an_error(tmp_path: Path) -> None:
-    fmu = mixed_fmu(tmp_path / "mixed.fmu", 3)
-    (tmp_path / "one.toml").write_text(
-        f'name = "one"\n[experiment]\nstop_time = 0.02\n[units.a]\nfmu = "{fmu}"\nisolation = "none"\n'
-        "start = { int64_in = 9007199254740992 }\n"
-    )
-    with pytest.raises(RunError, match=r"unit 'a': int64 = 9007199254740993 is more than a double holds"):
-        simulate(tmp_path / "one.toml")
-
-
-def test_an_array_is_refused_by_name(tmp_path: Path) -> None:
-    interface: UnitInterface = read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 3)).interface
-    assert "wheels" not in interface.variables
-    with pytest.raises(
-        ConfigError, match=r"here: unit 'a': wheels is an array, Float64\[2\]; arrays are not"
-    ):
-        interface.require("a", "wheels", ("output",), "here")
-
-
 @pytest.mark.parametrize("fmi", VERSIONS)
 @pytest.mark.parametrize(
     ("status", "word"), [(2, "Discard"), (3, "Error"), (4, "Fatal"), (7, "no FMI status")]
@@ -178,30 +123,3 @@ def test_nan_stops_the_run(tmp_path: Path, fmi: int) -> None:
 def test_an_fmu_that_refuses_to_be_instantiated(tmp_path: Path, fmi: int) -> None:
     with pytest.raises(FmuError, match=r"mixed\d1.fmu: cannot be instantiated"):
         simulate(loop(tmp_path, fmi, behavior=1))
-
-
-@pytest.mark.parametrize(
-    ("behavior", "reason"),
-    [
-        (3, "asks to terminate the simulation"),
-        (4, r"returned early, at t = 0.51 s, though early return is not"),
-    ],
-)
-def test_what_a_step_of_fmi_3_can_answer_beside_its_status(
-    tmp_path: Path, behavior: int, reason: str
-) -> None:
-    with pytest.raises(RunError, match=rf"t = 0.5 s \(step 50\): unit 'a': fmi3DoStep {reason}"):
-        simulate(loop(tmp_path, 3, behavior=behavior))
-
-
-def test_functions_that_nobody_calls_may_be_missing(tmp_path: Path) -> None:
-    """sources/mixed.c has neither fmi2Reset nor fmi2GetFMUstate nor fmi3Reset: see every other test."""
-    fmu = read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 2))
-    unit = load_unit(fmu, "a", fmu.interface)
-    try:
-        with pytest.raises(
-            FmuError, match=r"mixed.fmu: binaries/linux64/mixed.so lacks the function fmi2Reset"
-        ):
-            unit.function("fmi2Reset")  # type: ignore[attr-defined] # of the class that FMUs have
-    finally:
-        unit.free()

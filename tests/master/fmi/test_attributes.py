@@ -1,0 +1,82 @@
+"""The parts of a description beside its variables: each defect is mended, reported once, and then gone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evcosim.master.fmi.attributes import mend_attributes
+from evcosim.master.fmi.description import parsed_xml
+from evcosim.master.fmi.fmu import read_fmu
+from support.descriptions import GOOD, changed, described
+
+UNIT = '<UnitDefinitions><Unit name="km/h">{}</Unit></UnitDefinitions><TypeDefinitions>'
+
+DEFECTS = [
+    (
+        ("<CoSimulation ", '<CoSimulation maxOutputDerivativeOrder="many" '),
+        "CoSimulation: maxOutputDerivativeOrder = 'many' is no number; it is ignored",
+    ),
+    (
+        ("<CoSimulation ", '<CoSimulation fixedInternalStepSize="nan" '),
+        "CoSimulation: fixedInternalStepSize = 'nan' is no number; it is ignored",
+    ),
+    (
+        ('guid="g"', 'guid="g" numberOfEventIndicators="1.5"'),
+        "numberOfEventIndicators = '1.5' is no number; 0 is assumed",
+    ),
+    (
+        ("<TypeDefinitions>", UNIT.format('<BaseUnit factor="x"/>')),
+        "unit of measure 'km/h': factor = 'x' is no number; its definition is ignored",
+    ),
+    (
+        ("<TypeDefinitions>", UNIT.format('<BaseUnit m="1" s="-1.5"/>')),
+        "unit of measure 'km/h': s = '-1.5' is no number; its definition is ignored",
+    ),
+    (
+        ("<TypeDefinitions>", '<TypeDefinitions><SimpleType name="Nothing"/>'),
+        "type 'Nothing' says nothing; it is left out",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "sentence"), DEFECTS)
+def test_a_defect_is_reported_once(tmp_path: Path, change: tuple[str, str], sentence: str) -> None:
+    root = parsed_xml("here", changed(change).encode())
+    assert mend_attributes(root) == [sentence]
+    assert mend_attributes(root) == []
+    assert read_fmu(described(tmp_path, changed(change))).defects == (sentence,)
+
+
+def test_a_good_description_stays_as_it_is() -> None:
+    root = parsed_xml("here", GOOD.encode())
+    before = [(element.tag, dict(element.attrib)) for element in root.iter()]
+    assert mend_attributes(root) == []
+    assert [(element.tag, dict(element.attrib)) for element in root.iter()] == before
+
+
+def test_another_unit_of_measure_keeps_its_definition(tmp_path: Path) -> None:
+    units = (
+        '<UnitDefinitions><Unit name="km/h"><BaseUnit m="1" s="-1" factor="0.2777777777777778"/></Unit>'
+        '<Unit name="bad"><BaseUnit m="one"/></Unit></UnitDefinitions><TypeDefinitions>'
+    )
+    found = read_fmu(described(tmp_path, changed(("<TypeDefinitions>", units))))
+    known = found.interface.units_of_measure
+    assert known["km/h"].factor == pytest.approx(1.0 / 3.6)
+    assert known["bad"].exponents is None
+
+
+def test_attributes_that_no_type_has_are_left_out_without_a_word() -> None:
+    text = changed(('<Real unit="m/s"/>', '<Real unit="m/s" colour="blue"/>'))
+    root = parsed_xml("here", text.encode())
+    assert mend_attributes(root) == []
+    assert dict(root.find("TypeDefinitions/SimpleType/Real").attrib) == {"unit": "m/s"}
+
+
+def test_display_units_that_are_no_numbers_are_left_out(tmp_path: Path) -> None:
+    """Nothing shows values in them."""
+    unit = '<BaseUnit m="1"/><DisplayUnit name="ft" factor="many"/><DisplayUnit name="cm" factor="100"/>'
+    root = parsed_xml("here", changed(("<TypeDefinitions>", UNIT.format(unit))).encode())
+    assert mend_attributes(root) == []
+    assert [each.get("name") for each in root.iter("DisplayUnit")] == ["cm"]

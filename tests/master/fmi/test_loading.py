@@ -1,0 +1,37 @@
+"""The class of a unit follows from the version and the interface of its FMU."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evcosim.master.fmi.exchange import ModelExchange
+from evcosim.master.fmi.fmi1 import Fmi1Unit
+from evcosim.master.fmi.fmi2 import Fmi2ModelExchange, Fmi2Unit
+from evcosim.master.fmi.fmi3 import Fmi3ModelExchange, Fmi3Unit
+from evcosim.master.fmi.fmu import read_fmu
+from evcosim.master.fmi.loading import load_unit
+from support.c_fmu import mixed_fmu
+from support.equations import equations_fmu
+
+
+@pytest.mark.parametrize(("fmi", "expected"), [(1, Fmi1Unit), (2, Fmi2Unit), (3, Fmi3Unit)])
+def test_co_simulation_of_every_version(tmp_path: Path, fmi: int, expected: type) -> None:
+    fmu = read_fmu(mixed_fmu(tmp_path / "mixed.fmu", fmi))
+    unit = load_unit(fmu, "a", fmu.interface)
+    assert type(unit) is expected
+    assert (unit.name, unit.interface) == ("a", fmu.interface)
+    unit.free()
+
+
+@pytest.mark.parametrize(("fmi", "expected"), [(2, Fmi2ModelExchange), (3, Fmi3ModelExchange)])
+def test_model_exchange_where_it_is_wanted(tmp_path: Path, fmi: int, expected: type) -> None:
+    fmu = read_fmu(equations_fmu(tmp_path / "ball.fmu", "ball", fmi, "ME CS"))
+    plain = load_unit(fmu, "a", fmu.interface)
+    assert not isinstance(plain, ModelExchange)
+    plain.free()
+    unit = load_unit(fmu.using("model_exchange"), "a", fmu.interface, tolerance=1e-3)
+    assert type(unit) is expected
+    assert unit.tolerance == 1e-3
+    unit.free()

@@ -1,0 +1,72 @@
+"""The parts of a description that FMPy leaves out: FMI 1.0's capabilities and causalities, UInts' limits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evcosim.master.fmi.fmu import is_true, read_fmu
+from support.descriptions import described
+
+FIRST = """<fmiModelDescription fmiVersion="1.0" modelName="m" modelIdentifier="m" guid="g"
+  numberOfContinuousStates="0" numberOfEventIndicators="0">
+<ModelVariables>
+<ScalarVariable name="y" valueReference="0" causality="output"><Real/></ScalarVariable>
+<ScalarVariable name="back" valueReference="0" causality="output" alias="negatedAlias"><Real/>
+</ScalarVariable>
+<ScalarVariable name="off" valueReference="1" causality="output" alias="negatedAlias"><Boolean/>
+</ScalarVariable>
+<ScalarVariable name="mass" valueReference="2" causality="internal" variability="parameter">
+<Real start="2"/></ScalarVariable>
+<ScalarVariable name="rest" valueReference="3"><Real/></ScalarVariable>
+</ModelVariables>
+<Implementation>{}</Implementation></fmiModelDescription>"""
+
+ALONE = """<CoSimulation_StandAlone><Capabilities canHandleVariableCommunicationStepSize="true"
+  canBeInstantiatedOnlyOncePerProcess="1" maxOutputDerivativeOrder="2"/></CoSimulation_StandAlone>"""
+WITH_TOOL = """<CoSimulation_Tool><Capabilities canInterpolateInputs="false"/>
+<Model entryPoint="http://model" type="text"/></CoSimulation_Tool>"""
+
+
+def test_the_capabilities_of_a_slave_of_fmi_1(tmp_path: Path) -> None:
+    kind = read_fmu(described(tmp_path, FIRST.format(ALONE))).kind
+    assert is_true(kind, "canHandleVariableCommunicationStepSize")
+    assert is_true(kind, "canBeInstantiatedOnlyOncePerProcess")
+    assert not is_true(kind, "canInterpolateInputs")
+    assert not is_true(kind, "needsExecutionTool")
+    assert kind.maxOutputDerivativeOrder == 2
+
+
+def test_a_slave_of_a_tool_needs_it(tmp_path: Path) -> None:
+    kind = read_fmu(described(tmp_path, FIRST.format(WITH_TOOL))).kind
+    assert is_true(kind, "needsExecutionTool")
+    assert kind.maxOutputDerivativeOrder == 0
+
+
+def test_what_fmi_1_calls_internal_is_local(tmp_path: Path) -> None:
+    interface = read_fmu(described(tmp_path, FIRST.format(ALONE))).interface
+    assert interface.variables["rest"].causality == "local"
+    assert interface.variables["mass"].causality in ("parameter", "local")
+
+
+def test_a_negated_alias_has_the_other_sign_or_is_refused(tmp_path: Path) -> None:
+    fmu = read_fmu(described(tmp_path, FIRST.format(ALONE)))
+    assert fmu.negated == {"back", "off"}
+    variables = fmu.interface.variables
+    assert [variables[name].inverted for name in ("y", "back")] == [False, True]
+    assert fmu.interface.unusable == {"off": "is a negated alias of type Boolean, which is not supported"}
+
+
+@pytest.mark.parametrize("kind", ["UInt8", "UInt16", "UInt32", "UInt64", "Int8", "Int64"])
+def test_every_integer_of_fmi_3_has_its_limits(tmp_path: Path, kind: str) -> None:
+    text = (
+        '<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="t">'
+        '<CoSimulation modelIdentifier="m"/><ModelVariables>'
+        f'<{kind} name="n" valueReference="1" causality="input" start="3" min="2" max="90"/>'
+        f'<{kind} name="free" valueReference="2" causality="input" start="3"/>'
+        "</ModelVariables><ModelStructure/></fmiModelDescription>"
+    )
+    variables = read_fmu(described(tmp_path, text)).interface.variables
+    assert (variables["n"].min, variables["n"].max) == (2.0, 90.0)
+    assert (variables["free"].min, variables["free"].max) == (None, None)
