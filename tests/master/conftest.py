@@ -97,3 +97,12 @@ def system(tmp_path, broken_fmus):
         return path
 
     return write
+
+
+@pytest.fixture
+def two_runs(evcosim, tmp_path):
+    """Two short runs that differ in the vehicle's mass."""
+    for name, mass in (("a", 200), ("b", 150)):
+        options = ["--stop-time", "3", "--no-plot", "-q", "-o", name]
+        assert evcosim("run", "scooter", "--set", f"vehicle.mass={mass}", *options).code == 0
+    return tmp_path

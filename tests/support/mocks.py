@@ -140,3 +140,26 @@ def started(units: list[MockUnit], plan: Plan) -> PythonEngine:
 def column(engine: PythonEngine, name: str) -> NDArray[np.float64]:
     """The recorded values of a variable, one for each step done and one for now."""
     return engine.recorded().column([c.name for c in engine.plan.columns].index(name))
+
+
+def clock(name: str = "clock") -> MockUnit:
+    """Shows the end of its last step: t after stepping to t."""
+
+    def step(values: Values, time: float, step_size: float) -> None:
+        values["t"] = round(time + step_size, 9)
+
+    return MockUnit(name, [real("t", "output")], step)
+
+
+def probe(name: str = "probe", **more: float) -> MockUnit:
+    """Notes what it receives."""
+
+    def step(values: Values, time: float, step_size: float) -> None:
+        values["seen"] = values["t"]
+
+    variables = [real("t", "input"), real("seen", "output", variability="discrete")]
+    return MockUnit(name, variables, step, **more)
+
+
+TICK = [{"from": "clock.t", "to": ["probe.t"]}]
+"""The connection from the clock to the probe."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -182,49 +181,6 @@ def test_strict_runs_refuse_it_from_python_too(tmp_path: Path) -> None:
     fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **DEFECT)
     with pytest.raises(ConfigError, match="strict: 1 defect"):
         simulate("scooter", fmus={"vehicle": fmu}, strict=True)
-
-
-def test_info_tells_what_was_mended_and_what_the_validator_says(evcosim, tmp_path: Path) -> None:
-    vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **DEFECT)
-    shown = " ".join(evcosim("info", "Vehicle.fmu").out.split())
-    assert "mended m_total: start = 'heavy' is no Real; it is ignored" in shown
-    assert "validator line " in shown
-    about = evcosim("info", "Vehicle.fmu", "--json").json
-    assert about["defects"] == ["m_total: start = 'heavy' is no Real; it is ignored"]
-    assert any("heavy" in message for message in about["validator"])
-    assert about["unpacked_size"] > 1000
-    assert (about["sources"], about["binary_for_this_machine"]) == ([], True)
-
-
-def test_info_bounds_what_it_prints_of_many_defects(evcosim, tmp_path: Path) -> None:
-    start = "no number" + 99 * " of them"
-    declared = "".join(
-        f'<ScalarVariable name="x{i}" valueReference="{40 + i}"><Real start="{start}"/></ScalarVariable>'
-        for i in range(30)
-    )
-    vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **{"</ModelVariables>": f"{declared}</ModelVariables>"})
-    shown = evcosim("info", "Vehicle.fmu", "--search", "pedal").out
-    assert "and 25 more (--json shows all)" in shown
-    assert len(shown.splitlines()) < 60
-    assert len(evcosim("info", "Vehicle.fmu", "--json").json["defects"]) == 30
-
-
-def test_info_of_sources_without_a_binary(evcosim, tmp_path: Path) -> None:
-    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
-    with zipfile.ZipFile(fmu) as full, zipfile.ZipFile(tmp_path / "Sources.fmu", "w") as bare:
-        bare.writestr("modelDescription.xml", full.read("modelDescription.xml"))
-        bare.writestr("sources/vehicle.c", "int x;")
-    shown = " ".join(evcosim("info", "Sources.fmu").out.split())
-    assert "sources vehicle.c; there is no binary for this machine" in shown
-    assert "'evcosim compile Sources.fmu' makes one" in shown
-
-
-def test_info_says_what_a_capability_means_here(evcosim) -> None:
-    about = evcosim("info", "Battery", "--json").json
-    (can,) = about["capabilities"].values()
-    saves = next(c for c in can if c["what"] == "saves and restores its state")
-    assert saves["here"] == "not used in a run; 'evcosim check --try' tests it"
-    assert all(c["what"] and c["here"] for c in (*can, *about["limits"]))
 
 
 def test_the_report_as_data(evcosim, tmp_path: Path) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import errno
 import shutil
-import tempfile
 import zipfile
 from pathlib import Path
 
@@ -12,22 +10,12 @@ import fmpy
 import numpy as np
 import pytest
 
-from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.results import Results
 from evcosim.cosim.system.toml import DATA
 from evcosim.master.builtin import fmu_file
-from evcosim.master.cli import outputs
+from support.answers import refused
 
 SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
-
-
-def refused(answer, *texts):
-    """Bad input: exit code 2, each text in the message, nothing on stdout."""
-    assert answer.code == 2, answer
-    assert answer.out == ""
-    for text in texts:
-        assert text in answer.err, answer.err
-    return answer
 
 
 @pytest.mark.parametrize(
@@ -204,80 +192,6 @@ def test_nan_on_a_connection(evcosim, system, tmp_path):
     assert np.isfinite(results.data).all()
 
 
-# ---- folders and disks. The tests may run as root, whom no mode of a folder stops: hence a folder below a
-# file, and a disk that a patched call pretends to be full.
-
-
-def test_output_below_a_file(evcosim, tmp_path):
-    (tmp_path / "file").write_text("")
-    refused(
-        evcosim("run", "scooter", "-o", "file/results"), "output folder file/results", "cannot be written"
-    )
-    refused(evcosim("build", "Battery", "-o", "file/fmus"), "file/fmus", "cannot be written")
-
-
-def test_build_needs_a_cache_that_lasts(evcosim, tmp_path, monkeypatch):
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setenv("EVCOSIM_CACHE", str(blocked))
-    refused(evcosim("build", "Battery"), f"{blocked}: Battery.fmu cannot be kept there", "--output DIR")
-    assert evcosim("build", "Battery", "-o", "made").out.strip() == "made/Battery.fmu"
-
-
-@pytest.mark.parametrize("name", ["figure.png", "results.csv", "run.json"])
-def test_a_file_of_the_users_own_is_not_replaced(evcosim, tmp_path, name):
-    (tmp_path / "out").mkdir()
-    own = tmp_path / "out" / name
-    own.write_text("[1, 2]")
-    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
-    refused(answer, f"output folder out: {name} would be replaced", "--output")
-    assert own.read_text() == "[1, 2]"
-
-
-def test_other_files_in_the_output_folder_stay(evcosim, tmp_path):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "notes.txt").write_text("mine")
-    for _ in range(2):
-        assert evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "out").code == 0
-    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
-
-
-def test_full_disk_before_the_run(evcosim, monkeypatch):
-    def full(self, data):
-        raise OSError(errno.ENOSPC, "No space left on device", str(self))
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    refused(evcosim("run", "scooter", "-o", "out"), "output folder out", "No space left on device")
-
-
-def test_full_disk_after_the_run(evcosim, monkeypatch):
-    def full(folder, results):
-        raise OSError(errno.ENOSPC, "No space left on device", "out/figure.png")
-
-    monkeypatch.setattr(outputs, "write_figure", full)
-    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
-    assert (answer.code, answer.err) == (1, "evcosim: out/figure.png: No space left on device\n")
-
-
-def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch, tmp_path):
-    write = Results.write
-
-    def full(self, folder):
-        if str(folder) == "out":
-            raise ConfigError("out/results.csv: cannot be written: No space left on device")
-        return write(self, folder)
-
-    monkeypatch.setattr(Results, "write", full)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
-    (tmp_path / "elsewhere").mkdir()
-    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
-    assert answer.code == 1
-    (kept,) = (tmp_path / "elsewhere").iterdir()
-    assert "No space left on device" in answer.err
-    assert f"the results are kept in {kept}" in answer.err
-    assert len(Results.read(kept)) == 11
-
-
 # ---- what nobody foresaw
 
 
@@ -323,3 +237,11 @@ def test_copy_of_a_system_beside_its_own_fmu_runs(evcosim, tmp_path):
     path.write_text(SCOOTER.replace('fmu = "Scooter"', 'fmu = "Mine.fmu"'), encoding="utf-8")
     answer = evcosim("run", path, "--stop-time", "0.1", "--no-plot", "--set", "vehicle.mass=150")
     assert (answer.code, answer.err) == (0, "")
+
+
+def test_reader_that_goes_away_is_no_error(process):
+    run = process("list")
+    run.stdout.close()
+    run.stdout = None
+    assert run.communicate()[1] == ""
+    assert run.returncode == 141

@@ -103,3 +103,19 @@ def test_what_is_wrong_in_it_is_told_as_by_a_run(evcosim, mapped: Path) -> None:
     assert shown.code == run.code == 2
     assert "F_brakes" in shown.err
     assert shown.err == run.err
+
+
+def test_info_of_a_system(evcosim, tmp_path):
+    answer = evcosim("info", "scooter")
+    assert answer.code == 0
+    for text in ("vehicle.speed [m/s]", "can0.EMD_Status.EMD_VehicleSpeed", "(x 3.6)", "0.4 %", "fig8 *"):
+        assert text in answer.out
+    data = evcosim("info", "scooter", "--json").json
+    assert [unit["name"] for unit in data["units"]] == ["rider", "planner", "ecu", "vehicle", "battery"]
+    speed = next(c for c in data["connections"] if c["to"] == "ecu.speed_measured")
+    assert (speed["from_unit"], speed["bus_unit"], speed["to_bus"], speed["to_receiver"]) == (
+        "m/s",
+        "km/h",
+        "x 3.6",
+        "",
+    )

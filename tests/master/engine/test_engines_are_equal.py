@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
-
 import numpy as np
 import pytest
 
-from benchmarks.case import Case
-from benchmarks.runners.evcosim import write_system
-from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.errors import RunError
 from evcosim.cosim.system.scenario import scenario_names
 from evcosim.cosim.system.system import load_system, system_names
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.initialization import initialize
-from evcosim.master.engine.selection import engine_class
 from evcosim.master.simulation import Simulation
 from support.c_fmu import mixed_fmu
 from support.mocks import MockUnit, plan_of, real, started
@@ -70,24 +64,6 @@ def test_built_in_systems(system, scenario, algorithm):
     bits, *_, error = same(system, scenario, 300, algorithm=algorithm)
     assert not error
     assert len({row.tobytes() for row in bits}) > 5  # there is something to compare
-
-
-@pytest.fixture(scope="module")
-def ring(tmp_path_factory):
-    """Writes the system of three C units round a bus, with further keys of the bus and of a unit."""
-    need_c_compiler()
-    folder = tmp_path_factory.mktemp("ring")
-
-    def write(bus="", unit="", bias=None):
-        path = write_system(Case("c", 3, 300, signals=2, channel=True), folder, "gauss_seidel")
-        text = path.read_text().replace("[buses.can0]", f"[buses.can0]\n{bus}")
-        text = text.replace("[units.n1]\n", f"[units.n1]\n{unit}\n")
-        if bias is not None:
-            text = text.replace("bias0 = 1.0\n", f"bias0 = {bias}\n")
-        path.write_text(text)
-        return path
-
-    return write
 
 
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
@@ -228,72 +204,3 @@ def test_units_written_in_python_and_their_errors():
             engine.advance(100)
         found.append((str(raised.value), engine.recorded().whole().tobytes()))
     assert found[0] == found[1]
-
-
-def test_what_is_no_engine_is_refused():
-    with pytest.raises(ConfigError, match=r"there is no engine 'compild' .did you mean 'compiled'"):
-        engine_class("compild")
-
-
-def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch):
-    for name in [n for n in sys.modules if n.startswith("evcosim.master.engine.compiled.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.delattr(importlib.import_module("evcosim.master.engine.compiled"), "engine", raising=False)
-    monkeypatch.setitem(sys.modules, "numba", None)
-    with Simulation("scooter", stop_time=1.0) as simulation:
-        simulation.run()
-        assert simulation.manifest()["experiment"]["engine"] == "python"
-        assert any("the compiled engine needs numba" in warning for warning in simulation.warnings)
-
-
-def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
-    from evcosim.master.engine.compiled import cache
-
-    (tmp_path / "file").write_text("")
-    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / "file" / "below")
-    monkeypatch.setattr(cache, "_made", {})
-    with Simulation("scooter", stop_time=1.0, engine="compiled") as simulation:
-        simulation.run()
-        assert any("the engine is compiled anew" in warning for warning in simulation.warnings)
-
-
-def test_the_key_of_a_system_names_the_engine(ring):
-    path = ring()
-    path.write_text(path.read_text().replace("[experiment]", '[experiment]\nengine = "python"'))
-    with Simulation(path) as simulation:
-        assert simulation.manifest()["experiment"]["engine"] == "python"
-
-
-def test_the_option_names_the_engine(evcosim):
-    answer = evcosim("run", "scooter", "--stop-time", "1", "--engine", "python", "--no-plot", "--json")
-    assert answer.code == 0
-
-
-@pytest.mark.parametrize("engine", ["compiled", "python"])
-def test_a_profile_adds_up_to_the_time_of_the_steps_and_changes_no_result(ring, engine):
-    system = ring()
-    with Simulation(system, engine=engine, profile=True) as simulation:
-        simulation.run()
-        rows = simulation.profile
-        data = np.asarray(simulation.results.data)
-    with Simulation(system, engine=engine) as simulation:
-        simulation.run()
-        assert np.array_equal(np.asarray(simulation.results.data), data)
-        assert simulation.profile == []
-    named = {(row["name"], row["what"]) for row in rows}
-    step = "step" if engine == "compiled" else "set and step"
-    assert {
-        ("n0", "set"),
-        ("n2", step),
-        ("n1", "get"),
-        ("can0.M0_0", "channel"),
-        ("results", "record"),
-    } <= named
-    assert all(row["seconds"] >= 0.0 for row in rows)
-    assert sum(row["seconds"] for row in rows[:-1]) == pytest.approx(rows[-1]["seconds"], rel=1e-9)
-
-
-def test_the_option_shows_the_profile(evcosim):
-    answer = evcosim("run", "scooter", "--stop-time", "1", "--profile", "--no-plot")
-    assert answer.code == 0
-    assert "us a step" in answer.out

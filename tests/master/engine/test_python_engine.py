@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.master.unit import UnitError
-from support.mocks import MockUnit, column, plan_of, real, started
+from support.mocks import TICK, MockUnit, clock, column, plan_of, probe, real, started
 
 A, B, K, X0, H = math.exp(-0.02), 0.5 * (1.0 - math.exp(-0.02)), 3.0, 2.0, 0.01
 LOOP = [{"from": "plant.x", "to": ["controller.x"]}, {"from": "controller.u", "to": ["plant.u"]}]
@@ -72,28 +71,6 @@ def test_jacobi_does_not_depend_on_the_order():
     assert np.array_equal(runs[0], runs[1])
 
 
-def clock(name: str = "clock") -> MockUnit:
-    """Shows the end of its last step: t after stepping to t."""
-
-    def step(values, time, step_size):
-        values["t"] = round(time + step_size, 9)
-
-    return MockUnit(name, [real("t", "output")], step)
-
-
-def probe(name: str = "probe", **more: float) -> MockUnit:
-    """Notes what it receives."""
-
-    def step(values, time, step_size):
-        values["seen"] = values["t"]
-
-    variables = [real("t", "input"), real("seen", "output", variability="discrete")]
-    return MockUnit(name, variables, step, **more)
-
-
-TICK = [{"from": "clock.t", "to": ["probe.t"]}]
-
-
 def test_a_later_unit_receives_what_was_just_computed():
     units = [clock(), probe()]
     engine = started(units, plan_of(units, {"connect": TICK}))
@@ -138,138 +115,6 @@ def test_feedthrough_outputs_belong_to_the_inputs_of_their_row():
     engine.advance(5)
     assert np.array_equal(column(engine, "gain.y")[:5], 2.0 * column(engine, "gain.t")[:5])
     assert column(engine, "gain.t")[:5] == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04])
-
-
-# ---- events and stimuli
-
-
-@pytest.mark.parametrize("algorithm", ["jacobi", "gauss_seidel"])
-def test_override_bias_reset(algorithm):
-    events = [
-        {"time": 0.02, "action": "override", "variable": "probe.t", "value": 7.0},
-        {"time": 0.04, "action": "bias", "variable": "probe.t", "value": 1.0},
-        {"time": 0.06, "action": "reset", "variable": "probe.t"},
-    ]
-    units = [probe(), clock()]
-    engine = started(units, plan_of(units, {"connect": TICK}, {"event": events}, algorithm=algorithm))
-    engine.advance(8)
-    expected = [0.0, 0.01, 7.0, 7.0, 1.04, 1.05, 0.06, 0.07]
-    assert column(engine, "probe.t")[:8] == pytest.approx(expected)
-    assert column(engine, "probe.seen")[:8] == pytest.approx(expected)
-    assert column(engine, "clock.t")[:8] == pytest.approx(np.arange(8) * 0.01)  # the sender is not touched
-
-
-def test_a_bias_on_an_input_that_nothing_drives_does_not_add_up():
-    units = [probe()]
-    events = [{"time": 0.0, "action": "bias", "variable": "probe.t", "value": 1.5}]
-    engine = started(units, plan_of(units, {}, {"event": events}))
-    engine.advance(4)
-    assert column(engine, "probe.seen")[:4] == pytest.approx([1.5] * 4)
-
-
-def test_an_event_between_two_points_waits_for_the_next():
-    units = [probe()]
-    events = [{"time": 0.011, "action": "override", "variable": "probe.t", "value": 1.0}]
-    engine = started(units, plan_of(units, {}, {"event": events}))
-    engine.advance(4)
-    assert column(engine, "probe.seen")[:4] == pytest.approx([0.0, 0.0, 1.0, 1.0])
-
-
-def test_a_stimulus_is_exact_at_every_point_over_several_chunks():
-    units = [probe()]
-    sine = {"amplitude": 2.0, "period": 3.0, "mean": 1.0, "delay": 0.5}
-    engine = started(units, plan_of(units, {}, {"stimulus": [{"to": "probe.t", "sine": sine}]}))
-    for steps in (1, 300, 257, 42):
-        engine.advance(steps)
-    t = np.arange(600) * H
-    expected = 1.0 + 2.0 * np.sin(2 * np.pi * (t - 0.5) / 3.0) * (t >= 0.5)
-    assert column(engine, "probe.seen")[:600] == pytest.approx(expected, abs=1e-12)
-
-
-# ---- failures
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_an_output_that_is_no_number_stops_the_run_and_keeps_the_rows(value):
-    def step(values, time, step_size):
-        values["t"] = value if time >= 4.995 else time
-
-    bad = MockUnit("bad", [real("t", "output", unit="m/s")], step)
-    engine = started([bad], plan_of([bad], {}))
-    with pytest.raises(RunError, match=rf"t = 5 s \(step 500\): bad.t = {value} m/s"):
-        engine.advance(600)
-    assert engine.k == 500
-    assert engine.recorded().shape[0] == 500
-
-
-def test_a_unit_that_fails_is_named_with_the_time():
-    def step(values, time, step_size):
-        if time > 0.025:
-            raise UnitError("unit 'bad': fmi2DoStep returned Error (3)")
-
-    bad = MockUnit("bad", [real("t", "output")], step)
-    engine = started([bad], plan_of([bad], {}))
-    with pytest.raises(UnitError, match=r"t = 0.03 s \(step 3\): unit 'bad': fmi2DoStep returned Error"):
-        engine.advance(10)
-    assert engine.recorded().shape[0] == 3
-
-
-def test_an_interrupt_keeps_the_rows():
-    def step(values, time, step_size):
-        if time > 3.0:
-            raise KeyboardInterrupt
-
-    bad = MockUnit("bad", [real("t", "output")], step)
-    engine = started([bad], plan_of([bad], {}))
-    with pytest.raises(KeyboardInterrupt):
-        engine.advance(1000)
-    assert engine.recorded().shape[0] == engine.k == 301
-
-
-# ---- initialization
-
-
-def chain(name: str, factor: float, constant: float = 0.0) -> MockUnit:
-    """y = factor * u + constant at the same instant."""
-
-    def through(values):
-        values["y"] = factor * values["u"] + constant
-
-    output = real("y", "output", depends=("u",), depends_initially=("u",))
-    return MockUnit(name, [real("u", "input"), output], through=through)
-
-
-def test_initial_values_travel_down_a_chain_whatever_the_order():
-    units = [chain("c", 3.0), chain("b", 2.0), chain("a", 1.0, 5.0)]
-    connect = [{"from": "b.y", "to": ["c.u"]}, {"from": "a.y", "to": ["b.u"]}]
-    engine = started(units, plan_of(units, {"connect": connect}))
-    assert column(engine, "c.y")[-1] == pytest.approx(30.0)
-
-
-RING = [{"from": "a.y", "to": ["b.u"]}, {"from": "b.y", "to": ["a.u"]}]
-
-
-def test_an_algebraic_loop_is_refused_by_name():
-    units = [chain("a", 0.5, 1.0), chain("b", 0.5)]
-    plan = plan_of(units, {"connect": RING})
-    with pytest.raises(ConfigError, match="algebraic loop") as caught:
-        started(units, plan)
-    for name in ("a.u", "a.y", "b.u", "b.y"):
-        assert name in str(caught.value)
-
-
-def test_an_algebraic_loop_is_iterated_where_asked():
-    units = [chain("a", 0.5, 1.0), chain("b", 0.5)]
-    plan = plan_of(units, {"connect": RING, "experiment": {"algebraic_loops": "iterate"}})
-    engine = started(units, plan)
-    assert column(engine, "a.y")[-1] == pytest.approx(1.0 / (1.0 - 0.25), abs=1e-8)
-
-
-def test_a_loop_that_does_not_converge_says_so():
-    units = [chain("a", 2.0, 1.0), chain("b", 1.0)]
-    plan = plan_of(units, {"connect": RING, "experiment": {"algebraic_loops": "iterate"}})
-    with pytest.raises(UnitError, match="does not converge"):
-        started(units, plan)
 
 
 # ---- Integer and Boolean inputs over a bus

@@ -6,12 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import MapTables, UnitEntry, load_system
-from evcosim.master.builtin import fmu_file
-from evcosim.master.fmi.fmu import read_fmu
-from evcosim.master.studies.trial.levels import levels
 from evcosim.master.studies.trial.trial import Trial, try_unit
 from support.c_fmu import mixed_fmu, vehicle_fmu
 
@@ -140,23 +136,3 @@ def test_an_output_that_reacts_otherwise_is_told(tmp_path: Path) -> None:
     trial = mixed(tmp_path, 0, duration=0.4)
     assert "raises it by up to" in text(trial, "power -> voltage")
     assert "that of the system lowers it" in text(trial, "power -> voltage")
-
-
-# ---- what an input can be given
-
-
-def test_levels_are_within_what_the_system_can_give() -> None:
-    system = load_system("scooter")
-    found = levels(system, "vehicle", _inputs("Scooter"))
-    assert found["throttle"].limits == (0.0, 100.0)  # of the bus and of the ECU
-    assert found["throttle"].high == 50.0
-    assert found["brake_force"].limits[0] == 0.0
-    assert found["brake_force"].high == 200.0
-    assert found["road_grade"].limits == (-1.5, 1.5)
-    steering = levels(load_system("lane_keeping"), "vehicle", _inputs("LateralVehicle"))
-    assert steering["front_steering_angle"].limits == pytest.approx((-0.8727, 0.8727), abs=1e-4)  # 50 deg
-    assert steering["front_steering_angle"].high == 0.05
-
-
-def _inputs(name: str) -> tuple[VariableInfo, ...]:
-    return read_fmu(fmu_file(name)).interface.of_causality("input")

@@ -1,0 +1,50 @@
+"""The application: help at once for every verb, the version, and nothing heavy imported for it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+import pytest
+
+LIGHT = "import sys, evcosim.master.cli.app as app; app.command(); print(*sys.modules)"
+
+
+def test_help_answers_at_once(process):
+    def seconds():
+        begin = time.perf_counter()
+        assert "run" in process("--help").communicate()[0]
+        return time.perf_counter() - begin
+
+    assert min(seconds() for _ in range(5)) < 0.3
+
+
+def test_help_imports_nothing_heavy():
+    loaded = subprocess.run([sys.executable, "-c", LIGHT], capture_output=True, text=True, check=True).stdout
+    heavy = {
+        "numpy",
+        "scipy",
+        "pydantic",
+        "fmpy",
+        "pythonfmu",
+        "matplotlib",
+        "cantools",
+        "can",
+        "pint",
+    }
+    assert not heavy & set(loaded.split())
+
+
+@pytest.mark.parametrize("verb", ["run", "list", "info", "plot", "compare", "build", "identify"])
+def test_every_verb_has_help(evcosim, verb):
+    answer = evcosim(verb, "--help")
+    assert (answer.code, answer.err) == (0, "")
+    assert f"Usage: evcosim {verb}" in answer.out
+
+
+def test_version_and_no_verb(evcosim):
+    assert evcosim("--version").out.startswith("evcosim 0.")
+    answer = evcosim()
+    assert answer.code == 2
+    assert "Usage: evcosim" in answer.out

@@ -1,0 +1,26 @@
+"""`evcosim compile` prints the file that it wrote, or why there is none."""
+
+from __future__ import annotations
+
+from evcosim.master import builtin
+from evcosim.master.fmi import compilation
+from support.answers import refused
+
+
+def test_the_written_file_is_printed(evcosim, monkeypatch, tmp_path):
+    calls = []
+
+    def compile_fmu(path, output):
+        calls.append((path, output))
+        return output or path
+
+    monkeypatch.setattr(compilation, "compile_fmu", compile_fmu)
+    assert evcosim("compile", "own.fmu").out == "own.fmu\n"
+    assert evcosim("compile", "own.fmu", "--output", "made.fmu").out == "made.fmu\n"
+    assert [tuple(map(str, call)) for call in calls] == [("own.fmu", "None"), ("own.fmu", "made.fmu")]
+
+
+def test_an_fmu_that_needs_none(evcosim):
+    refused(
+        evcosim("compile", builtin.fmu_file("Battery")), "has a binary for this machine already: binaries/"
+    )

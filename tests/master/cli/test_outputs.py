@@ -1,0 +1,86 @@
+"""The output folder: it holds one run, and no file of the user's own is replaced.
+
+The tests may run as root, whom no mode of a folder stops: hence a folder below a file, and a disk that a
+patched call pretends to be full.
+"""
+
+from __future__ import annotations
+
+import errno
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.results import Results
+from evcosim.master.cli import outputs
+from support.answers import refused
+
+
+def test_files_of_an_earlier_run_do_not_stay(evcosim, tmp_path):
+    assert evcosim("run", "scooter", "--stop-time", "0.5", "--can-log", "-o", "out").code == 0
+    assert evcosim("run", "scooter", "--stop-time", "0.5", "--no-plot", "-o", "out").code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"results.csv", "run.json"}
+
+
+def test_output_below_a_file(evcosim, tmp_path):
+    (tmp_path / "file").write_text("")
+    refused(
+        evcosim("run", "scooter", "-o", "file/results"), "output folder file/results", "cannot be written"
+    )
+    refused(evcosim("build", "Battery", "-o", "file/fmus"), "file/fmus", "cannot be written")
+
+
+@pytest.mark.parametrize("name", ["figure.png", "results.csv", "run.json"])
+def test_a_file_of_the_users_own_is_not_replaced(evcosim, tmp_path, name):
+    (tmp_path / "out").mkdir()
+    own = tmp_path / "out" / name
+    own.write_text("[1, 2]")
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    refused(answer, f"output folder out: {name} would be replaced", "--output")
+    assert own.read_text() == "[1, 2]"
+
+
+def test_other_files_in_the_output_folder_stay(evcosim, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    for _ in range(2):
+        assert evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "out").code == 0
+    assert (tmp_path / "out" / "notes.txt").read_text() == "mine"
+
+
+def test_full_disk_before_the_run(evcosim, monkeypatch):
+    def full(self, data):
+        raise OSError(errno.ENOSPC, "No space left on device", str(self))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    refused(evcosim("run", "scooter", "-o", "out"), "output folder out", "No space left on device")
+
+
+def test_full_disk_after_the_run(evcosim, monkeypatch):
+    def full(folder, results):
+        raise OSError(errno.ENOSPC, "No space left on device", "out/figure.png")
+
+    monkeypatch.setattr(outputs, "write_figure", full)
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    assert (answer.code, answer.err) == (1, "evcosim: out/figure.png: No space left on device\n")
+
+
+def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch, tmp_path):
+    write = Results.write
+
+    def full(self, folder):
+        if str(folder) == "out":
+            raise ConfigError("out/results.csv: cannot be written: No space left on device")
+        return write(self, folder)
+
+    monkeypatch.setattr(Results, "write", full)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    (tmp_path / "elsewhere").mkdir()
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    assert answer.code == 1
+    (kept,) = (tmp_path / "elsewhere").iterdir()
+    assert "No space left on device" in answer.err
+    assert f"the results are kept in {kept}" in answer.err
+    assert len(Results.read(kept)) == 11

@@ -1,0 +1,21 @@
+"""`evcosim plot` draws results again."""
+
+from __future__ import annotations
+
+
+def test_plot(evcosim, two_runs):
+    assert evcosim("plot", "a").out.strip() == "a/figure.png"
+    assert (two_runs / "a" / "figure.png").read_bytes().startswith(b"\x89PNG")
+    assert evcosim("plot", "a/results.csv", "-o", "own.svg", "--signals", "vehicle.*").code == 0
+    svg = (two_runs / "own.svg").read_text(encoding="utf-8")
+    assert "<svg" in svg
+    nothing = evcosim("plot", "a", "--signals", "vehicle.sped")
+    assert (nothing.code, "did you mean 'vehicle.speed'" in nothing.err) == (2, True)
+    assert evcosim("plot", "a", "-o", "figure.txt").code == 2
+
+
+def test_plot_of_a_system_that_is_gone(evcosim, system, tmp_path):
+    path = system({"cart": "Fragile"}, stop_time=1.0)
+    assert evcosim("run", path, "--no-plot", "-q", "-o", "out").code == 0
+    path.unlink()
+    assert evcosim("plot", "out").code == 0

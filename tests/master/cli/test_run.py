@@ -1,0 +1,65 @@
+"""`evcosim run`: its folder, its options, and equal bytes for equal runs."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from evcosim.cosim.results.results import Results
+
+
+def test_run_says_and_writes_what_happened(evcosim, tmp_path):
+    answer = evcosim("run", "scooter", "--stop-time", "3", "--can-log")
+    assert (answer.code, answer.err) == (0, "")
+    for text in (
+        "scooter fig8",
+        "times real time",
+        "planner, ecu, vehicle, battery (gauss_seidel, 300 steps",
+    ):
+        assert text in answer.out
+    assert "distance" in answer.out
+    assert len(answer.out.splitlines()) < 24
+    folder = tmp_path / "results" / "scooter-fig8"
+    expected = {"results.csv", "run.json", "figure.png", "figure.svg", "can.log", "can.blf", "can.asc"}
+    assert {path.name for path in folder.iterdir()} == expected
+    assert answer.out.splitlines()[-1].startswith("in results/scooter-fig8: results.csv, run.json")
+    manifest = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    assert manifest["status"] == "done"
+    assert manifest["metrics"]["distance"]["value"] > 0.0
+    assert len((folder / "can.log").read_text().splitlines()) > 300
+
+
+def test_run_as_json(evcosim):
+    data = evcosim("run", "scooter", "--stop-time", "1", "--no-plot", "--json", "-o", "out").json
+    assert data["status"] == "done"
+    assert data["simulated_seconds"] == pytest.approx(1.0)
+    assert data["files"] == ["results.csv", "run.json"]
+    assert set(data["metrics"]) >= {"distance"}
+    assert data["final"]["battery.state_of_charge"] <= 1.0
+
+
+def test_run_quietly(evcosim):
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "--quiet")
+    assert (answer.code, answer.out, answer.err) == (0, "", "")
+
+
+def test_same_run_same_bytes_and_settings_count(evcosim, tmp_path):
+    def rows(name, *options):
+        assert (
+            evcosim("run", "scooter", "--stop-time", "2", "--no-plot", "-q", "-o", name, *options).code == 0
+        )
+        return (tmp_path / name / "results.csv").read_bytes()
+
+    first = rows("a")
+    assert rows("b") == first
+    for options in (["--set", "vehicle.mass=150"], ["--ideal"], ["--algorithm", "jacobi"]):
+        assert rows("c", *options) != first
+    light = rows("d", "--set", "vehicle.mass=150.0", "--set", "ecu.use_observer=false")
+    assert light != rows("e", "--set", "vehicle.mass=150")
+
+
+def test_results_name_own_files(evcosim, system, tmp_path):
+    path = system({"cart": "Fragile"}, stop_time=0.1)
+    evcosim("run", path, "--no-plot", "-q", "-o", "out")
+    assert Results.read(tmp_path / "out").manifest["files"] == {"system": str(path)}

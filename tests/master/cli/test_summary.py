@@ -1,0 +1,39 @@
+"""The summary of a run: final values without metrics, and saturated signals."""
+
+from __future__ import annotations
+
+import pytest
+
+
+def test_final_values_where_there_are_no_metrics(evcosim, system):
+    answer = evcosim("run", system({"cart": "Fragile"}, stop_time=1.0), "--no-plot")
+    assert answer.code == 0
+    assert "cart.way  100 m" in answer.out
+
+
+def test_final_value_of_a_bare_number(evcosim, tmp_path):
+    path = tmp_path / "pack.toml"
+    path.write_text('name = "pack"\n[units.pack]\nfmu = "Battery"\n[experiment]\nstop_time = 0.1\n')
+    answer = evcosim("run", path, "--no-plot")
+    assert "pack.state_of_charge  1\n" in answer.out
+
+
+def narrow_bus(tmp_path):
+    """A bus over which 20 m are the most that can be sent, as text of a system file."""
+    dbc = tmp_path / "narrow.dbc"
+    dbc.write_text(
+        'VERSION ""\nNS_ :\nBS_:\nBU_: A B\nBO_ 16 Way: 2 A\n'
+        ' SG_ Meters : 0|16@1+ (0.1,0) [0|20] "m" B\n'
+        'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\nBA_DEF_DEF_ "GenMsgCycleTime" 10;\n'
+        'BA_ "GenMsgCycleTime" BO_ 16 10;\n'
+    )
+    bus = f"[buses.can0]\ndbc = '{dbc.name}'\n"
+    return bus + '[[connect]]\nfrom = "cart.way"\nto = ["other.u"]\nvia = "can0.Way.Meters"\n'
+
+
+def test_run_reports_saturation(evcosim, system, tmp_path):
+    path = system({"cart": "Fragile", "other": "Through"}, narrow_bus(tmp_path), stop_time=1.0)
+    answer = evcosim("run", path, "--no-plot")
+    assert "can0.Way.Meters 79 times, first at 0.21 s" in answer.out
+    about = evcosim("run", path, "--no-plot", "--json").json["saturations"]["can0.Way.Meters"]
+    assert about == {"count": 79, "first_time": pytest.approx(0.21)}

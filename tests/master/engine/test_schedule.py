@@ -1,0 +1,75 @@
+"""The actions of a communication step, in their order, for both algorithms, periods and delays."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from evcosim.master.engine.schedule import Action, Waiting, schedule, waiting
+
+
+def message(after=None, every=1, first=0, delay=0, width=2):
+    arrivals = [(10 + i, 20 + i) for i in range(width if delay else 0)]
+    return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals)
+
+
+def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0):
+    units = [SimpleNamespace(every=every) for every in periods]
+    return SimpleNamespace(
+        algorithm=algorithm, units=units, messages=messages, drives=[None] * drives, memory_size=100
+    )
+
+
+def words(actions):
+    return " ".join(f"{a.kind}{a.index}" if a.kind != "record" else "record" for a in actions)
+
+
+def test_gauss_seidel_sends_first_then_takes_each_unit_with_its_discrete_messages():
+    actions = schedule(plan(messages=[message(), message(after=0), message(after=1)], drives=1))
+    assert words(actions) == (
+        "drive0 send0 take0 begin0 end0 send1 take1 begin1 end1 send2 record publish0 publish1"
+    )
+
+
+def test_jacobi_sends_and_takes_all_before_any_unit_begins():
+    actions = schedule(plan("jacobi", messages=[message(), message(after=0)], drives=1))
+    assert words(actions) == (
+        "drive0 send0 send1 take0 take1 begin0 begin1 end0 end1 record publish0 publish1"
+    )
+
+
+def test_a_unit_with_a_longer_period_publishes_at_the_end_of_it():
+    actions = schedule(plan(periods=(5,)))
+    every = {a.kind: (a.every, a.first) for a in actions}
+    assert every["take"] == every["begin"] == every["end"] == (5, 0)
+    assert every["publish"] == (5, 4)
+    assert every["record"] == (1, 0)
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+def test_on_a_bus_with_a_delay_the_older_values_arrive_before_the_newer_are_sampled(algorithm):
+    actions = schedule(plan(algorithm, messages=[message(every=3, first=2, delay=7)]))
+    assert actions[0] == Action("deliver", 0, every=3, first=9)
+    assert actions[1] == Action("send", 0, every=3, first=2)
+
+
+def test_always():
+    assert Action("record").always
+    assert not Action("send", every=2).always
+    assert not Action("send", first=1).always
+
+
+@pytest.mark.parametrize(("every", "delay", "rows"), [(1, 1, 1), (1, 4, 4), (3, 1, 1), (3, 3, 1), (3, 4, 2)])
+def test_as_many_rows_as_transmissions_can_be_under_way(every, delay, rows):
+    found, size = waiting(plan(messages=[message(), message(every=every, delay=delay)]))
+    assert found == {1: Waiting(100, rows, 2)}
+    assert size == 100 + 2 * rows
+    places = [found[1].row(n) for n in range(3 * rows)]
+    assert places == [100 + 2 * (n % rows) for n in range(3 * rows)]
+    # transmission n is delivered `delay` steps after it, no later than the one that takes its row is sampled
+    assert delay <= rows * every
+
+
+def test_messages_without_a_delay_need_no_room():
+    assert waiting(plan(messages=[message()])) == ({}, 100)

@@ -1,0 +1,78 @@
+"""Preparing a run finds what is wrong before any FMU is loaded, and changes nothing that it is given."""
+
+from __future__ import annotations
+
+import pytest
+
+from evcosim.cosim.can.bus_settings import BusVariation
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.system.scenario import load_scenario
+from evcosim.cosim.system.system import load_system
+from evcosim.master.builtin import fmu_file
+from evcosim.master.prepare import prepare
+
+
+def test_what_is_known_before_the_first_step():
+    prepared = prepare("scooter", parameters={"vehicle.mass": 180.0}, stop_time=2.0)
+    assert prepared.scenario.name == "fig8"
+    assert list(prepared.fmus) == [unit.name for unit in prepared.plan.units]
+    vehicle = next(unit for unit in prepared.plan.units if unit.name == "vehicle")
+    assert vehicle.parameters == {"mass": 180.0}
+    assert prepared.plan.experiment.stop_time == 2.0
+
+
+def test_files_and_what_is_made_in_memory_are_the_same():
+    system = load_system("scooter")
+    scenario = load_scenario(system, "fig9")
+    by_name, in_memory = prepare("scooter", "fig9"), prepare(system, scenario)
+    assert (by_name.system, by_name.scenario) == (in_memory.system, in_memory.scenario)
+    assert by_name.plan.memory_size == in_memory.plan.memory_size
+
+
+def test_buses_are_varied_in_this_run_only():
+    system = load_system("scooter")
+    varied = prepare(system, bus=BusVariation(delay_steps=3)).plan
+    assert {message.delay for message in varied.messages} == {3}
+    assert {message.delay for message in prepare(system).plan.messages} == {0}
+
+
+def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
+    own = tmp_path / "own.fmu"
+    own.write_bytes(fmu_file("Battery").read_bytes())
+    assert prepare("scooter", fmus={"battery": own}).fmus["battery"].path == own
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"ideal": True, "bus": BusVariation(cycle=2)}, "'ideal' leaves the buses out"),
+        (
+            {"fmus": {"batery": "x.fmu"}},
+            r"--fmu batery: there is no unit 'batery' \(did you mean 'battery'\?\)",
+        ),
+        ({"fmus": {"battery": "x.fmu"}}, r"x\.fmu: there is no such FMU file"),
+        ({"swaps": {"batery": "x.toml"}}, "batery"),
+        ({"parameters": {"vehicle.mas": 1.0}}, r"parameter vehicle\.mas: .*did you mean 'mass'"),
+        ({"stop_time": 0.015}, "not a multiple"),
+    ],
+)
+def test_wrong_options(options, text):
+    with pytest.raises(ConfigError, match=text):
+        prepare("scooter", **options)
+
+
+def test_a_misspelled_option():
+    with pytest.raises(TypeError, match=r"a run has no option 'algoritm' \(did you mean 'algorithm'\?\)"):
+        prepare("scooter", algoritm="jacobi")
+
+
+def test_variables_that_are_absent_may_not_be_there(tmp_path):
+    path = tmp_path / "mine.toml"
+    text = (
+        load_system("scooter")
+        .path.read_text()
+        .replace('fmu = "Scooter"', 'fmu = "Scooter"\nabsent = ["power"]')
+    )
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=r"mine\.toml: units\.vehicle\.absent: .* has 'power'"):
+        prepare(path)
