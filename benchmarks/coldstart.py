@@ -17,9 +17,10 @@ from pathlib import Path
 
 from . import machine, page
 
+IMPORT = "import evcosim"
 COMMANDS = (
-    "--help", "list", "info scooter", "run scooter --no-plot --engine python", "run scooter --no-plot",
-    "run scooter",
+    IMPORT, "--help", "list", "info scooter",
+    "run scooter --no-plot --engine python", "run scooter --no-plot", "run scooter",
 )  # fmt: skip # one list
 LARGE = ("numpy", "pydantic", "fmpy", "cantools", "numba", "scipy", "matplotlib", "pint")
 
@@ -62,7 +63,8 @@ def imported(command: str) -> set[str]:
 
 def _called(command: str, *options: str) -> str:
     """What a command tells on its standard error."""
-    program = ["-m", "evcosim", *command.split()] if command else ["-c", "pass"]
+    alone = command in ("", IMPORT)
+    program = ["-c", command or "pass"] if alone else ["-m", "evcosim", *command.split()]
     with tempfile.TemporaryDirectory() as folder:
         output = ["--output", folder] if command.startswith("run") else []
         call = [sys.executable, *options, *program, *output]
@@ -73,13 +75,19 @@ def report(seconds: Mapping[str, float], packages: Mapping[str, set[str]]) -> st
     """The table."""
     rows = [
         [
-            f"`evcosim {command}`" if command else "Python alone",
+            _shown(command),
             f"{best:.2f}",
             ", ".join(name for name in LARGE if name in packages.get(command, ())) or "none",
         ]
         for command, best in seconds.items()
     ]
     return f"Measured on: {machine.about()}.\n\n{page.table(['command', 's', 'large packages'], rows)}"
+
+
+def _shown(command: str) -> str:
+    if not command:
+        return "Python alone"
+    return f"`{command}`" if command == IMPORT else f"`evcosim {command}`"
 
 
 if __name__ == "__main__":

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 
 import pytest
+
+from evcosim.master.cli import app
 
 LIGHT = "import sys, evcosim.master.cli.app as app; app.command(); print(*sys.modules)"
 
 
-def test_help_answers_at_once(process):
-    def seconds():
-        begin = time.perf_counter()
-        assert "run" in process("--help").communicate()[0]
-        return time.perf_counter() - begin
-
-    assert min(seconds() for _ in range(5)) < 0.3
+def test_help_names_every_verb(process):
+    shown = process("--help").communicate()[0]
+    verbs = app.command().commands
+    assert {"run", "info", "schema"} <= set(verbs)
+    assert not [verb for verb in verbs if f"  {verb} " not in shown]
 
 
 def test_help_imports_nothing_heavy():
