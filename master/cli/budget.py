@@ -38,9 +38,9 @@ def budget(
     from ...cosim.analysis.bus_budget import as_data
     from ..studies.bus_budget import budget as measure_budget
     from .console import print_json, progress_bar
-    from .outputs import prepared
+    from .outputs import output_folder
 
-    folder = prepared(output or _default_folder(system, scenario))
+    folder = output_folder(output or _default_folder(system, scenario))
     with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measure_budget(
             system,

@@ -104,7 +104,7 @@ def identify(
     from ...cosim.analysis.sweep import sweep_of
     from ...cosim.errors import ConfigError
     from ..studies.identification_target import is_fmu
-    from .outputs import prepared
+    from .outputs import output_folder
 
     given: dict[str, Any] = {
         "input": input, "output": output, "unit": unit, "at": at, "at_input": at_input,
@@ -115,7 +115,7 @@ def identify(
     sweep_of(spec)
     if options.get("ideal") and is_fmu(target):
         raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
-    where = prepared(folder or Path("results") / f"{Path(target).stem}-identification")
+    where = output_folder(folder or Path("results") / f"{Path(target).stem}-identification")
     bar = not (as_json or quiet)
     found = _measure(target, spec, scenario, settings or [], options, step_size, bar)
     files = _write(where, found, not no_plot)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class Algorithm(enum.StrEnum):
+class AlgorithmChoice(enum.StrEnum):
     """The master algorithms."""
 
     gauss_seidel = "gauss_seidel"
@@ -47,14 +47,14 @@ ScenarioOption = Annotated[
 ]
 
 
-class Engine(enum.StrEnum):
+class EngineChoice(enum.StrEnum):
     """The engines."""
 
     compiled = "compiled"
     python = "python"
 
 
-class Isolation(enum.StrEnum):
+class IsolationChoice(enum.StrEnum):
     """The kinds of processes that units run in."""
 
     process = "process"
@@ -62,7 +62,7 @@ class Isolation(enum.StrEnum):
 
 
 IsolationOption = Annotated[
-    Isolation | None,
+    IsolationChoice | None,
     typer.Option(
         help="Each unit in a process of its own, or none; default: other tools' FMUs.", show_default=False
     ),
@@ -81,10 +81,11 @@ SwapsOption = Annotated[
 ]
 IdealOption = Annotated[bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")]
 AlgorithmOption = Annotated[
-    Algorithm | None, typer.Option(help="The order of steps; default: the system's own.", show_default=False)
+    AlgorithmChoice | None,
+    typer.Option(help="The order of steps; default: the system's own.", show_default=False),
 ]
 EngineOption = Annotated[
-    Engine | None,
+    EngineChoice | None,
     typer.Option(help="What does the steps; default: compiled, python without numba.", show_default=False),
 ]
 StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")]

@@ -16,7 +16,7 @@ FIGURES = ("figure.png", "figure.svg")
 CAN_LOGS = ("can.log", "can.blf", "can.asc")
 
 
-def prepared(folder: Path) -> Path:
+def output_folder(folder: Path) -> Path:
     """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
     from ...cosim.errors import ConfigError
 
@@ -33,8 +33,8 @@ def prepared(folder: Path) -> Path:
     return folder
 
 
-def prepared_for_results(folder: Path) -> Path:
-    """Prepare a folder in which a run replaces an earlier one, and return it.
+def run_folder(folder: Path) -> Path:
+    """Make the folder if needed, try to write into it, and return it; a run replaces an earlier one in it.
 
     Raises ConfigError with the reason, also if a file to be replaced or removed was not written by a run.
     """
@@ -48,7 +48,7 @@ def prepared_for_results(folder: Path) -> Path:
             f"output folder {folder}: {', '.join(taken)} would be replaced, but no {MANIFEST_NAME} says that "
             "a run wrote it; --output names another folder"
         )
-    return prepared(folder)
+    return output_folder(folder)
 
 
 def _is_of_a_run(manifest: Path) -> bool:

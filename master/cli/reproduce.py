@@ -36,12 +36,12 @@ def reproduce(
     """
     from ..reproduce import papers as library
     from .console import print_json, progress_bar
-    from .outputs import prepared
+    from .outputs import output_folder
 
     names = list(dict.fromkeys(papers or library.NAMES))
     for name in names:
         library.load(name)  # a wrong name is said before anything runs
-    folder = prepared(output)
+    folder = output_folder(output)
     begin = time.perf_counter()
     with progress_bar("reproducing", 0.0, 1.0, not as_json) as show:
         pages = library.reproduce(names, folder, workers, lambda done, total, _: show(done / total))

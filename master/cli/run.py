@@ -60,8 +60,8 @@ class Order:
 
 
 @dataclasses.dataclass
-class Outcome:
-    """The outcome of a run: `error` is its failure (None: none), `files` are the names of written files."""
+class FinishedRun:
+    """A run at its end: `error` is its failure (None: none), `files` are the names of written files."""
 
     simulation: Simulation
     folder: Path
@@ -77,30 +77,30 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
     from .console import print_json
     from .failures import FAILED, INTERRUPTED, complain
 
-    outcome = _run(order)
-    _evaluate(outcome)
-    _write(outcome, order)
+    finished = _run(order)
+    _evaluate(finished)
+    _write(finished, order)
     if as_json:
-        print_json(summary.as_data(outcome))
-    for remark in outcome.remarks if as_json or quiet else ():
+        print_json(summary.as_data(finished))
+    for remark in finished.remarks if as_json or quiet else ():
         complain(f"warning: {remark}")
-    if outcome.error is not None:
-        complain(summary.of_failure(outcome))
-        return INTERRUPTED if isinstance(outcome.error, KeyboardInterrupt) else FAILED
+    if finished.error is not None:
+        complain(summary.of_failure(finished))
+        return INTERRUPTED if isinstance(finished.error, KeyboardInterrupt) else FAILED
     if not (as_json or quiet):
-        summary.show(outcome)
+        summary.show(finished)
     return 0
 
 
-def _run(order: Order) -> Outcome:
+def _run(order: Order) -> FinishedRun:
     """Prepare everything, then step.
 
-    An error in the steps, or Ctrl-C, becomes part of the outcome; one before the first step is raised.
+    An error in the steps, or Ctrl-C, is kept in the finished run; one before the first step is raised.
     """
     from ...cosim.errors import ConfigError, RunError
     from ..simulation import Simulation
     from .interrupts import Interrupts
-    from .outputs import prepared_for_results
+    from .outputs import run_folder
 
     if order.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
@@ -112,13 +112,13 @@ def _run(order: Order) -> Outcome:
         try:
             with simulation:
                 interrupts.check()
-                folder = prepared_for_results(order.output or _default_folder(simulation))
+                folder = run_folder(order.output or _default_folder(simulation))
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
             if simulation.time <= simulation.plan.experiment.start_time and not isinstance(failure, RunError):
                 raise  # before the first step there is nothing to keep
             error = failure
-    return Outcome(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
+    return FinishedRun(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
 
 
 def _default_folder(simulation: Simulation) -> Path:
@@ -142,38 +142,38 @@ def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
         simulation.run(look)
 
 
-def _evaluate(outcome: Outcome) -> None:
+def _evaluate(finished: FinishedRun) -> None:
     """Evaluate the metrics of a whole run, and note them, or the error of a failed one, for run.json."""
-    manifest = outcome.results.manifest
-    if outcome.error is None:
-        outcome.metrics = outcome.results.metrics()
+    manifest = finished.results.manifest
+    if finished.error is None:
+        finished.metrics = finished.results.metrics()
         manifest["status"] = "done"
-        manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in outcome.metrics}
-    elif isinstance(outcome.error, KeyboardInterrupt):
+        manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in finished.metrics}
+    elif isinstance(finished.error, KeyboardInterrupt):
         manifest["status"] = "interrupted"
     else:
-        manifest["status"], manifest["error"] = "failed", str(outcome.error)
+        manifest["status"], manifest["error"] = "failed", str(finished.error)
 
 
-def _write(outcome: Outcome, order: Order) -> None:
+def _write(finished: FinishedRun, order: Order) -> None:
     from ...cosim.errors import ConfigError, RunError
     from .outputs import write_results
 
-    folder = outcome.folder
-    outcome.files += write_results(folder, outcome.results)
+    folder = finished.folder
+    finished.files += write_results(folder, finished.results)
     try:
-        _write_the_rest(outcome, order)
+        _write_the_rest(finished, order)
     except ConfigError as error:
-        raise RunError(f"{error}\nin {folder}: {', '.join(outcome.files)}") from error
+        raise RunError(f"{error}\nin {folder}: {', '.join(finished.files)}") from error
 
 
-def _write_the_rest(outcome: Outcome, order: Order) -> None:
+def _write_the_rest(finished: FinishedRun, order: Order) -> None:
     from .outputs import write_can_logs, write_figure
 
-    simulation, folder, results = outcome.simulation, outcome.folder, outcome.results
+    simulation, folder, results = finished.simulation, finished.folder, finished.results
     if order.can_log and not simulation.plan.messages:
-        outcome.remarks.append("no CAN log: no connection of the system is over a bus")
+        finished.remarks.append("no CAN log: no connection of the system is over a bus")
     elif order.can_log:
-        outcome.files += write_can_logs(folder, simulation)
+        finished.files += write_can_logs(folder, simulation)
     if order.figure and len(results) > 1:
-        outcome.files += write_figure(folder, results)
+        finished.files += write_figure(folder, results)

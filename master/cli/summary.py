@@ -8,17 +8,17 @@ from ...cosim.errors import counted
 from .console import number, print_fields, print_table
 
 if TYPE_CHECKING:
-    from .run import Outcome
+    from .run import FinishedRun
 
 _FINAL_VALUES = 8
 
 
-def show(outcome: Outcome) -> None:
+def show(finished: FinishedRun) -> None:
     """Print a run's summary in a few lines."""
-    manifest = outcome.results.manifest
+    manifest = finished.results.manifest
     fields = [
         ("run", _name(manifest)),
-        ("time", _time(outcome)),
+        ("time", _time(finished)),
         ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
     ]
     for i, (signal, about) in enumerate(manifest["saturations"].items()):
@@ -26,31 +26,31 @@ def show(outcome: Outcome) -> None:
         fields.append(
             ("saturated" if i == 0 else "", f"{signal} {times}, first at {about['first_time']:g} s")
         )
-    fields += [("warning", remark) for remark in outcome.remarks]
+    fields += [("warning", remark) for remark in finished.remarks]
     print_fields(fields)
     print()
-    print_fields([(m.name, m.text) for m in outcome.metrics] or _final_values(outcome))
-    if profile := outcome.simulation.profile:
+    print_fields([(m.name, m.text) for m in finished.metrics] or _final_values(finished))
+    if profile := finished.simulation.profile:
         print()
         _show_profile(profile)
-    print(f"\nin {outcome.folder}: {', '.join(outcome.files)}")
+    print(f"\nin {finished.folder}: {', '.join(finished.files)}")
 
 
-def as_data(outcome: Outcome) -> dict[str, Any]:
+def as_data(finished: FinishedRun) -> dict[str, Any]:
     """Return the summary as data; `final` holds the last value of every recorded variable."""
-    results, manifest = outcome.results, outcome.results.manifest
+    results, manifest = finished.results, finished.results.manifest
     keys = ("system", "scenario", "status", "order", "ideal", "steps", "saturations", "loop_seconds")
     return {key: manifest[key] for key in keys} | {
         "algorithm": manifest["experiment"]["algorithm"],
         "error": manifest.get("error"),
-        "simulated_seconds": _simulated(outcome),
-        "real_time_factor": _factor(outcome),
-        "warnings": outcome.remarks,
-        "profile": outcome.simulation.profile,
+        "simulated_seconds": _simulated(finished),
+        "real_time_factor": _factor(finished),
+        "warnings": finished.remarks,
+        "profile": finished.simulation.profile,
         "metrics": manifest.get("metrics", {}),
         "final": results.final(),
-        "folder": str(outcome.folder),
-        "files": outcome.files,
+        "folder": str(finished.folder),
+        "files": finished.files,
     }
 
 
@@ -69,15 +69,15 @@ def _show_profile(profile: list[dict[str, Any]]) -> None:
     print_table(headers, rows, right=headers[2:])
 
 
-def of_failure(outcome: Outcome) -> str:
+def of_failure(finished: FinishedRun) -> str:
     """Return the reason why a run failed or was interrupted, and the place of its recorded rows."""
-    results = outcome.results
-    if isinstance(outcome.error, KeyboardInterrupt):
-        why = f"interrupted at t = {number(outcome.simulation.time)} s"
+    results = finished.results
+    if isinstance(finished.error, KeyboardInterrupt):
+        why = f"interrupted at t = {number(finished.simulation.time)} s"
     else:
-        why = str(outcome.error)
+        why = str(finished.error)
     kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"
-    return f"{why}\n{kept}; in {outcome.folder}: {', '.join(outcome.files)}"
+    return f"{why}\n{kept}; in {finished.folder}: {', '.join(finished.files)}"
 
 
 def _name(manifest: dict[str, Any]) -> str:
@@ -91,24 +91,24 @@ def _algorithm(manifest: dict[str, Any]) -> str:
     return f"{experiment['algorithm']}, {manifest['steps']} steps of {experiment['step_size']:g} s"
 
 
-def _simulated(outcome: Outcome) -> float:
-    return outcome.simulation.time - outcome.simulation.plan.experiment.start_time
+def _simulated(finished: FinishedRun) -> float:
+    return finished.simulation.time - finished.simulation.plan.experiment.start_time
 
 
-def _factor(outcome: Outcome) -> float:
-    seconds = outcome.simulation.loop_seconds
-    return _simulated(outcome) / seconds if seconds > 0.0 else 0.0
+def _factor(finished: FinishedRun) -> float:
+    seconds = finished.simulation.loop_seconds
+    return _simulated(finished) / seconds if seconds > 0.0 else 0.0
 
 
-def _time(outcome: Outcome) -> str:
-    seconds, factor = outcome.simulation.loop_seconds, _factor(outcome)
-    return f"{number(_simulated(outcome))} s simulated in {seconds:.3g} s: {factor:.3g} times real time"
+def _time(finished: FinishedRun) -> str:
+    seconds, factor = finished.simulation.loop_seconds, _factor(finished)
+    return f"{number(_simulated(finished))} s simulated in {seconds:.3g} s: {factor:.3g} times real time"
 
 
-def _final_values(outcome: Outcome) -> list[tuple[str, str]]:
+def _final_values(finished: FinishedRun) -> list[tuple[str, str]]:
     """Return the last values of a few outputs, first of those that other units receive."""
-    results = outcome.results
-    sent = {connection.source for connection in outcome.simulation.system.file.connect}
+    results = finished.results
+    sent = {connection.source for connection in finished.simulation.system.file.connect}
     outputs = [v for v in results.variables if v.causality == "output"]
     outputs.sort(key=lambda v: v.name not in sent)
     rows, final = [], results.final()

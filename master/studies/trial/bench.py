@@ -20,7 +20,7 @@ from ...builtin import fmu_file
 from ...fmi.fmu import read_fmu
 from ...simulation import Simulation
 
-Drive = Mapping[str, Sequence[tuple[float, float]]]
+InputCourses = Mapping[str, Sequence[tuple[float, float]]]
 """The points (time [s] from the start, value) of each input, in the units of measure of the system."""
 
 
@@ -78,7 +78,9 @@ class Bench:
         return self.entry.period or self.step_size
 
     @contextlib.contextmanager
-    def loaded(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> Iterator[Simulation]:
+    def loaded(
+        self, drive: InputCourses, deadline: Deadline, substeps: int | None = None
+    ) -> Iterator[Simulation]:
         """Yield a simulation of the unit alone, ready to step. Raises ConfigError, RunError."""
         deadline.check()
         timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
@@ -90,7 +92,7 @@ class Bench:
             finally:
                 self.warnings += sum(unit.warnings for unit in simulation.units.values())
 
-    def run(self, drive: Drive, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
+    def run(self, drive: InputCourses, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
         """Return the outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
         with self.loaded(drive, deadline, substeps) as simulation:
             deadline.check()
@@ -123,7 +125,7 @@ class Bench:
         )
         return System(self.system.path, file)
 
-    def _driven(self, drive: Drive) -> Scenario:
+    def _driven(self, drive: InputCourses) -> Scenario:
         """Return a scenario that drives the inputs, with the unit's own parameters and starts."""
         stimuli = [
             StimulusEntry(

@@ -16,7 +16,7 @@ from ....cosim.system.scenario import Scenario
 from ....cosim.system.system import System, UnitEntry
 from ...isolation.unit import IsolatedUnit
 from . import probes
-from .bench import Bench, Deadline, Drive, OutOfTime, largest
+from .bench import Bench, Deadline, InputCourses, OutOfTime, largest
 from .levels import Level, levels
 from .probes import Columns, Finding, Reaction
 
@@ -121,7 +121,7 @@ class _TrialRun:
 
     # ---- runs
 
-    def _run(self, drive: Drive) -> Columns:
+    def _run(self, drive: InputCourses) -> Columns:
         """Return the FMU's outputs; the same inputs are run once. Raises ConfigError, RunError."""
         key = repr(sorted(drive.items()))
         known = self._theirs_by_drive
@@ -132,7 +132,7 @@ class _TrialRun:
             self._ours_seen.append(self._run_ours(drive))
         return known[key]
 
-    def _run_ours(self, drive: Drive) -> Columns:
+    def _run_ours(self, drive: InputCourses) -> Columns:
         """Return the present unit's outputs; the same inputs are run once."""
         key, known = repr(sorted(drive.items())), self._ours_by_drive
         if key not in known:
@@ -143,7 +143,7 @@ class _TrialRun:
         """Return a drive with all inputs constant: at rest, those in `high` at their high value."""
         return {n: [(0.0, self.given[n].high if n in high else self.given[n].rest)] for n in self.moved}
 
-    def _swept(self, base: Drive, name: str, way: float = 1.0) -> Drive:
+    def _swept(self, base: InputCourses, name: str, way: float = 1.0) -> InputCourses:
         """Return a drive in which one input moves to its high value in 60 % of the time."""
         level = self.given[name]
         end = level.rest + way * (level.high - level.rest)
@@ -222,7 +222,7 @@ class _TrialRun:
         ]
         return [pair for pair in pairs if pair is not None]
 
-    def _other_way(self, base: Drive, name: str, ours: Columns) -> list[Reaction]:
+    def _other_way(self, base: InputCourses, name: str, ours: Columns) -> list[Reaction]:
         """Return the reactions if the FMU reacts to the other sign of the input only, else []."""
         theirs = _changes(self._run(self._swept(base, name, -1.0)), self._run(base))
         found = []
@@ -234,7 +234,7 @@ class _TrialRun:
                 found.append(dataclasses.replace(seen, finding=finding, sign=-seen.sign))
         return found
 
-    def _base_for(self, name: str) -> Drive:
+    def _base_for(self, name: str) -> InputCourses:
         """Return the constant inputs at which most outputs of the present unit react to an input.
 
         They are at rest, or one other is moved: a brake has no effect on a vehicle at standstill.

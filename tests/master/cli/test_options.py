@@ -16,7 +16,11 @@ from evcosim.master.cli.options import QuietOption, SystemArgument, takes_run_op
 
 @pytest.mark.parametrize(
     ("choices", "known"),
-    [(options.Algorithm, Algorithm), (options.Engine, EngineName), (options.Isolation, Isolation)],
+    [
+        (options.AlgorithmChoice, Algorithm),
+        (options.EngineChoice, EngineName),
+        (options.IsolationChoice, Isolation),
+    ],
 )
 def test_choices_are_those_of_the_library(choices, known):
     assert tuple(choice.value for choice in choices) == get_args(known)
@@ -43,7 +47,7 @@ def test_a_verb_declares_them_in_the_place_of_its_argument():
 def test_a_verb_receives_them_as_one_record():
     given = dict.fromkeys(("fmus", "swaps", "isolation"))
     given |= {"settings": ["vehicle.mass=180"], "strict": True, "stop_time": 2.0}
-    given |= {"algorithm": options.Algorithm.jacobi, "engine": options.Engine.python}
+    given |= {"algorithm": options.AlgorithmChoice.jacobi, "engine": options.EngineChoice.python}
     system, found, quiet = verb(system="scooter", quiet=True, **given)
     assert (system, quiet) == ("scooter", True)
     assert found == {
