@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import graphlib
 import importlib
 import re
 from collections.abc import Iterator
@@ -42,6 +43,17 @@ def docstrings(path: Path) -> Iterator[tuple[int, str]]:
                         yield statement.lineno, text.strip()
 
 
+def imports(path: Path) -> set[str]:
+    """Return the dotted names, from the project's root, that a module's relative imports may mean."""
+    found = set()
+    for node in nodes(path):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = path.relative_to(ROOT).parts[: -node.level]
+            target = ".".join([*base, *([node.module] if node.module else [])])
+            found |= {target, *(f"{target}.{alias.name}" for alias in node.names)}
+    return found
+
+
 def exists(dotted: str) -> bool:
     """Return True for the name of a module, or of something in one."""
     parts = dotted.split(".")
@@ -79,6 +91,18 @@ def test_functions_fit_on_a_screen():
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     }
     assert {function: n for function, n in lengths.items() if n > FUNCTION_LINES} == {}
+
+
+def test_the_imports_of_cosim_make_no_circle():
+    """Also those for types, and those on first use but for `Results.plot`."""
+    modules = {
+        ".".join(p.relative_to(ROOT).with_suffix("").parts): p
+        for p in MODULES
+        if p.is_relative_to(ROOT / "cosim")
+    }
+    graph = {module: imports(path) & set(modules) for module, path in modules.items()}
+    graph["cosim.results.results"].remove("cosim.figures.draw")
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
 
 
 def test_the_tests_of_a_module_are_found_by_its_name():

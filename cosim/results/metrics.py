@@ -35,7 +35,8 @@ from ..errors import ConfigError, nearest
 from ..row_store import Array
 from ..system.metric_spec import MetricSpec, Reduction
 from ..units import BASE_UNITS, UnitOfMeasure
-from .results import Results, ResultVariable
+from .recording import Recording
+from .variable import ResultVariable
 
 _SHARES = ("share_above", "share_equal")
 _TIMES = ("time_above", "time_equal", "settling")
@@ -96,14 +97,14 @@ def _check_reduction(part: Reduction, variables: Mapping[str, ResultVariable], p
             )
 
 
-def evaluate(results: Results, specs: Sequence[MetricSpec]) -> list[Metric]:
+def evaluate(results: Recording, specs: Sequence[MetricSpec]) -> list[Metric]:
     """Return the metrics of a run, in the order of the specs. Raises ConfigError as `check` does."""
     variables = {v.name: v for v in results.variables}
     check(specs, variables, "metrics")
     return [_evaluate(results, spec, variables) for spec in specs]
 
 
-def _evaluate(results: Results, spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Metric:
+def _evaluate(results: Recording, spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Metric:
     def without(reason: str) -> Metric:
         return Metric(spec.name, math.nan, spec.unit, reason)
 
@@ -204,7 +205,7 @@ def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitO
     )
 
 
-def _reduce(results: Results, part: Reduction) -> float:
+def _reduce(results: Recording, part: Reduction) -> float:
     """Return the number of a reduction, in the unit of the signal and s.
 
     One piece of the run is in memory at a time. Raises _NoValueError where the run gives it no value.
@@ -228,7 +229,7 @@ def _reduce(results: Results, part: Reduction) -> float:
     return integral / duration if part.reduce in _NEEDS_DURATION else integral
 
 
-def _first_row(results: Results, part: Reduction) -> int:
+def _first_row(results: Recording, part: Reduction) -> int:
     """Return the row at which the reduced part begins. Raises _NoValueError where the run ends before it."""
     if part.after is None:
         return 0
@@ -243,7 +244,7 @@ Piece = tuple[Array, Array]
 """Times [s] and values of a signal, shapes (n,); it begins with the last row of the piece before."""
 
 
-def _pieces(results: Results, part: Reduction, first: int, other: units.Affine) -> Iterator[Piece]:
+def _pieces(results: Recording, part: Reduction, first: int, other: units.Affine) -> Iterator[Piece]:
     """Yield the pieces of the reduced signal. Raises _NoValueError for a value that is not finite."""
     for time, values in results.pieces(part.signals, first, overlap=1):
         x = values[:, 0]

@@ -14,8 +14,9 @@ import numpy as np
 from ...csv_numbers import CsvFile
 from ...errors import ConfigError
 from ...row_store import Array
+from ..recording import Recording
 from ..variable import ResultVariable
-from .format import Contents, Recording
+from .format import Contents
 
 _ROWS = 4096  # formatted at a time: 40 columns of text then take about 10 MB
 

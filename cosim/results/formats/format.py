@@ -3,35 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from ...row_store import Array
+from ..recording import Recording
 from ..variable import ResultVariable
-
-
-class Recording(Protocol):
-    """The part of `Results` that a writer knows: the rows, a piece at a time, and what the columns mean."""
-
-    @property
-    def variables(self) -> Sequence[ResultVariable]:
-        """The m variables, in column order."""
-
-    @property
-    def names(self) -> Sequence[str]:
-        """Their names."""
-
-    @property
-    def manifest(self) -> Mapping[str, Any]:
-        """Facts of the run as a whole; a format without a place for them leaves them out."""
-
-    def __len__(self) -> int: ...
-
-    def pieces(
-        self, names: Sequence[str], first: int = 0, overlap: int = 0, rows: int | None = None
-    ) -> Iterator[tuple[Array, Array]]:
-        """Yield times [s], shape (n,), and values, shape (n, len(names)), of up to `rows` rows at a time."""
 
 
 @dataclasses.dataclass(frozen=True)

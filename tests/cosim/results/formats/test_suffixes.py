@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.results.formats.format import Contents, Format, Recording
+from evcosim.cosim.results.formats.format import Contents, Format
 from evcosim.cosim.results.formats.suffixes import CSV, FORMATS, format_of
+from evcosim.cosim.results.recording import Recording
 from evcosim.cosim.results.results import Results, ResultVariable
 
 VARIABLES = [
