@@ -125,8 +125,11 @@ class Simulation:
     def step(self, steps: int = 1) -> None:
         """Do `steps` communication steps.
 
-        Raises RunError naming unit, time and reason; the results up to then are kept.
+        Raises RunError naming unit, time and reason; the results up to then are kept. ConfigError for a
+        negative number of steps.
         """
+        if steps < 0:
+            raise ConfigError(f"steps = {steps}: a run does 0 steps or more")
         self._advance(steps, None)
 
     def run(self, progress: RunProgress | None = None) -> None:
@@ -136,6 +139,7 @@ class Simulation:
         self._advance(self.steps_left, report)
 
     def _advance(self, steps: int, progress: Callable[[int], None] | None) -> None:
+        self._require_units()
         if not self._engine.whole:
             raise RunError("the run has failed or was interrupted and cannot go on")
         begin = time.perf_counter()
@@ -144,15 +148,21 @@ class Simulation:
         finally:
             self.loop_seconds += time.perf_counter() - begin
 
+    def _require_units(self) -> None:
+        if not self._units:  # they were released: their machine code must not be called any more
+            raise RunError("the simulation is closed and its units are released; its results stay")
+
     def __getitem__(self, name: str) -> float:
         """Return the value of a variable "unit.variable" at the current communication point, in its own unit.
 
-        Raises ConfigError for an unknown name and for a String.
+        Raises ConfigError for an unknown name and for a String; RunError for a variable that is not recorded
+        after the simulation was closed.
         """
         slot = self.plan.slots.get(name)
         if slot is not None:
             return float(self._engine.memory[slot])
         unit, variable = self._split(name)
+        self._require_units()
         value = self._units[unit].get(variable)
         if isinstance(value, str):
             raise ConfigError(f"{name} is a String")
@@ -161,8 +171,10 @@ class Simulation:
     def set(self, name: str, value: Value) -> None:
         """Set an input that nothing drives; it keeps the value until it is set again.
 
-        Raises ConfigError for any other variable, and for a value of the wrong type or out of range.
+        Raises ConfigError for any other variable, and for a value of the wrong type or out of range; RunError
+        after the simulation was closed.
         """
+        self._require_units()
         unit, variable = self._split(name)
         plan = self.plan.inputs.get(name)
         if plan is None:
@@ -188,6 +200,7 @@ class Simulation:
 
     def _do(self, event: Event) -> None:
         """Check and do an event that no file has: the messages name the call instead of the keys."""
+        self._require_units()
         check_event(event, self._interfaces, self.plan.inputs, event.action)
         self._engine.effect(event)
 

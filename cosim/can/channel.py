@@ -22,7 +22,7 @@ from __future__ import annotations
 import dataclasses
 import struct
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -234,11 +234,16 @@ def _quantize_lines(i: int, op: SignalOperation) -> list[str]:
         return [f"single_{i}[0] = {q}", f"r{i} = single_{i}[0]"]
     if op.kind == "float64":
         return [f"r{i} = {q}"]
-    if op.settings.rounding == "half_even":
-        # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
-        return [f"r{i} = {q} + 6755399441055744.0 - 6755399441055744.0"]
-    # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
-    half = "0.49999999999999994" if op.settings.rounding == "nearest" else "0.0"
+    match op.settings.rounding:
+        case "half_even":
+            # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
+            return [f"r{i} = {q} + 6755399441055744.0 - 6755399441055744.0"]
+        case "nearest":
+            half = "0.49999999999999994"  # the greatest double below 0.5, which would round itself up
+        case "truncate":
+            half = "0.0"
+        case _:
+            assert_never(op.settings.rounding)
     if _never_negative(op):
         return [f"r{i} = ({q} + {half}) // 1.0"]
     up, down = f"(q + {half}) // 1.0", f"0.0 - ({half} - q) // 1.0"  # 0.0 - 0.0 is no -0.0

@@ -41,7 +41,7 @@ import math
 import struct
 import sys
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, assert_never
 
 from ..errors import ConfigError, RunError
 from .bus_settings import BusSettings, Rounding
@@ -68,14 +68,35 @@ def reference(signal: Signal, settings: BusSettings, value: float) -> tuple[int 
     """
     if math.isnan(value):
         raise ChannelError(signal.name, value, "the value is NaN")
-    wraps = settings.overflow == "wrap"
-    x = value if wraps else _saturate(signal, value)  # (1)
+    x = value if wraps(settings) else _saturate(signal, value)  # (1)
     n = quantize(signal, settings.rounding, x)  # (2), (3)
     low, high = signal.raw_range
-    if settings.overflow == "error" and (x != value or not low <= n <= high):
-        raise ChannelError(signal.name, value, f"the value {value!r} is outside {_range_text(signal)}")
-    raw = _wrap(signal, n, value) if wraps else _clip(signal, n)  # (4)
+    raw: int | float
+    match settings.overflow:  # (4)
+        case "wrap":
+            raw = _wrap(signal, n, value)
+        case "saturate":
+            raw = _clip(signal, n)
+        case "error":
+            if x != value or not low <= n <= high:
+                raise ChannelError(
+                    signal.name, value, f"the value {value!r} is outside {_range_text(signal)}"
+                )
+            raw = _clip(signal, n)
+        case _:
+            assert_never(settings.overflow)
     return raw, decode(signal, raw)  # (5)
+
+
+def wraps(settings: BusSettings) -> bool:
+    """Return True where step (1) is left out, and (4) keeps the low bits."""
+    match settings.overflow:
+        case "wrap":
+            return True
+        case "saturate" | "error":
+            return False
+        case _:
+            assert_never(settings.overflow)
 
 
 def quantize(signal: Signal, rounding: Rounding, x: float) -> int | float:
@@ -83,12 +104,18 @@ def quantize(signal: Signal, rounding: Rounding, x: float) -> int | float:
     q = (x - signal.offset) / signal.scale
     if signal.is_float or math.isinf(q):
         return q
-    if rounding == "half_even":
-        return round(q)
-    whole = math.trunc(q)
-    if rounding == "nearest" and abs(q - whole) >= 0.5:  # the difference is exact
-        whole += 1 if q > 0 else -1
-    return whole
+    match rounding:
+        case "half_even":
+            return round(q)
+        case "truncate":
+            return math.trunc(q)
+        case "nearest":
+            whole = math.trunc(q)
+            if abs(q - whole) >= 0.5:  # the difference is exact
+                whole += 1 if q > 0 else -1
+            return whole
+        case _:
+            assert_never(rounding)
 
 
 def decode(signal: Signal, raw: int | float) -> float:
@@ -206,8 +233,7 @@ def _kind(signal: Signal) -> Kind:
 
 def _unsaturated(signal: Signal, settings: BusSettings) -> tuple[float, float]:
     """Return the least and the greatest x, in the signal's unit, that steps (1) and (4) leave alone."""
-    wraps = settings.overflow == "wrap"
-    first, last = signal.raw_type_range if wraps else signal.raw_range
+    first, last = signal.raw_type_range if wraps(settings) else signal.raw_range
 
     def too_low(x: float) -> bool:
         n = quantize(signal, settings.rounding, x)
@@ -218,7 +244,7 @@ def _unsaturated(signal: Signal, settings: BusSettings) -> tuple[float, float]:
         return n > last if signal.scale > 0 else n < first
 
     low, high = _first_double(lambda x: not too_low(x)), -_first_double(lambda x: not too_high(-x))
-    if not wraps:
+    if not wraps(settings):
         low = low if signal.minimum is None else max(low, float(signal.minimum))
         high = high if signal.maximum is None else min(high, float(signal.maximum))
     return low, high

@@ -11,7 +11,7 @@ import math
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, assert_never, cast
+from typing import Any, Literal, assert_never, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +46,12 @@ def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
 
 @dataclasses.dataclass(frozen=True)
 class Effect:
-    """The effect of an event on an input: `value` replaces the received one, or is added to it."""
+    """The effect of an event on an input: `value` replaces the received one, or is added to it.
 
-    replaces: bool
+    Both engines match all kinds, so that mypy names them where a new one is missing.
+    """
+
+    kind: Literal["replace", "add"]
     value: float
 
 
@@ -101,7 +104,13 @@ class Turn:
     def apply_effects(self) -> None:
         """Override and bias the slots of inputs."""
         for slot, effect in self.effects.items():
-            self.memory[slot] = effect.value if effect.replaces else self.memory[slot] + effect.value
+            match effect.kind:
+                case "replace":
+                    self.memory[slot] = effect.value
+                case "add":
+                    self.memory[slot] += effect.value
+                case _:
+                    assert_never(effect.kind)
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
@@ -290,9 +299,9 @@ class Engine:
         """Let an event act from now on, whatever its time; `plan.events.check_event` has accepted it."""
         match event:
             case Override():
-                self._affect(event.variable, Effect(replaces=True, value=event.value))
+                self._affect(event.variable, Effect("replace", event.value))
             case Bias():
-                self._affect(event.variable, Effect(replaces=False, value=event.value))
+                self._affect(event.variable, Effect("add", event.value))
             case Reset():
                 self._affect(event.variable, None)
             case _:

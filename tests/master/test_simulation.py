@@ -192,3 +192,25 @@ def test_progress_reaches_the_stop_time():
     assert seen[-1] == (60.0, 60.0)
     assert [now for now, _ in seen] == sorted(now for now, _ in seen)
     assert len(seen) > 1
+
+
+@pytest.mark.parametrize("engine", ["compiled", "python"])
+def test_a_closed_simulation_calls_no_unit(engine: str) -> None:
+    with Simulation("scooter", stop_time=1.0, engine=engine) as sim:
+        sim.step(10)
+        speed = sim["vehicle.speed"]
+    for call in (
+        sim.step,
+        sim.run,
+        lambda: sim["vehicle.mass"],
+        lambda: sim.set("vehicle.road_grade", 0.0),
+        lambda: sim.override("ecu.speed_measured", 0.0),
+    ):
+        with pytest.raises(RunError, match="the simulation is closed"):
+            call()
+    assert (sim["vehicle.speed"], len(sim.results)) == (speed, 11)
+
+
+def test_a_run_does_not_step_back() -> None:
+    with Simulation("scooter", stop_time=1.0) as sim, pytest.raises(ConfigError, match="steps = -1"):
+        sim.step(-1)

@@ -286,10 +286,10 @@ def operate(t, m, o, s, k, time):
         e = word(t, L.EFFECTS) + 8 * L.EFFECT_WIDTH * a
         for _ in range(b):
             slot = word(e, L.SLOT)
-            before = 0.0 if word(e, L.OVERRIDES) else number(m, slot)
-            put_number(
-                m, slot, number(e, L.VALUE_OF) if word(e, L.OVERRIDES) else before + number(e, L.VALUE_OF)
-            )
+            if word(e, L.EFFECT_KIND) == L.REPLACE:
+                put_number(m, slot, number(e, L.VALUE_OF))
+            else:
+                put_number(m, slot, number(m, slot) + number(e, L.VALUE_OF))
             e += 8 * L.EFFECT_WIDTH
     elif kind == L.KEEP or kind == L.DELIVER:
         wait(t, m, o, k)

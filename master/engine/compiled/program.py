@@ -22,6 +22,7 @@ from ..engine import Engine, Sender, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
 from . import tables as L
+from .codes import effect_kind, raw_mode
 
 KernelTable = NDArray[np.int64]
 """Rows of 8-byte numbers, int64 or the bits of float64, shape (rows, columns)."""
@@ -33,7 +34,6 @@ Recheck = Callable[[int, int], None]
 """Repeats the check at which the kernel stopped, given its code and detail, and raises the exception."""
 
 _DIRECT = (Fmi1Unit, Fmi2Unit, Fmi3Unit)
-_MODES = {"nearest": L.NEAREST, "half_even": L.HALF_EVEN, "truncate": L.TRUNCATE}
 _NO_LOG = -1
 
 
@@ -107,7 +107,7 @@ class Program:
             for i, (slot, effect) in enumerate(turn.effects.items(), row):
                 _fill(
                     self.effect_table, i,
-                    {L.SLOT: slot, L.OVERRIDES: int(effect.replaces), L.VALUE_OF: float(effect.value)},
+                    {L.SLOT: slot, L.EFFECT_KIND: effect_kind(effect), L.VALUE_OF: float(effect.value)},
                 )  # fmt: skip # a row
         places = np.flatnonzero(busy)
         return self.ops[places], places.tolist()
@@ -350,10 +350,9 @@ def _mapped(affine: Affine) -> dict[int, int | float]:
 
 
 def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> Cells:
-    floats = {"float32": L.FLOAT32, "float64": L.FLOAT64}
     row: dict[int, int | float] = {
         L.FROM: route.source,
-        L.MODE: floats.get(operation.kind, _MODES[operation.settings.rounding]),
+        L.MODE: raw_mode(operation),
         L.SATURATES: int(operation.raw_below is not None),
         L.TO: first_sink,
         L.RECEIVERS: len(route.sinks),

@@ -34,9 +34,10 @@ SOURCE, SINK, SCALE, ADD = range(4)
 ROUTE = 4
 """Columns of ROUTES and SINKS: scale * x + add. An offset of 0 is -0.0, which changes no double."""
 
-SLOT, OVERRIDES, VALUE_OF = range(3)
+SLOT, EFFECT_KIND, VALUE_OF = range(3)
 EFFECT_WIDTH = 3
-"""Columns of EFFECTS: the value replaces the one in the slot, or is added to it."""
+ADD_TO, REPLACE = range(2)
+"""Columns of EFFECTS, and the kinds: the value is added to the one in the slot, or replaces it."""
 
 # ---- C calls
 
