@@ -131,7 +131,8 @@ class Results:
         return name in self._columns
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Return the values of a variable, shape (n,): float64, int64 (Integer, Enumeration) or bool.
+        """Return the values of a variable, shape (n,): float64, int64 (Integer, Enumeration) or bool;
+        float64, too, for integers of which one is beyond an int64, as an UInt64 can be.
 
         `time` is accepted as a name. Raises ConfigError naming the nearest variable there is.
         """
@@ -141,7 +142,9 @@ class Results:
         kind = self.variable(name).type
         if kind == "Real":
             return column
-        return column.astype(np.bool_ if kind == "Boolean" else np.int64)
+        if kind == "Boolean":
+            return column.astype(np.bool_)
+        return column.astype(np.int64) if np.all(np.abs(column) < 2.0**63) else column.copy()
 
     def __repr__(self) -> str:
         span = "{:g} to {:g} s".format(*self.span) if len(self) else "no time"

@@ -37,8 +37,8 @@ def _texts(values: Array, kind: str) -> list[str]:
     bits = values.view(np.int64)  # as bits, -0.0 differs from 0.0 and NaN equals itself
     starts = np.concatenate(([0], np.flatnonzero(bits[1:] != bits[:-1]) + 1))
     distinct = values[starts]
-    if kind != "Real" and np.array_equal(distinct, np.rint(distinct)):
-        texts = list(map(str, distinct.astype(np.int64).tolist()))
+    if kind != "Real" and np.isfinite(distinct).all() and np.array_equal(distinct, np.rint(distinct)):
+        texts = list(map(str, map(int, distinct.tolist())))  # an int64 would not hold a large UInt64
     else:
         texts = list(map(repr, distinct.tolist()))
     if len(starts) == len(values):

@@ -110,3 +110,12 @@ def test_a_broken_csv_is_refused_with_its_place(text: str, tmp_path: Path) -> No
         csv.read(path)
     assert str(refusal.value).startswith(f"{path}: ")
     assert BROKEN[text] in str(refusal.value)
+
+
+@pytest.mark.parametrize("value", [2.0**63, -(2.0**63), 2.0**64, 1e300])
+def test_an_integer_beyond_64_bits_keeps_its_value(value: float, tmp_path: Path) -> None:
+    results = Results([0.0], [[value]], [ResultVariable("a.n", type="Integer")])
+    assert results["a.n"][0] == results.final()["a.n"] == value
+    path = results.to_csv(tmp_path / "r.csv")
+    assert path.read_text() == f"time,a.n\n0.0,{int(value)}\n"
+    assert Results.read(path).column("a.n")[0] == value
