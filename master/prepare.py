@@ -15,7 +15,7 @@ from ..cosim.plan.resolve import participating, resolve
 from ..cosim.swap.mapping import present, without_absent
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.swap_file import swapped
-from ..cosim.system.run_options import RunOptions, check_names
+from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
 from ..cosim.system.system import System, load_system
 from ..cosim.system.toml import DATA
@@ -47,7 +47,7 @@ def prepare(
     Without `runnable` an FMU that cannot run on this machine is accepted too, to be shown only.
     Raises ConfigError naming place, rule and values; TypeError for an unknown option.
     """
-    check_names(options)
+    check_options(options)
     swaps = options.get("swaps") or {}
     # the files: system and scenario, with varied buses and swapped units, without absent variables
     read, driven = _files(system, scenario, options)

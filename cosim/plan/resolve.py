@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
@@ -213,6 +215,7 @@ def checked(value: Any, variable: VariableInfo, place: str) -> Value:
     Raises ConfigError, which starts with `place`, when it has another type or is out of range.
     """
     unit = f" {variable.unit}" if variable.unit else ""
+    value = value.item() if isinstance(value, np.generic) else value
     if variable.type == "String":
         if not isinstance(value, str):
             raise ConfigError(f"{place}: {variable.name} is a String, not {value!r}")
@@ -223,7 +226,7 @@ def checked(value: Any, variable: VariableInfo, place: str) -> Value:
         if value not in (True, False):
             raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {value!r}")
         return bool(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not -math.inf < value < math.inf:
         raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {value!r}")
     if variable.type != "Real" and value != int(value):
         raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {value!r}")

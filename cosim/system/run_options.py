@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
+from numbers import Real
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict, get_args
 
 from ..can.bus_settings import BusVariation
-from ..errors import nearest
+from ..errors import ConfigError, nearest
 from ..interface import Value
 from .system import Algorithm, EngineName, Isolation
 
@@ -46,11 +47,42 @@ class RunOptions(TypedDict, total=False):
     """Refuse every FMU whose description has defects, even if they could be mended (default: False)."""
 
 
-def check_names(options: Iterable[str]) -> None:
-    """Raise TypeError with the nearest option for a name that is not in RunOptions."""
+def check_options(options: Mapping[str, Any]) -> None:
+    """Raise TypeError with the nearest option for a name that is not in RunOptions.
+
+    Raises ConfigError for a value of another type, which would otherwise pass for another option.
+    """
     known = RunOptions.__optional_keys__
     for name in options:
         if name not in known:
             raise TypeError(
                 f"a run has no option '{name}'{nearest(name, known)}; there are: {', '.join(sorted(known))}"
             )
+        if (value := options[name]) is not None and name in _RULES and not _RULES[name][0](value):
+            raise ConfigError(f"{name} = {value!r}: {_RULES[name][1]}")
+
+
+def _one_of(kind: Any) -> tuple[Callable[[Any], bool], str]:
+    """Return the rule for a Literal type."""
+    known = get_args(kind)
+    return lambda value: isinstance(value, str) and value in known, f"must be {' or '.join(map(repr, known))}"
+
+
+def _is_time(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+_FLAG = (lambda value: isinstance(value, bool), "must be True or False")
+_BY_NAME = (lambda value: isinstance(value, Mapping), "must be a mapping of names")
+_RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "parameters": _BY_NAME,
+    "fmus": _BY_NAME,
+    "swaps": _BY_NAME,
+    "ideal": _FLAG,
+    "bus": (lambda value: isinstance(value, BusVariation), "must be a BusVariation"),
+    "algorithm": _one_of(Algorithm),
+    "stop_time": (_is_time, "must be a number of seconds"),
+    "isolation": _one_of(Isolation),
+    "engine": _one_of(EngineName),
+    "strict": _FLAG,
+}
