@@ -87,16 +87,18 @@ _MODULES = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    if name == "__version__":
-        from importlib.metadata import version
+if not TYPE_CHECKING:  # a type checker that sees this would accept every misspelled name
 
-        return version("evcosim")
-    if name in _MODULES:
-        found = getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
-        globals()[name] = found  # so that the next look-up does not come here
-        return found
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    def __getattr__(name: str) -> Any:
+        if name == "__version__":
+            from importlib.metadata import version
+
+            return version("evcosim")
+        if name in _MODULES:
+            found = getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
+            globals()[name] = found  # so that the next look-up does not come here
+            return found
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

@@ -119,12 +119,35 @@ TYPES = [
 
 def test_a_users_mypy_knows_the_types(tmp_path):
     """The links in .typing stand for an installation; .ci/run does it with that of the wheel."""
+    said = mypy(tmp_path, SCRIPT)
+    assert re.findall(r'Revealed type is "(.*)"', said) == TYPES, said
+    assert re.findall(r"^user.py:(\d+): error: .*idael", said, re.MULTILINE) == ["11"]
+    assert said.count("error:") == 1
+
+
+MISSPELLED = """\
+import evcosim
+from evcosim import simulat
+
+evcosim.Simulatoin("scooter")
+reveal_type(evcosim.__version__)
+"""
+
+
+def test_a_users_mypy_refuses_a_misspelled_name(tmp_path):
+    said = mypy(tmp_path, MISSPELLED)
+    assert re.findall(r'^user.py:(\d+): error: Module "?evcosim"? has no attribute', said, re.M) == ["2"], said
+    assert re.findall(r'^user.py:(\d+): error: Module has no attribute "Simulatoin"', said, re.M) == ["4"]
+    assert said.count("error:") == 2
+    assert 'Revealed type is "str"' in said or 'Revealed type is "builtins.str"' in said
+
+
+def mypy(folder: Path, script: str) -> str:
+    """Return the output of mypy for a script of a user."""
     if importlib.util.find_spec("mypy") is None:
         give_up("mypy is not installed")
-    (tmp_path / "user.py").write_text(SCRIPT)
-    call = [sys.executable, "-m", "mypy", "--follow-imports=silent", f"--cache-dir={tmp_path}", "user.py"]
+    (folder / "user.py").write_text(script)
+    call = [sys.executable, "-m", "mypy", "--follow-imports=silent", f"--cache-dir={folder}", "user.py"]
     environment = os.environ | {"MYPYPATH": str(ROOT / ".typing")}
-    done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path, env=environment)
-    assert re.findall(r'Revealed type is "(.*)"', done.stdout) == TYPES, done.stdout + done.stderr
-    assert re.findall(r"^user.py:(\d+): error: .*idael", done.stdout, re.MULTILINE) == ["11"]
-    assert done.stdout.count("error:") == 1
+    done = subprocess.run(call, capture_output=True, text=True, cwd=folder, env=environment)
+    return done.stdout + done.stderr
