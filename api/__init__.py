@@ -19,39 +19,79 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .cosim.analysis.bus_budget import Budget
-    from .cosim.can.bus_settings import BusVariation
+    from .cosim.analysis.bus_budget import Budget, Point, Series
+    from .cosim.analysis.first_order import Estimate, FirstOrder, Fit, Prediction
+    from .cosim.analysis.frequency_response import FrequencyResponse
+    from .cosim.analysis.sweep import Sweep
+    from .cosim.can.bus_settings import BusVariation, Resolution
     from .cosim.errors import ConfigError, RunError
+    from .cosim.interface import Value
     from .cosim.results.metrics import Metric
     from .cosim.results.results import Results
     from .cosim.results.variable import ResultVariable
+    from .cosim.row_store import Array, Grid, Table
+    from .cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
     from .cosim.system.identification_spec import IdentificationSpec
+    from .cosim.system.metric_spec import MetricSpec, Reduction
     from .cosim.system.run_options import RunOptions
-    from .cosim.system.scenario import Scenario, load_scenario
-    from .cosim.system.system import System, load_system
-    from .master.simulation import Simulation, simulate
+    from .cosim.system.scenario import Scenario, ScenarioFile, load_scenario
+    from .cosim.system.system import Algorithm, EngineName, Isolation, System, SystemFile, load_system
+    from .cosim.system.toml import FileValue
+    from .master.simulation import RunProgress, Simulation, simulate
     from .master.studies.bus_budget import budget
     from .master.studies.identification import Identification, identify
-    from .master.studies.parallel import Outcome, Task, run_all
+    from .master.studies.identification_run import PhaseProgress
+    from .master.studies.parallel import Failure, Outcome, Task, TaskError, TaskProgress, run_all
+    from .master.unit import Unit
 
     __version__: str
 
 __all__ = [
+    "Algorithm",
+    "Array",
     "Budget",
     "BusVariation",
     "ConfigError",
+    "EngineName",
+    "Estimate",
+    "Failure",
+    "FigureSpec",
+    "FileValue",
+    "FirstOrder",
+    "Fit",
+    "FrequencyResponse",
+    "Grid",
     "Identification",
     "IdentificationSpec",
+    "Isolation",
     "Metric",
+    "MetricSpec",
     "Outcome",
+    "PanelSpec",
+    "PhaseProgress",
+    "Point",
+    "Prediction",
+    "Reduction",
+    "Resolution",
     "ResultVariable",
     "Results",
     "RunError",
     "RunOptions",
+    "RunProgress",
     "Scenario",
+    "ScenarioFile",
+    "Series",
+    "SignalSpec",
     "Simulation",
+    "Sweep",
     "System",
+    "SystemFile",
+    "Table",
     "Task",
+    "TaskError",
+    "TaskProgress",
+    "Unit",
+    "Value",
     "__version__",
     "budget",
     "identify",
@@ -63,21 +103,51 @@ __all__ = [
 
 # name -> its module; what stands above for type checkers, and a test compares the two
 _MODULES = {
+    "Algorithm": "cosim.system.system",
+    "Array": "cosim.row_store",
     "Budget": "cosim.analysis.bus_budget",
     "BusVariation": "cosim.can.bus_settings",
     "ConfigError": "cosim.errors",
+    "EngineName": "cosim.system.system",
+    "Estimate": "cosim.analysis.first_order",
+    "Failure": "master.studies.parallel",
+    "FigureSpec": "cosim.system.figure_spec",
+    "FileValue": "cosim.system.toml",
+    "FirstOrder": "cosim.analysis.first_order",
+    "Fit": "cosim.analysis.first_order",
+    "FrequencyResponse": "cosim.analysis.frequency_response",
+    "Grid": "cosim.row_store",
     "Identification": "master.studies.identification",
     "IdentificationSpec": "cosim.system.identification_spec",
+    "Isolation": "cosim.system.system",
     "Metric": "cosim.results.metrics",
+    "MetricSpec": "cosim.system.metric_spec",
     "Outcome": "master.studies.parallel",
+    "PanelSpec": "cosim.system.figure_spec",
+    "PhaseProgress": "master.studies.identification_run",
+    "Point": "cosim.analysis.bus_budget",
+    "Prediction": "cosim.analysis.first_order",
+    "Reduction": "cosim.system.metric_spec",
+    "Resolution": "cosim.can.bus_settings",
     "ResultVariable": "cosim.results.variable",
     "Results": "cosim.results.results",
     "RunError": "cosim.errors",
     "RunOptions": "cosim.system.run_options",
+    "RunProgress": "master.simulation",
     "Scenario": "cosim.system.scenario",
+    "ScenarioFile": "cosim.system.scenario",
+    "Series": "cosim.analysis.bus_budget",
+    "SignalSpec": "cosim.system.figure_spec",
     "Simulation": "master.simulation",
+    "Sweep": "cosim.analysis.sweep",
     "System": "cosim.system.system",
+    "SystemFile": "cosim.system.system",
+    "Table": "cosim.row_store",
     "Task": "master.studies.parallel",
+    "TaskError": "master.studies.parallel",
+    "TaskProgress": "master.studies.parallel",
+    "Unit": "master.unit",
+    "Value": "cosim.interface",
     "budget": "master.studies.bus_budget",
     "identify": "master.studies.identification",
     "load_scenario": "cosim.system.scenario",

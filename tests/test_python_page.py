@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import io
 import re
@@ -13,6 +14,7 @@ from typing import Any
 import evcosim
 from support import python_page
 
+ROOT = Path(__file__).parents[1]
 TEXT = python_page.PAGE.read_text(encoding="utf-8")
 LINES = r"((?:(?!```).*\n)*)"
 EXAMPLES = re.findall(rf"^```python\n{LINES}```\n\n```text\n{LINES}```\n", TEXT, re.MULTILINE)
@@ -24,6 +26,24 @@ def test_the_reference_is_what_the_code_says():
 
 def test_every_public_name_has_a_reference():
     assert sorted(python_page.described(TEXT)) == [n for n in evcosim.__all__ if n != "__version__"]
+
+
+def defined() -> set[str]:
+    """Return the names of all classes and types that the package defines in its modules."""
+    found = set()
+    for path in (file for folder in ("cosim", "master") for file in (ROOT / folder).rglob("*.py")):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef):
+                found.add(node.name)
+            elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                found.add(node.targets[0].id)
+    return found
+
+
+def test_every_type_in_a_public_signature_is_public():
+    types = python_page.named(TEXT) & defined()
+    assert {"Fit", "Failure", "TaskProgress", "Value"} <= types
+    assert types <= set(evcosim.__all__), sorted(types - set(evcosim.__all__))
 
 
 def alone(code: str) -> bool:

@@ -3,14 +3,15 @@
     .venv/bin/python tests/support/python_page.py            # exit code 1 if a block is out of date
     .venv/bin/python tests/support/python_page.py --write    # the blocks anew
 
-A block stands between `<!-- reference: NAME ... -->` and `<!-- end -->`; the prose and the examples around it
-are written by hand.
+A block stands between `<!-- reference: NAME ... -->` and `<!-- end -->`; one that begins with `summary` has a
+line for each name. The prose and the examples around the blocks are written by hand.
 """
 
 from __future__ import annotations
 
 import ast
 import dataclasses
+import importlib
 import inspect
 import re
 import sys
@@ -22,23 +23,55 @@ from typing import Any
 import evcosim
 
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
-_BLOCK = re.compile(r"(<!-- reference: ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+_BLOCK = re.compile(r"(<!-- (reference|summary): ([\w ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _WIDTH = 100  # characters of a signature in one line
 
 
 def rewritten(page: str) -> str:
     """Return the page with each block as the code says it."""
-    return _BLOCK.sub(lambda found: f"{found[1]}\n{reference(found[2].split())}\n{found[3]}", page)
+    made = {"reference": reference, "summary": summary}
+    return _BLOCK.sub(lambda found: f"{found[1]}\n{made[found[2]](found[3].split())}\n{found[4]}", page)
 
 
 def described(page: str) -> list[str]:
     """Return the names that have a reference on the page."""
-    return [name for found in _BLOCK.finditer(page) for name in found[2].split()]
+    return [name for found in _BLOCK.finditer(page) for name in found[3].split()]
+
+
+def named(page: str) -> set[str]:
+    """Return the names beginning with a capital in the signatures, keys and members of the references."""
+    found = set()
+    for block in _BLOCK.finditer(page):
+        if block[2] == "reference":
+            code = [*re.findall(r"```python\n(.*?)```", block[0], re.DOTALL)]
+            code += re.findall(r"^\| `(.*?)` \|(?: `(.*?)` \|)?", block[0].replace("\\|", "/"), re.MULTILINE)
+            found |= set(re.findall(r"\b[A-Z]\w+", str(code)))
+    return found
 
 
 def reference(names: list[str]) -> str:
     """Return the references of some names of `evcosim`, in this order."""
     return "\n".join(_entry(name, getattr(evcosim, name)) for name in names)
+
+
+def summary(names: list[str]) -> str:
+    """Return a table of some names of `evcosim`: first paragraph, or the type that it stands for."""
+    rows = [(f"`{name}`", _in_a_line(name, getattr(evcosim, name))) for name in names]
+    return _table(("name", ""), rows) + "\n"
+
+
+def _in_a_line(name: str, item: Any) -> str:
+    if inspect.isclass(item):
+        return _first_paragraph(item)
+    body = ast.parse(inspect.getsource(importlib.import_module(f"evcosim.{evcosim._MODULES[name]}"))).body
+    (i,) = (
+        i
+        for i, each in enumerate(body)
+        if isinstance(each, ast.Assign) and ast.unparse(each.targets[0]) == name
+    )
+    assert isinstance(body[i], ast.Assign)
+    stands_for = re.sub(r"Annotated\[(\w+), .*", r"\1", ast.unparse(body[i].value))  # without its validators
+    return f"`{stands_for}` {_docstring(body[i + 1 : i + 2])}".rstrip()
 
 
 def _entry(name: str, item: Any) -> str:
@@ -105,16 +138,25 @@ def _unquoted(text: str) -> str:
 
 
 def _keys(item: Any) -> Iterator[tuple[str, ...]]:
-    """Name, type with default, and meaning of each key of a record."""
-    body = _source(item).body
-    for i, statement in enumerate(body):
-        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
-            default = f" = {ast.unparse(statement.value)}" if statement.value is not None else ""
-            yield (
-                f"`{statement.target.id}`",
-                f"`{ast.unparse(statement.annotation)}{default}`",
-                _docstring(body[i + 1 : i + 2]),
-            )
+    """Name, type with default, and meaning of each key of a record, those of its bases first."""
+    for each in reversed(item.__mro__):
+        if not each.__module__.startswith("evcosim."):
+            continue
+        body = _source(each).body
+        for i, statement in enumerate(body):
+            if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+                yield (
+                    f"`{statement.target.id}`",
+                    f"`{ast.unparse(statement.annotation)}{_default(statement.value)}`",
+                    _docstring(body[i + 1 : i + 2]),
+                )
+
+
+def _default(value: ast.expr | None) -> str:
+    """The default of a key as text; "" where there is none, as in `= Field(min_length=1)`."""
+    if isinstance(value, ast.Call) and ast.unparse(value.func) == "Field":
+        value = next((keyword.value for keyword in value.keywords if keyword.arg == "default"), None)
+    return f" = {ast.unparse(value)}" if value is not None else ""
 
 
 def _source(item: Any) -> ast.ClassDef:
