@@ -60,23 +60,23 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
     return path
 
 
-def fmu_file(name: str, beside: Path | None = None) -> Path:
+def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
     """Return the file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 
-    A relative path is looked up beside the system file `beside` that names it, then from the working folder.
-    Raises ConfigError with the nearest name if there is no such file.
+    A relative path is looked up beside the file `beside` that names it, then from the working folder. Raises
+    ConfigError with the nearest name if there is no such file; it starts with `place`, the file and its key.
     """
     from ..fmus import build
 
-    place = "" if beside is None else f"{beside}: "
+    start = f"{place}: " if place else ""
     if name in build.names():
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
         if path.is_file():
             return path
     if name.endswith(".fmu") or "/" in name or "\\" in name:
-        raise ConfigError(f"{place}{name}: there is no such FMU file")
+        raise ConfigError(f"{start}{name}: there is no such FMU file")
     raise ConfigError(
-        f"{place}there is no built-in FMU '{name}'{nearest(name, build.names())}; "
+        f"{start}there is no built-in FMU '{name}'{nearest(name, build.names())}; "
         f"built in: {', '.join(build.names())}"
     )

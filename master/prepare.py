@@ -133,7 +133,10 @@ def _read_fmus(
             )
     read = {}
     for unit, entry in entries.items():
-        path = fmu_file(str(fmus[unit])) if unit in fmus else fmu_file(entry.fmu, system.path)
+        if unit in fmus:
+            path = fmu_file(str(fmus[unit]), place=f"--fmu {unit}")
+        else:
+            path = fmu_file(entry.fmu, system.path, f"{system.keys_of(unit)}fmu")
         read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)
         if runnable:
             check_runnable(read[unit])

@@ -99,7 +99,7 @@ def connect(
     """
     work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), every, ideal)
     for name, entry in system.file.buses.items():
-        work.databases[name] = load_dbc(data_file(entry.dbc, system.path))
+        work.databases[name] = load_dbc(data_file(entry.dbc, system.path, f"{system.path}: buses.{name}.dbc"))
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)

@@ -259,9 +259,9 @@ def _drives(
     Raises ConfigError when an input is driven already, or its unit measures another quantity.
     """
     drives = []
-    for number, entry in enumerate(scenario.file.stimuli):
-        place = f"{scenario.path}: stimulus {number + 1} ({entry.to})"
-        unit, name = network.input_of(entry.to, interfaces, place)
+    for number, entry in enumerate(scenario.file.stimuli, 1):
+        place = f"{scenario.path}: stimulus {number}"
+        unit, name = network.input_of(entry.to, interfaces, f"{place}.to")
         variable, interface = interfaces[unit].variables[name], interfaces[unit]
         map_ = Affine()
         if entry.unit is not None:
@@ -269,9 +269,9 @@ def _drives(
             try:
                 map_ = conversion(defined(entry.unit, known), defined(variable.unit, known))
             except ConfigError as error:
-                raise ConfigError(f"{place}: {error}") from error
+                raise ConfigError(f"{place}.unit: {error}") from error
         slot = slots.valid[unit, name]
-        network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), place)
+        network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), f"{place}.to")
         drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path), map_))
     return tuple(drives)
 

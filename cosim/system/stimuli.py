@@ -21,22 +21,22 @@ TimeFunction = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> TimeFunction:
     """The signal that an entry describes, in the entry's own unit.
 
-    `beside` is the scenario file, from which a csv path is looked up.
-    Raises ConfigError naming `place`, rule and values.
+    `place` is the entry's in the scenario file `beside`, from which a csv path is looked up. Raises
+    ConfigError naming `place` with the key, rule and values.
     """
     if entry.constant is not None:
-        return _table(np.zeros(1), np.array([entry.constant]), "hold", place)
+        return _table(np.zeros(1), np.array([entry.constant]), "hold", f"{place}.constant")
     if entry.sine is not None:
         return _sine(entry.sine)
     if entry.ramp is not None:
-        return _ramp(entry.ramp, place)
+        return _ramp(entry.ramp, f"{place}.ramp")
     if entry.table is not None:
         points = np.array(entry.table, dtype=float).reshape(-1, 2)
-        return _table(points[:, 0], points[:, 1], entry.interpolation, place)
+        return _table(points[:, 0], points[:, 1], entry.interpolation, f"{place}.table")
     assert entry.csv is not None  # the entry has exactly one kind
-    path = data_file(entry.csv, beside) if beside else Path(entry.csv)
+    path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
     times, values = read_columns(path, entry.column)
-    return _table(times, values, entry.interpolation, f"{place}: {path}")
+    return _table(times, values, entry.interpolation, f"{place}.csv: {path}")
 
 
 def _sine(sine: Sine) -> TimeFunction:

@@ -109,12 +109,13 @@ def find(name: str, folders: list[Path], kind: str) -> Path:
     raise ConfigError(f"unknown {kind} '{name}'{nearest(name, known)}; known: {', '.join(known) or 'none'}")
 
 
-def data_file(name: str, beside: Path) -> Path:
+def data_file(name: str, beside: Path, place: str) -> Path:
     """Return the path of a file that the system or scenario `beside` names: next to it, else built in.
 
-    Raises ConfigError where it is in neither place.
+    `place` is the file and the key that names it. Raises ConfigError, which starts with `place`, where there
+    is no such file.
     """
     for folder in (beside.parent, DATA):
         if (folder / name).is_file():
             return folder / name
-    raise ConfigError(f"{beside}: there is no file '{name}', neither in {beside.parent} nor built in")
+    raise ConfigError(f"{place}: there is no file '{name}', neither in {beside.parent} nor built in")

@@ -104,7 +104,7 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
         raise ConfigError(f"--as {place}: there is no unit '{unit}'{nearest(unit, system.file.units)}")
     driven = load_scenario(system, scenario)
     entry = read_toml(Path(file), SwapFile) if file.endswith(".toml") else None
-    path = fmu_file(entry.fmu, Path(file)) if entry else fmu_file(file)
+    path = fmu_file(entry.fmu, Path(file), f"{file}: fmu") if entry else fmu_file(file)
     fmu = read_fmu(path, strict or (entry is not None and entry.strict))
     check_runnable(fmu)
     needs = requirements(system, driven, unit, _there_now(system, unit))

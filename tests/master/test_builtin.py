@@ -36,14 +36,17 @@ def test_a_path_is_looked_up_beside_the_system_first(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("Batery", r"mine\.toml: there is no built-in FMU 'Batery' \(did you mean 'Battery'\?\); built in: "),
-        ("none.fmu", r"mine\.toml: none\.fmu: there is no such FMU file"),
-        ("folder/Battery", r"mine\.toml: folder/Battery: there is no such FMU file"),
+        (
+            "Batery",
+            r"^mine\.toml: units\.b\.fmu: there is no built-in FMU 'Batery' \(did you mean 'Battery'\?\)",
+        ),
+        ("none.fmu", r"^mine\.toml: units\.b\.fmu: none\.fmu: there is no such FMU file"),
+        ("folder/Battery", r"^mine\.toml: units\.b\.fmu: folder/Battery: there is no such FMU file"),
     ],
 )
 def test_a_name_of_nothing(tmp_path, name, text):
     with pytest.raises(ConfigError, match=text):
-        fmu_file(name, tmp_path / "mine.toml")
+        fmu_file(name, tmp_path / "mine.toml", "mine.toml: units.b.fmu")
 
 
 def test_a_copy_passes_for_the_built_in_one_and_no_other_file_does(tmp_path):

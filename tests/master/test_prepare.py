@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from evcosim.cosim.can.bus_settings import BusVariation
@@ -59,6 +61,28 @@ def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
 def test_wrong_options(options, text):
     with pytest.raises(ConfigError, match=text):
         prepare("scooter", **options)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ('"Scooter"', '"no.fmu"', r"units\.vehicle\.fmu: no\.fmu: there is no such FMU file"),
+        ('"Scooter"', '"Scoter"', r"units\.vehicle\.fmu: there is no built-in FMU 'Scoter' \(did you mean"),
+        ("can/ev.dbc", "can/ev2.dbc", r"buses\.can0\.dbc: there is no file 'can/ev2\.dbc'"),
+    ],
+)
+def test_a_file_that_is_missing_is_named_with_its_key(tmp_path, old, new, text):
+    path = tmp_path / "mine.toml"
+    path.write_text(load_system("scooter").path.read_text().replace(old, new))
+    with pytest.raises(ConfigError, match=rf"^{re.escape(str(path))}: {text}"):
+        prepare(path)
+
+
+def test_the_fmu_that_a_swap_file_lacks_is_named_with_the_swap_file(tmp_path):
+    path = tmp_path / "swap.toml"
+    path.write_text('fmu = "no.fmu"\n')
+    with pytest.raises(ConfigError, match=rf"^{re.escape(str(path))}: fmu: no\.fmu: there is no such FMU"):
+        prepare("scooter", swaps={"vehicle": path})
 
 
 def test_a_misspelled_option():

@@ -59,7 +59,7 @@ class Bench:
         duration: float,
     ) -> None:
         self.system, self.unit, self.entry = system, unit, entry
-        self.fmu = read_fmu(fmu_file(entry.fmu, system.path), entry.strict)
+        self.fmu = read_fmu(fmu_file(entry.fmu, system.path, f"{system.keys_of(unit)}fmu"), entry.strict)
         self.interface = present(self.fmu.interface, entry, system.keys_of(unit))
         self.ours = ours or self.interface
         self.isolation: Isolation | None = None if ours is None else "process"

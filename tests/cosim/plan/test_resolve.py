@@ -41,9 +41,26 @@ def test_parameters_user_before_scenario_before_system():
 @pytest.mark.parametrize(
     ("scenario", "said"),
     [
-        ({"stimulus": [{"to": "car.grad", "constant": 1}]}, r"no variable 'grad' \(did you mean 'grade'\?\)"),
-        ({"stimulus": [{"to": "car.throttle", "constant": 1, "unit": "N"}]}, "different quantities"),
-        ({"stimulus": [{"to": "ecu.speed", "constant": 1}]}, "ecu.speed is driven already, by car.speed"),
+        (
+            {"stimulus": [{"to": "car.grad", "constant": 1}]},
+            r"^test.toml: stimulus 1.to: .*no variable 'grad' \(did you mean 'grade'\?\)",
+        ),
+        (
+            {"stimulus": [{"to": "car.throttle", "constant": 1, "unit": "N"}]},
+            "^test.toml: stimulus 1.unit: .*different quantities",
+        ),
+        (
+            {"stimulus": [{"to": "car.grade", "csv": "no.csv"}]},
+            "^test.toml: stimulus 1.csv: there is no file 'no.csv'",
+        ),
+        (
+            {"stimulus": [{"to": "car.grade", "ramp": {"slope": 1, "end": -1}}]},
+            "^test.toml: stimulus 1.ramp: .*never reaches",
+        ),
+        (
+            {"stimulus": [{"to": "ecu.speed", "constant": 1}]},
+            "^test.toml: stimulus 1.to: ecu.speed is driven already, by car.speed",
+        ),
         (
             {"event": [{"time": 1, "action": "override", "variable": "car.speed", "value": 1}]},
             "no input 'car.speed'",

@@ -106,9 +106,11 @@ def test_a_name_is_found_in_the_first_folder_that_has_it(tmp_path: Path) -> None
 
 def test_a_file_beside_comes_before_a_built_in_one(tmp_path: Path) -> None:
     system = tmp_path / "s.toml"
-    assert data_file("can/ev.dbc", system) == DATA / "can" / "ev.dbc"
+    assert data_file("can/ev.dbc", system, "s.toml: buses.can0.dbc") == DATA / "can" / "ev.dbc"
     (tmp_path / "can").mkdir()
     (tmp_path / "can" / "ev.dbc").write_text("")
-    assert data_file("can/ev.dbc", system) == tmp_path / "can" / "ev.dbc"
-    with pytest.raises(ConfigError, match=r"there is no file 'no.dbc', neither in .* nor built in"):
-        data_file("no.dbc", system)
+    assert data_file("can/ev.dbc", system, "s.toml: buses.can0.dbc") == tmp_path / "can" / "ev.dbc"
+    with pytest.raises(
+        ConfigError, match=r"^s.toml: buses.can0.dbc: there is no file 'no.dbc', neither in .* nor built in"
+    ):
+        data_file("no.dbc", system, "s.toml: buses.can0.dbc")

@@ -63,7 +63,7 @@ def test_wrong_arguments(evcosim, arguments, texts):
         ("step_size =", "step_sise =", ["scooter.toml: experiment.step_sise", "(did you mean 'step_size'?)"]),
         ("step_size = 0.01", "step_size = 0", ["scooter.toml: experiment.step_size", "greater than 0"]),
         ('name = "scooter"', 'name = "scooter', ["scooter.toml: is not valid TOML", "line"]),
-        ('fmu = "Scooter"', 'fmu = "Scoter"', ["scooter.toml: there is no", "(did you mean 'Scooter'?)"]),
+        ('fmu = "Scooter"', 'fmu = "Scoter"', ["scooter.toml: units.vehicle.fmu: there is no", "(did you mean 'Scooter'?)"]),
         ('from = "vehicle.power"', 'from = "vehicel.power"', ["'vehicel' (did you mean 'vehicle'?)"]),
         ('to = ["ecu.speed_measured"]', 'to = ["ecm.speed_measured"]', ["'ecm' (did you mean 'ecu'?)"]),
         (
@@ -79,7 +79,7 @@ def test_wrong_arguments(evcosim, arguments, texts):
         ("can0.EMD_Status.", "can0.EMD_Statu.", ["'EMD_Statu' (did you mean 'EMD_Status'?)"]),
         ("EMD_VehicleSpeed", "EMD_VehicleSped", ["'EMD_VehicleSped' (did you mean 'EMD_VehicleSpeed'?)"]),
         ("via = \"can0.EMD", "via = \"can1.EMD", ["'can1' (did you mean 'can0'?)"]),
-        ("can/ev.dbc", "can/no.dbc", ["can/no.dbc"]),
+        ("can/ev.dbc", "can/no.dbc", ["buses.can0.dbc: there is no file 'can/no.dbc'"]),
         (
             'fmu = "Scooter"',
             'fmu = "Scooter"\nparameters = { mass = 0.5 }',
