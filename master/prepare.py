@@ -48,12 +48,13 @@ def prepare(
     Raises ConfigError naming place, rule and values; TypeError for an unknown option.
     """
     check_options(options)
-    swaps = options.get("swaps") or {}
+    swaps, fmus = options.get("swaps") or {}, options.get("fmus") or {}
+    _check_one_fmu(swaps, fmus)
     # the files: system and scenario, with varied buses and swapped units, without absent variables
     read, driven = _files(system, scenario, options)
     read, driven, left_out = without_absent(swapped(read, swaps), driven)
     # the FMUs, and the interfaces that they present to the system
-    loaded = _read_fmus(read, driven, options.get("fmus") or {}, options.get("strict", False), runnable)
+    loaded = _read_fmus(read, driven, fmus, options.get("strict", False), runnable)
     interfaces = {
         unit: present(fmu.interface, read.file.units[unit], read.keys_of(unit))
         for unit, fmu in loaded.items()
@@ -69,6 +70,16 @@ def prepare(
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)
+
+
+def _check_one_fmu(swaps: Mapping[str, str | Path], fmus: Mapping[str, str | Path]) -> None:
+    """Raise ConfigError for a unit that is given an FMU in both ways."""
+    for unit in swaps:
+        if unit in fmus:
+            raise ConfigError(
+                f"--swap {unit}={swaps[unit]} (swaps) and --fmu {unit}={fmus[unit]} (fmus) both put an FMU "
+                f"in the place of unit '{unit}': give one of them"
+            )
 
 
 def _files(

@@ -36,12 +36,19 @@ def scalar(text: str) -> Value:
 
 
 def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, str]:
-    """Return options unit=PATH (or built-in name) as unit to path. Raises ConfigError."""
-    paths = {}
+    """Return options unit=PATH (or built-in name) as unit to path.
+
+    Raises ConfigError, also for a unit that is given twice.
+    """
+    paths: dict[str, str] = {}
     for text in given:
         unit, _, path = (part.strip() for part in text.partition("="))
         if not (unit and path):
             raise ConfigError(f"{option} {text}: it is written unit=PATH, as in vehicle={example}")
+        if unit in paths:
+            raise ConfigError(
+                f"{option} {text}: unit '{unit}' is given already: {option} {unit}={paths[unit]}"
+            )
         paths[unit] = path
     return paths
 

@@ -54,6 +54,10 @@ def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
         ),
         ({"fmus": {"battery": "x.fmu"}}, r"x\.fmu: there is no such FMU file"),
         ({"swaps": {"batery": "x.toml"}}, "batery"),
+        (
+            {"swaps": {"battery": "a.toml"}, "fmus": {"vehicle": "x.fmu", "battery": "x.fmu"}},
+            r"^--swap battery=a\.toml \(swaps\) and --fmu battery=x\.fmu \(fmus\) both put an FMU",
+        ),
         ({"parameters": {"vehicle.mas": 1.0}}, r"parameter vehicle\.mas: .*did you mean 'mass'"),
         ({"stop_time": 0.015}, "not a multiple"),
     ],

@@ -46,6 +46,8 @@ def test_files_by_unit():
     assert parse_files("--fmu", ["a=x.fmu", "b = my/y=2.fmu"], "z.fmu") == {"a": "x.fmu", "b": "my/y=2.fmu"}
     with pytest.raises(ConfigError, match=r"--swap a: it is written unit=PATH, as in vehicle=my/swap\.toml"):
         parse_files("--swap", ["a"], "my/swap.toml")
+    with pytest.raises(ConfigError, match=r"^--fmu a=y\.fmu: unit 'a' is given already: --fmu a=x\.fmu$"):
+        parse_files("--fmu", ["a=x.fmu", "b=x.fmu", "a=y.fmu"], "z.fmu")
 
 
 @pytest.mark.parametrize(

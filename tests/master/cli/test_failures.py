@@ -63,7 +63,11 @@ def test_wrong_arguments(evcosim, arguments, texts):
         ("step_size =", "step_sise =", ["scooter.toml: experiment.step_sise", "(did you mean 'step_size'?)"]),
         ("step_size = 0.01", "step_size = 0", ["scooter.toml: experiment.step_size", "greater than 0"]),
         ('name = "scooter"', 'name = "scooter', ["scooter.toml: is not valid TOML", "line"]),
-        ('fmu = "Scooter"', 'fmu = "Scoter"', ["scooter.toml: units.vehicle.fmu: there is no", "(did you mean 'Scooter'?)"]),
+        (
+            'fmu = "Scooter"',
+            'fmu = "Scoter"',
+            ["scooter.toml: units.vehicle.fmu: there is no", "(did you mean 'Scooter'?)"],
+        ),
         ('from = "vehicle.power"', 'from = "vehicel.power"', ["'vehicel' (did you mean 'vehicle'?)"]),
         ('to = ["ecu.speed_measured"]', 'to = ["ecm.speed_measured"]', ["'ecm' (did you mean 'ecu'?)"]),
         (
