@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import assert_never
 
 from ..errors import ConfigError, nearest
@@ -25,24 +25,34 @@ def scheduled(
     """
     events = []
     for number, event in enumerate(scenario.file.events, 1):
-        check_event(event, interfaces, inputs, f"{scenario.path}: event {number}")
+        check_event(event, interfaces, inputs, f"{scenario.path}: event {number}", in_file=True)
         step = math.ceil((event.time - experiment.start_time) / experiment.step_size - 1e-6)
         events.append((max(step, 0), event))
     return tuple(sorted(events, key=lambda event: event[0]))
 
 
 def check_event(
-    event: Event, interfaces: Mapping[str, UnitInterface], inputs: Mapping[str, InputPlan], place: str
+    event: Event,
+    interfaces: Mapping[str, UnitInterface],
+    inputs: Mapping[str, InputPlan],
+    place: str,
+    in_file: bool = False,
 ) -> None:
     """Raise ConfigError, which starts with `place`, unless the event can act on what it names.
 
-    A value beyond the input's minimum or maximum is allowed: faults are what events are for.
+    With `in_file` the event is a table at `place`, and the key in it follows. A value beyond the input's
+    minimum or maximum is allowed: faults are what events are for.
     """
+
+    def at(key: str) -> str:
+        return f"{place}.{key}" if in_file else place
+
+    kind = _type_of_input(event, interfaces, inputs, at("variable"))
     match event:
         case Override() | Bias():
-            _check_value(event, _type_of_input(event, interfaces, inputs, place), place)
+            _check_value(event, kind, at)
         case Reset():
-            _type_of_input(event, interfaces, inputs, place)
+            pass
         case _:
             assert_never(event)
 
@@ -64,14 +74,18 @@ def _type_of_input(
     return interfaces[unit].variables[variable].type
 
 
-def _check_value(event: Override | Bias, kind: str, place: str) -> None:
-    """Raise ConfigError unless an input of the FMI type `kind` can receive the event's value."""
+def _check_value(event: Override | Bias, kind: str, at: Callable[[str], str]) -> None:
+    """Raise ConfigError unless an input of the FMI type `kind` can receive the event's value.
+
+    `at` returns the place of a key of the event.
+    """
     action, name, value = event.action, event.variable, event.value
     if not math.isfinite(value):
-        raise ConfigError(f"{place}: {action} of {name} needs a finite number, not {value}")
+        raise ConfigError(f"{at('value')}: {action} of {name} needs a finite number, not {value}")
     if kind == "Boolean" and (isinstance(event, Bias) or value not in (0, 1)):
+        place = at("action" if isinstance(event, Bias) else "value")
         raise ConfigError(
             f"{place}: {name} is a Boolean; it can be overridden by 0 or 1, not {action} {value}"
         )
     if kind != "Real" and value != int(value):
-        raise ConfigError(f"{place}: {name} is an {kind}; {action} needs a whole number, not {value}")
+        raise ConfigError(f"{at('value')}: {name} is an {kind}; {action} needs a whole number, not {value}")

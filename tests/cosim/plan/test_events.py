@@ -48,13 +48,20 @@ def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():
     assert [(step, event.value) for step, event in found] == [(1, 2.0), (2, 1.0), (2, 3.0), (2, 4.0)]
 
 
-def test_an_event_of_a_file_is_named_by_its_number():
-    events = [
-        {"time": 0.0, "action": "reset", "variable": "display.level"},
-        {"time": 0.0, "action": "override", "variable": "display.state", "value": 1.5},
-    ]
+@pytest.mark.parametrize(
+    ("event", "said"),
+    [
+        ({"action": "override", "variable": "display.state", "value": 1.5}, r"value: display.state is an Enumeration; .* not 1.5$"),
+        ({"action": "override", "variable": "display.flag", "value": 2}, r"value: display.flag is a Boolean; .* override 2.0$"),
+        ({"action": "bias", "variable": "display.flag", "value": 1}, r"action: display.flag is a Boolean; .* bias 1.0$"),
+        ({"action": "bias", "variable": "x.y", "value": 1}, r"variable: there is no input 'x.y'; bias acts on"),
+        ({"action": "reset", "variable": "display.levle"}, r"variable: there is no input 'display.levle' \(did you mean"),
+    ],
+)  # fmt: skip # one case a line
+def test_an_event_of_a_file_is_named_by_its_number_and_key(event, said):
+    events = [{"time": 0.0, "action": "reset", "variable": "display.level"}, {"time": 0.0} | event]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
-    with pytest.raises(ConfigError, match=r"^s.toml: event 2: display.state is an Enumeration; .* not 1.5$"):
+    with pytest.raises(ConfigError, match=rf"^s.toml: event 2\.{said}"):
         scheduled(scenario, INTERFACES, INPUTS, Experiment())
 
 
