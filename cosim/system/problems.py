@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, get_args
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -28,18 +29,16 @@ Place = Sequence[str | int]
 
 def sentences(error: ValidationError, data: Any, model: type[BaseModel]) -> list[str]:
     """Return one sentence for each problem that was found in `data`, read as a `model`."""
-    keys, tagged_by = sorted(_keys(model)), set(_discriminators(model))
-    return [_sentence(problem, data, keys, tagged_by) for problem in error.errors(include_url=False)]
+    return [_sentence(problem, data, model) for problem in error.errors(include_url=False)]
 
 
-def _sentence(problem: Any, data: Any, keys: list[str], tagged_by: set[str]) -> str:
-    place, chosen = _spelled(problem, data, tagged_by)
+def _sentence(problem: Any, data: Any, model: type[BaseModel]) -> str:
+    place, chosen = _spelled(problem, data, set(_discriminators(model)))
     path, kind, value = spelled(place) or "the file", problem["type"], problem["input"]
     if kind.startswith("union_tag"):
         return _about_a_tag(problem, place)
     if kind == "extra_forbidden":
-        name = str(place[-1])
-        return f"{path}: unknown key{chosen}{nearest(name, keys) if name not in keys else ''}"
+        return f"{path}: unknown key{chosen}{_nearest_key(place, data, model)}"
     if kind == "missing":
         return f"{path}: this {'value' if isinstance(place[-1], int) else 'key'} is needed{chosen}"
     rule = _NEEDED.get(kind) or problem["msg"].removeprefix("Value error, ")
@@ -114,13 +113,57 @@ def _shown(value: Any) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
-def _keys(model: type[BaseModel]) -> Iterator[str]:
-    """Yield all keys that may stand anywhere in a file of this model."""
-    for name, field in model.model_fields.items():
-        yield field.alias or name
-        for inner in _models_in(field.annotation):
-            if inner is not model:
-                yield from _keys(inner)
+def _nearest_key(place: Place, data: Any, model: type[BaseModel]) -> str:
+    """Return the hint at the key that was meant by an unknown one: a key of the table in which it stands.
+
+    There is none for a key of another kind of the table, as `value` where an event's action takes none.
+    """
+    kinds: list[Any] = [model]
+    for part in place[:-1]:
+        kinds = [inner for kind in kinds for inner in _inside(kind, part)]
+        data = data[part]
+    models = [m for kind in kinds for m in _members(kind) if isinstance(m, type) and issubclass(m, BaseModel)]
+    if any(place[-1] in _fields(m) for m in models):
+        return ""
+    return nearest(str(place[-1]), sorted({key for m in models if _may_be(m, data) for key in _fields(m)}))
+
+
+def _inside(kind: Any, part: str | int) -> Iterator[Any]:
+    """Yield the types of what stands under a key or index in a value of this type."""
+    for member in _members(kind):
+        origin, arguments = get_origin(member), get_args(member)
+        if isinstance(member, type) and issubclass(member, BaseModel):
+            if part in (fields := _fields(member)):
+                yield fields[str(part)].annotation
+        elif origin in (dict, list):
+            yield arguments[-1]
+        elif origin is tuple and isinstance(part, int):
+            yield arguments[part]
+
+
+def _members(kind: Any) -> Iterator[Any]:
+    """Yield the members of a union, as deep as there are unions in it; another type is its own member."""
+    if get_origin(kind) is Annotated:
+        yield from _members(get_args(kind)[0])
+    elif get_origin(kind) in (Union, UnionType):
+        for member in get_args(kind):
+            yield from _members(member)
+    else:
+        yield kind
+
+
+def _may_be(model: type[BaseModel], table: Mapping[str, Any]) -> bool:
+    """Return False where a key, as `action` of an event, has a value that makes the table another model's."""
+    return all(
+        table.get(key) in get_args(field.annotation)
+        for key, field in _fields(model).items()
+        if field.is_required() and get_origin(field.annotation) is Literal
+    )
+
+
+def _fields(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """Return the fields of a model by their keys in the file."""
+    return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:

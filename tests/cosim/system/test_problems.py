@@ -66,7 +66,14 @@ BROKEN = [
     ("swap", "replaces = 'a.b'\n", "fmu: this key is needed"),
     ("swap", "fmu = 'F'\n[map.output]\n", "map.output: unknown key (did you mean 'outputs'?)"),
     ("swap", "fmu = 'F'\n[map.outputs]\nv = { variabel = 'x' }\n", "map.outputs.v.variable: this key is needed\nmap.outputs.v.variabel: unknown key (did you mean 'variable'?)"),
-    ("swap", "fmu = 'F'\n[units.vehicle]\nfmu = 'F'\n", "units: unknown key (did you mean 'unit'?)"),
+    ("swap", "fmu = 'F'\n[units.vehicle]\nfmu = 'F'\n", "units: unknown key"),
+    ("system", HEAD + "[unit.vehicle]\nfmu = 'F'\n", "unit: unknown key (did you mean 'units'?)"),
+    ("system", HEAD + "[experiment]\ntitel = 'x'\n", "experiment.titel: unknown key"),
+    ("system", HEAD + "[experiment]\nstep_siz = 1\n", "experiment.step_siz: unknown key (did you mean 'step_size'?)"),
+    ("system", HEAD + "[[figure.panels]]\nsignals = [{ name = 'a.b', lable = 'x' }]\n", "figure.panels 1.signals 1.lable: unknown key (did you mean 'label'?)"),
+    ("system", HEAD + "[[connect]]\nform = 'a.b'\n", "connect 1.from: this key is needed\nconnect 1.form: unknown key (did you mean 'from'?)"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\nsine = { amplitude = 1, period = 1, dealy = 1 }\n", "stimulus 1.sine.dealy: unknown key (did you mean 'delay'?)"),
+    ("scenario", "[[event]]\ntime = 1\naction = 'reset'\nvariable = 'a.b'\nvalu = 1\n", "event 1.valu: unknown key with action = \"reset\""),
 ]  # fmt: skip # one file a line
 
 
