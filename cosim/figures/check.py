@@ -43,7 +43,10 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.A
     try:
         return units.conversion(units.defined(variable.unit), units.defined(unit))
     except ConfigError as error:
-        raise ConfigError(f"{place}: '{variable.name}' [{variable.unit}] in [{unit}]: {error}") from error
+        signal = f"{place}: '{variable.name}' [{variable.unit}]"
+        if not unit:
+            raise ConfigError(f"{signal} stands in a panel without 'unit'") from error
+        raise ConfigError(f"{signal} in [{unit}]: {error}") from error
 
 
 def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:

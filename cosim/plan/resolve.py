@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
+from ..system.problems import shown
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
@@ -140,6 +141,8 @@ def _steps(experiment: Experiment, columns: int, place: str) -> int:
     Raises ConfigError when the stop time is no whole number of steps after the start, or too much is
     recorded.
     """
+    if not -math.inf < experiment.stop_time < math.inf:
+        raise ConfigError(f"{place} {experiment.stop_time} s is not finite")
     duration = experiment.stop_time - experiment.start_time
     if not (math.isfinite(duration) and duration > 0.0):
         raise ConfigError(
@@ -218,18 +221,18 @@ def checked(value: Any, variable: VariableInfo, place: str) -> Value:
     value = value.item() if isinstance(value, np.generic) else value
     if variable.type == "String":
         if not isinstance(value, str):
-            raise ConfigError(f"{place}: {variable.name} is a String, not {value!r}")
+            raise ConfigError(f"{place}: {variable.name} is a String, not {shown(value)}")
         return value
     if variable.type == "Enumeration" and isinstance(value, str):
         return _item(value, variable, place)
     if variable.type == "Boolean":
         if value not in (True, False):
-            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {value!r}")
+            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {shown(value)}")
         return bool(value)
     if isinstance(value, bool) or not isinstance(value, int | float) or not -math.inf < value < math.inf:
-        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {value!r}")
+        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {shown(value)}")
     if variable.type != "Real" and value != int(value):
-        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {value!r}")
+        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {shown(value)}")
     if variable.min is not None and value < variable.min:
         raise ConfigError(
             f"{place}: {value}{unit} is below the minimum {variable.min}{unit} of {variable.name}"
@@ -246,7 +249,7 @@ def _item(name: str, variable: VariableInfo, place: str) -> int:
     values = {text: number for number, text in variable.items}
     if name not in values:
         raise ConfigError(
-            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {list(values)}"
+            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {shown(list(values))}"
         )
     return values[name]
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from .toml import FileModel, OrText
 
@@ -29,10 +29,6 @@ class SignalSpec(FileModel):
     """Draw each value held until the next; without it so are inputs and sampled outputs."""
 
 
-def _from_name(value: Any) -> Any:
-    return {"name": value} if isinstance(value, str) else value
-
-
 class PanelSpec(FileModel):
     """One panel of the figure, with an axis of its own."""
 
@@ -42,7 +38,7 @@ class PanelSpec(FileModel):
     unit: str = ""
     """The unit of measure of the axis, to which all signals are converted; "" for states and counts."""
 
-    signals: list[Annotated[SignalSpec, BeforeValidator(_from_name), OrText()]] = Field(min_length=1)
+    signals: list[Annotated[SignalSpec, OrText("name")]] = Field(min_length=1)
     """The lines: names of variables, or tables of a name and how it is drawn."""
 
     limits: tuple[float, float] | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from types import UnionType
@@ -47,7 +49,7 @@ def _sentence(problem: Any, data: Any, model: type[BaseModel]) -> str:
     if kind == "value_error" and isinstance(value, Mapping):
         return f"{path}: {rule}"  # a rule between keys, which names them itself
     near = _nearest(value, problem["ctx"]["expected"]) if kind == "literal_error" else ""
-    return f"{path}: {rule}, not {_shown(value)}{near}"
+    return f"{path}: {rule}, not {_cut(value)}{near}"
 
 
 def _about_a_tag(problem: Any, place: Place) -> str:
@@ -58,7 +60,7 @@ def _about_a_tag(problem: Any, place: Place) -> str:
         tags = problem["ctx"]["expected_tags"]
         known = " or ".join(tags.rsplit(", ", 1))
         near = _nearest(table[key], tags)
-        return f"{path}: Input should be {known}, not {_shown(table[key])}{near}"
+        return f"{path}: Input should be {known}, not {_cut(table[key])}{near}"
     typo = next((name for name in table if nearest(name, [key])), None)
     if typo is not None:
         return f"{spelled([*place, typo])}: unknown key{nearest(typo, [key])}"
@@ -102,14 +104,31 @@ def _nearest(value: Any, words: str) -> str:
 
 
 def _key(name: str) -> str:
-    if re.fullmatch(r"[A-Za-z0-9_-]+", name):
-        return name
-    return f"'{name}'" if name.isprintable() and "'" not in name else repr(name)
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else shown(name)
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return a value as a TOML file writes it; what TOML cannot write, as Python does."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            literal = value.isprintable() and "'" not in value
+            return f"'{value}'" if literal else json.dumps(value, ensure_ascii=False)
+        case list() | tuple():
+            return f"[{', '.join(map(shown, value))}]"
+        case Mapping():
+            inner = ", ".join(f"{_key(str(key))} = {shown(each)}" for key, each in value.items())
+            return f"{{ {inner} }}" if inner else "{}"
+        case datetime.date() | datetime.time():
+            return value.isoformat()
+        case _:
+            return repr(value)
+
+
+def _cut(value: Any) -> str:
     """Return a value as a file writes it, cut where it is long."""
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    text = shown(value)
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 

@@ -97,9 +97,8 @@ class StimulusEntry(FiniteModel):
     def _one_kind(self) -> StimulusEntry:
         given = [kind for kind in _KINDS if getattr(self, kind) is not None]
         if len(given) != 1:
-            raise ValueError(
-                f"a stimulus has exactly one of {', '.join(_KINDS)}; this one has {given or 'none'}"
-            )
+            has = " and ".join(given) or "none"
+            raise ValueError(f"a stimulus has exactly one of {', '.join(_KINDS)}; this one has {has}")
         if self.column is not None and self.csv is None:
             raise ValueError("'column' belongs to a csv stimulus")
         return self

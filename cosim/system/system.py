@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from ..can.bus_settings import BusSettings
 from ..interface import InterfaceType
@@ -86,11 +86,7 @@ class MapEntry(FileModel):
     """Take the value with the other sign."""
 
 
-def _mapped(value: Any) -> Any:
-    return {"variable": value} if isinstance(value, str) else value
-
-
-Mapped = Annotated[MapEntry, BeforeValidator(_mapped), OrText()]
+Mapped = Annotated[MapEntry, OrText("variable")]
 
 
 class MapTables(FileModel):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -10,10 +11,12 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ValidationError,
     WithJsonSchema,
 )
+from pydantic_core import core_schema
 
 from ..errors import ConfigError, nearest
 from ..interface import Value
@@ -56,7 +59,22 @@ def text_type(title: str, pattern: str) -> WithJsonSchema:
 
 
 class OrText:
-    """The mark of a table for which a file may give a text alone; a validator makes the table of it."""
+    """The mark of a table for which a file may give a text alone: the value of one key."""
+
+    def __init__(self, key: str) -> None:
+        self.key = key
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_before_validator_function(self._table, handler(source))
+
+    def _table(self, value: Any) -> Any:
+        if isinstance(value, str):
+            return {self.key: value}
+        if not isinstance(value, Mapping | BaseModel):
+            raise ValueError("a table or a text is needed")
+        return value
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [{"type": "string"}, handler(schema)]}

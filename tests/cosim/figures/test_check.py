@@ -23,6 +23,10 @@ WRONG = [
         {"unit": "N", "signals": ["vehicle.speed"]},
         r"'vehicle.speed' \[m/s\] in \[N\]: .*different quantities",
     ),
+    (
+        {"signals": ["vehicle.speed"]},
+        r"^figure.panels 1.signals 1: 'vehicle.speed' \[m/s\] stands in a panel without 'unit'$",
+    ),
 ]
 
 

@@ -14,7 +14,7 @@ from support.car import plan
         ("car.mass", 0.5, "0.5 kg is below the minimum 1.0 kg of mass"),
         ("car.mass", 2e4, "above the maximum 10000.0 kg"),
         ("car.mass", float("nan"), "finite Real number, not nan"),
-        ("car.mass", True, "finite Real number, not True"),
+        ("car.mass", True, "finite Real number, not true$"),
         ("car.mass", "heavy", "finite Real number, not 'heavy'"),
         ("car.masss", 1.0, r"no variable 'masss' \(did you mean 'mass'\?\)"),
         ("car.speed", 1.0, "causality output, not parameter"),
@@ -66,6 +66,10 @@ def test_parameters_user_before_scenario_before_system():
             "no input 'car.speed'",
         ),
         ({"leave_out": ["caar"]}, r"no unit 'caar' in mocks.toml \(did you mean 'car'\?\)"),
+        (
+            {"parameters": {"car": {"mass": True}}},
+            "test.toml: parameters.car.mass: mass is a finite Real number, not true$",
+        ),
         (
             {"experiment": {"stop_time": -1.0}},
             "^test.toml: experiment.stop_time -1.0 s is not after start_time 0.0 s",

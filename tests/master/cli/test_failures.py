@@ -36,6 +36,8 @@ SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
         (["run", "scooter", "--fmu", "vehicle"], ["--fmu vehicle:", "unit=PATH"]),
         (["run", "scooter", "--fmu", "vehicel=x.fmu"], ["--fmu vehicel", "(did you mean 'vehicle'?)"]),
         (["run", "scooter", "--fmu", "vehicle=x.fmu"], ["x.fmu: there is no such FMU file"]),
+        (["run", "scooter", "--stop-time", "inf"], ["stop_time inf s is not finite"]),
+        (["run", "scooter", "--stop-time", "nan"], ["stop_time nan s is not finite"]),
         (["run", "scooter", "--stop-time", "-1"], ["stop_time -1.0 s is not after start_time 0.0 s"]),
         (["run", "scooter", "--stop-time", "0.015"], ["0.015 s is not a multiple", "0.01 s"]),
         (["run", "scooter", "--algorithm", "gauss"], ["'gauss'", "gauss_seidel"]),
