@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
-from .toml import FileModel, FileValue
+from .toml import FORBIDDEN_KEY, FileModel, FileValue
 
 _TAKES = {
     "threshold": ("share_above", "time_above", "integral_above", "settling"),
     "value": ("share_equal", "time_equal"),
 }
+
+
+def _add_rules(schema: dict[str, Any]) -> None:
+    """Write into a JSON schema which reductions need a key and which take none, as without `reduce`."""
+    known = schema["properties"]["reduce"]["enum"]
+    schema["dependentRequired"] = {"threshold_unit": ["threshold"]}
+    schema["allOf"] = []
+    for key, takes in _TAKES.items():
+        given = {"properties": {"reduce": {"enum": list(takes)}}, "required": ["reduce"]}
+        other = {"properties": {"reduce": {"enum": [name for name in known if name not in takes]}}}
+        schema["allOf"] += [
+            {"if": given, "then": {"required": [key]}},
+            {"if": other, "then": {"properties": {key: FORBIDDEN_KEY}}},
+        ]
 
 
 class Reduction(FileModel):
@@ -53,6 +67,8 @@ class Reduction(FileModel):
 
     after: float | None = Field(default=None, allow_inf_nan=False)
     """Only what lies at or behind this time in s counts; without it the whole run."""
+
+    model_config = ConfigDict(json_schema_extra=_add_rules)
 
     @property
     def signals(self) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -12,7 +12,7 @@ from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
 from .system import Algorithm, System, VariableName
-from .toml import FileModel, FileValue, FiniteModel, find, names_in, read_toml
+from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
 
@@ -55,6 +55,16 @@ class Ramp(FiniteModel):
     """Time in s at which the ramp begins."""
 
 
+def _one_kind_rules() -> list[Any]:
+    """Return the JSON schemas by which a stimulus has one kind: an error is at a key, unlike with `oneOf`."""
+    none = {"not": {"anyOf": [{"required": [kind]} for kind in _KINDS]}}
+    rules: list[Any] = [{"if": none, "then": {"required": [_KINDS[0]]}}]
+    for kind in _KINDS:
+        others = {other: FORBIDDEN_KEY for other in _KINDS if other != kind}
+        rules.append({"if": {"required": [kind]}, "then": {"properties": others}})
+    return rules
+
+
 class StimulusEntry(FiniteModel):
     """A signal for a free input: exactly one of `constant`, `table`, `csv`, `sine` and `ramp`."""
 
@@ -88,7 +98,7 @@ class StimulusEntry(FiniteModel):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "oneOf": [{"required": [kind]} for kind in _KINDS],
+            "allOf": _one_kind_rules(),
             "dependentRequired": {"column": ["csv"]},
         }
     )

@@ -21,6 +21,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 def json_schema(model: type[BaseModel], title: str) -> JsonSchemaValue:
     """Return the schema (draft 2020-12) of a file of this model, with its keys as the file spells them."""
     schema = model.model_json_schema(by_alias=True, schema_generator=_FileSchema)
+    schema = {key: _by_tag(part, schema.get("$defs", {})) for key, part in schema.items()}
     schema.pop("title", None)
     return {"$schema": _FileSchema.schema_dialect, "title": title} | schema
 
@@ -88,6 +89,37 @@ class _FileSchema(GenerateJsonSchema):
         if "patternProperties" in found:
             found["additionalProperties"] = False
         return found
+
+
+def _by_tag(part: Any, tables: JsonSchemaValue) -> Any:
+    """Return a part of a schema in which the key that says a table's kind, as `action`, chooses its schema.
+
+    pydantic's `oneOf` refuses the whole table, whatever is wrong in it; here an error is at its key. All
+    keys stand in `properties` too, by which editors complete them before the kind is known.
+    """
+    if isinstance(part, list):
+        return [_by_tag(inner, tables) for inner in part]
+    if not isinstance(part, dict):
+        return part
+    if "discriminator" not in part:
+        return {key: _by_tag(inner, tables) for key, inner in part.items()}
+    tag, names = part["discriminator"]["propertyName"], part["discriminator"]["mapping"]
+    declared = [member["$ref"] for member in part["oneOf"]]  # pydantic sorts the names
+    kinds = dict(sorted(names.items(), key=lambda kind: declared.index(kind[1])))
+    texts: dict[str, JsonSchemaValue] = {}
+    for reference in kinds.values():
+        for key, about in tables[reference.rpartition("/")[2]]["properties"].items():
+            texts.setdefault(key, {"description": about["description"]})
+    texts[tag]["enum"] = list(kinds)
+    return {
+        "type": "object",
+        "properties": texts,
+        "required": [tag],
+        "allOf": [
+            {"if": {"properties": {tag: {"const": kind}}, "required": [tag]}, "then": {"$ref": reference}}
+            for kind, reference in kinds.items()
+        ],
+    }
 
 
 def _default_text(default: Any) -> str:

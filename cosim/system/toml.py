@@ -58,6 +58,10 @@ def text_type(title: str, pattern: str) -> WithJsonSchema:
     return WithJsonSchema({"type": "string", "title": title, "pattern": pattern})
 
 
+FORBIDDEN_KEY: dict[str, Any] = {"not": {}}
+"""The JSON schema of a key that may not stand there; for `false` some validators mark the whole table."""
+
+
 class OrText:
     """The mark of a table for which a file may give a text alone: the value of one key."""
 

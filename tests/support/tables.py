@@ -51,6 +51,8 @@ def _tables(schema: dict[str, Any], part: dict[str, Any], path: Sequence[str]) -
     for union in ("anyOf", "oneOf"):
         if union in part and "properties" not in part:
             return [table for member in part[union] for table in _tables(schema, member, path)]
+    if kinds := [rule["then"] for rule in part.get("allOf", ()) if "$ref" in rule["then"]]:
+        return [table for kind in kinds for table in _tables(schema, kind, path)]
     if "items" in part:
         return _tables(schema, part["items"], path)
     if not path:

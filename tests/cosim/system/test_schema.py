@@ -11,9 +11,11 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
+from jsonschema.exceptions import best_match
 from pydantic import BaseModel, ValidationError
 
 from evcosim.cosim.swap.swap_file import SwapFile
+from evcosim.cosim.system.problems import spelled
 from evcosim.cosim.system.scenario import ScenarioFile
 from evcosim.cosim.system.schema import json_schema, key_texts, type_text
 from evcosim.cosim.system.system import SystemFile
@@ -121,6 +123,9 @@ RIGHT = [
     ("system", HEAD + "[[connect]]\nfrom = 'a.der(x.y)'\nto = ['a.c']\n"),
     ("scenario", ""),
     ("scenario", "[[event]]\ntime = 1\naction = 'reset'\nvariable = 'a.b'\n"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\ncsv = 'x.csv'\ncolumn = 'x'\n"),
+    ("scenario", "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nreduce = 'settling'\nthreshold = 1\nthreshold_unit = 'm'\n"),
+    ("scenario", "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nreduce = 'share_equal'\nvalue = 'idle'\nper.signal = 'a.c'\n"),
     ("swap", "fmu = 'F'\n"),
 ]  # fmt: skip # one file a line
 
@@ -164,6 +169,10 @@ BROKEN = [
     ("system", HEAD + "[figure]\npanels = []\n"),
     ("system", HEAD + "[[figure.panels]]\nsignals = ['a.b']\nlimits = [1]\n"),
     ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nreduce = 'maximum'\n"),
+    ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nreduce = 'share_above'\n"),
+    ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nthreshold = 1\n"),
+    ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nthreshold_unit = 'm'\n"),
+    ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nper = { signal = 'a.b', value = 1 }\n"),
     ("system", HEAD + "[budget]\nmetric = 'm'\n"),
     ("scenario", "stimuli = []\n"),
     ("scenario", "[experiment]\nstart_time = 1.0\n"),
@@ -188,6 +197,47 @@ def test_a_broken_file_is_refused_by_both(kind: str, text: str) -> None:
     assert not Draft202012Validator(SCHEMAS[kind]).is_valid(data)
     with pytest.raises(ValidationError):
         FILES[kind].model_validate(data)
+
+
+EVENT = "[[event]]\ntime = 1\nvariable = 'a.b'\n"
+METRIC = "[[metrics]]\nname = 'm'\nsignal = 'a.b'\n"
+
+# a file with one mistake, the place of each error that an editor shows, a part of what it says
+MARKED = [
+    (EVENT + "action = 'overide'\nvalue = 1\n", ["event 1.action"], "'overide' is not one of"),
+    (EVENT + "value = 1\n", ["event 1"], "'action' is a required property"),
+    (EVENT + "action = 'override'\n", ["event 1"], "'value' is a required property"),
+    (EVENT + "action = 'bias'\nvalue = 'x'\n", ["event 1.value"], "'x' is not of type 'number'"),
+    (EVENT + "action = 'reset'\nvalue = 1\n", ["event 1"], "('value' was unexpected)"),
+    (EVENT + "action = 'bias'\nvalue = 1\nvalu = 1\n", ["event 1"], "('valu' was unexpected)"),
+    ("[[event]]\ntime = -1\nvariable = 'a.b'\naction = 'reset'\n", ["event 1.time"], "less than the minimum"),
+    ("[[event]]\ntime = 1\nvariable = 'ab'\naction = 'reset'\n", ["event 1.variable"], "does not match"),
+    ("[[stimulus]]\nto = 'a.b'\n", ["stimulus 1"], "'constant' is a required property"),
+    ("[[stimulus]]\nto = 'a.b'\nconstant = 1\ncsv = 'x'\n", ["stimulus 1.constant", "stimulus 1.csv"], "should not be valid"),
+    ("[[stimulus]]\nto = 'a.b'\nconstant = 'x'\n", ["stimulus 1.constant"], "is not of type 'number'"),
+    (METRIC + "reduce = 'maximum'\nthreshold = 1\n", ["metrics 1.reduce"], "'maximum' is not one of"),
+    (METRIC + "reduce = 'settling'\n", ["metrics 1"], "'threshold' is a required property"),
+    (METRIC + "reduce = 'max'\nthreshold = 1\n", ["metrics 1.threshold"], "should not be valid"),
+    (METRIC + "value = 1\n", ["metrics 1.value"], "should not be valid"),
+    (METRIC + "per = { signal = 'a.b', reduce = 'time_equal' }\n", ["metrics 1.per"], "'value' is a required"),
+]  # fmt: skip # one file a line
+
+
+@pytest.mark.parametrize(("text", "places", "said"), MARKED)
+def test_an_editor_marks_the_key_that_is_wrong(text: str, places: list[str], said: str) -> None:
+    """Not the whole table, as where one of several schemas is needed."""
+    errors = list(Draft202012Validator(SCHEMAS["scenario"]).iter_errors(tomllib.loads(text)))
+    assert sorted(spelled(list(error.absolute_path)) for error in errors) == places
+    best = best_match(errors)
+    assert best is not None
+    assert said in best.message
+
+
+def test_an_editor_completes_the_keys_of_an_event_before_its_action() -> None:
+    event = SCHEMAS["scenario"]["properties"]["event"]["items"]
+    assert set(event["properties"]) == {"time", "variable", "action", "value"}
+    assert set(event["properties"]["action"]["enum"]) == {"override", "bias", "reset"}
+    assert all(about["description"] for about in event["properties"].values())
 
 
 # ---- types in words
