@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from .toml import FileModel
+from pydantic import Field, PositiveFloat
+
+from .toml import FiniteModel
 
 
-class IdentificationSpec(FileModel):
+class IdentificationSpec(FiniteModel):
     """The task of `evcosim identify`: a sweep of an input and a first-order fit to an output's response."""
 
     input: str
@@ -14,7 +16,7 @@ class IdentificationSpec(FileModel):
     output: str
     """The variable that responds, written `unit.variable`: any recorded Real variable."""
 
-    amplitude: float
+    amplitude: float = Field(gt=0.0)
     """Amplitude of the sweep around the working point, above 0, in the input's unit."""
 
     unit: str | None = None
@@ -26,16 +28,16 @@ class IdentificationSpec(FileModel):
     at_input: list[float] = []
     """Working points of the input, in its own unit; without these and `at` the input stays where it is."""
 
-    sweep: tuple[float, float] = (0.008, 0.6)
+    sweep: tuple[PositiveFloat, PositiveFloat] = (0.008, 0.6)
     """Lowest and highest frequency of the sweep in Hz."""
 
-    duration: float = 900.0
+    duration: float = Field(default=900.0, gt=0.0)
     """Duration of one sweep in s: some periods of the lowest frequency."""
 
-    repeats: int = 1
+    repeats: int = Field(default=1, ge=1)
     """Number of sweeps, from 1 on."""
 
-    band: tuple[float, float] | None = None
+    band: tuple[PositiveFloat, PositiveFloat] | None = None
     """The fit's frequencies in Hz; without it from 1.5 times the lowest to half the highest of `sweep`."""
 
     @property

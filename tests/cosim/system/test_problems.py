@@ -69,6 +69,8 @@ BROKEN = [
     ("scenario", "[parameters.vehicle]\nmass = {}\n", "parameters.vehicle.mass: a value is a number, true, false or a text"),
     ("scenario", "[start]\n'my car'.x = []\n", "start.'my car'.x: a value is a number, true, false or a text, not []"),
     ("scenario", "[identification]\noutput = 'a.b'\namplitude = 1\n", "identification.input: this key is needed"),
+    ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\namplitude = -1\nrepeats = 0\nduration = -5\n", "identification.amplitude: Input should be greater than 0, not -1\nidentification.duration: Input should be greater than 0, not -5\nidentification.repeats: Input should be greater than or equal to 1, not 0"),
+    ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\namplitude = inf\nsweep = [0, 1]\nband = [1, -1]\n", "identification.amplitude: Input should be a finite number, not inf\nidentification.sweep 1: Input should be greater than 0, not 0\nidentification.band 2: Input should be greater than 0, not -1"),
     ("swap", "replaces = 'a.b'\n", "fmu: this key is needed"),
     ("swap", "fmu = 'F'\n[map.output]\n", "map.output: unknown key (did you mean 'outputs'?)"),
     ("swap", "fmu = 'F'\n[map.outputs]\nv = { variabel = 'x' }\n", "map.outputs.v.variable: this key is needed\nmap.outputs.v.variabel: unknown key (did you mean 'variable'?)"),

@@ -186,6 +186,9 @@ BROKEN = [
     ("scenario", "[[event]]\ntime = -1\naction = 'reset'\nvariable = 'a.b'\n"),
     ("scenario", "[[event]]\ntime = 1\naction = 'overide'\nvariable = 'a.b'\nvalue = 1\n"),
     ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\n"),
+    ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\namplitude = 0\n"),
+    ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\namplitude = 1\nrepeats = 0\n"),
+    ("scenario", "[identification]\ninput = 'a.b'\noutput = 'a.c'\namplitude = 1\nsweep = [0, 1]\n"),
     ("swap", "replaces = 'a.b'\n"),
     ("swap", "fmu = 'F'\n[units.vehicle]\nfmu = 'F'\n"),
 ]
