@@ -29,7 +29,15 @@ def in_place_of(path: Path) -> Iterator[Path]:
             with contextlib.suppress(OSError):  # renamed, or a first error is on its way
                 partial.unlink()
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: cannot be written: {reason(path, error)}") from error
+
+
+def reason(path: Path, error: OSError) -> str:
+    """Return why a file cannot be written; the system's own words for a file among its folders mislead."""
+    for folder in path.parents:
+        if folder.exists() and not folder.is_dir():
+            return f"{folder} is a file, not a folder"
+    return error.strerror or str(error)
 
 
 @contextlib.contextmanager

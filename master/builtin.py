@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest
+from ..cosim.writing import reason
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -54,7 +55,9 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
     try:
         path = build.built(name) if folder is None else build.build(name, folder)
     except OSError as error:
-        raise ConfigError(f"{folder}: {name}.fmu cannot be written: {error.strerror or error}") from error
+        where = folder or cache_folder()
+        said = reason(where / f"{name}.fmu", error)
+        raise ConfigError(f"{where}: {name}.fmu cannot be written: {said}") from error
     if folder is None and path.parent != cache_folder():  # it lasts as long as this process
         raise ConfigError(f"{cache_folder()}: {name}.fmu cannot be kept there; --output DIR builds elsewhere")
     return path

@@ -102,7 +102,6 @@ def identify(
 ) -> int:
     """Identify gain and pole from an input to an output."""
     from ...cosim.analysis.sweep import sweep_of
-    from ...cosim.errors import ConfigError
     from ..studies.identification_target import is_fmu
     from .outputs import output_folder
 
@@ -113,14 +112,24 @@ def identify(
     }  # fmt: skip # related options side by side
     spec = _spec(target, scenario, {key: value for key, value in given.items() if value not in (None, [])})
     sweep_of(spec)
-    if options.get("ideal") and is_fmu(target):
-        raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
+    if is_fmu(target):
+        _check_options_of_one_fmu(target, options)
     where = output_folder(folder or Path("results") / f"{Path(target).stem}-identification")
     bar = not (as_json or quiet)
     found = _measure(target, spec, scenario, settings or [], options, step_size, bar)
     files = _write(where, found, not no_plot)
     _report(found, where, files, as_json, quiet)
     return 0
+
+
+def _check_options_of_one_fmu(target: str, options: RunOptions) -> None:
+    """Raise ConfigError for an option that makes no sense for an FMU alone."""
+    from ...cosim.errors import ConfigError
+
+    if options.get("ideal"):
+        raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
+    if options.get("algorithm"):
+        raise ConfigError(f"--algorithm: {target} is an FMU alone: one unit's steps have no order")
 
 
 def _pair(text: str | None, option: str) -> tuple[float, float] | None:

@@ -42,6 +42,8 @@ def info(
     if what.endswith(".toml") or what in system_names():
         if causality or search or strict:
             raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")
+        if diagram is not None and as_json:
+            raise ConfigError("--diagram draws and --json prints: give one of them")
         about = info_system.described(what)
         show = info_system.show
         if diagram is not None:

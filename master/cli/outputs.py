@@ -19,6 +19,7 @@ CAN_LOGS = ("can.log", "can.blf", "can.asc")
 def output_folder(folder: Path) -> Path:
     """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
     from ...cosim.errors import ConfigError
+    from ...cosim.writing import reason
 
     trial = folder / f".trial.{os.getpid()}"
     try:
@@ -27,8 +28,7 @@ def output_folder(folder: Path) -> Path:
         trial.unlink()
     except OSError as error:
         raise ConfigError(
-            f"output folder {folder}: cannot be written: {error.strerror or error}; "
-            "--output names another one"
+            f"output folder {folder}: cannot be written: {reason(trial, error)}; --output names another one"
         ) from error
     return folder
 

@@ -56,6 +56,7 @@ def test_command_as_json(evcosim):
         ([*FMU, "--amplitude", "2", "--duration", "10"], ["sweep of 10.0 s: 0.008 Hz needs 250 s"]),
         ([*FMU, "--amplitude", "2", "--at", "30", "--at-input", "28"], ["not of both"]),
         ([*FMU, "--amplitude", "2", "--ideal"], ["--ideal: Scooter is an FMU alone"]),
+        ([*FMU, "--amplitude", "2", "--algorithm", "jacobi"], ["--algorithm: Scooter is an FMU alone"]),
         ([*FMU, "--amplitude", "2", "--set", "mas=1"], ["(did you mean 'mass'?)"]),
         (["identify", "scooter", "--step-size", "0.1"], ["scooter is a system"]),
         (["identify", "scooter", "--output", "ecu.state"], ["output ecu.state: it is no Real"]),

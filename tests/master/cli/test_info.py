@@ -16,6 +16,7 @@ from support.answers import refused
         (["scooter", "--causality", "input"], "--causality, --search and --strict are for an FMU"),
         (["scooter", "--search", "x"], "scooter is a system"),
         (["scooter", "--strict"], "scooter is a system"),
+        (["scooter", "--diagram", "x.svg", "--json"], "--diagram draws and --json prints: give one of them"),
         (["Battery", "--diagram", "x.svg"], "--diagram draws a system; Battery is none"),
         (["Batery"], "there is no system or FMU 'Batery' (did you mean 'Battery'?)"),
     ],

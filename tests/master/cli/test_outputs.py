@@ -27,7 +27,8 @@ def test_files_of_an_earlier_run_do_not_stay(evcosim, tmp_path):
 def test_output_below_a_file(evcosim, tmp_path):
     (tmp_path / "file").write_text("")
     refused(
-        evcosim("run", "scooter", "-o", "file/results"), "output folder file/results", "cannot be written"
+        evcosim("run", "scooter", "-o", "file/results"),
+        "output folder file/results: cannot be written: file is a file, not a folder;",
     )
     refused(evcosim("build", "Battery", "-o", "file/fmus"), "file/fmus", "cannot be written")
 

@@ -40,9 +40,10 @@ def test_a_wrong_kind_says_what_there_is(evcosim) -> None:
 
 def test_where_it_cannot_be_written(evcosim, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    answer = evcosim("schema", "-o", tmp_path / "file" / "x.json")
-    assert answer.code == 2
-    assert "cannot be written" in answer.err
+    for path in (tmp_path / "file" / "x.json", tmp_path / "file" / "new" / "x.json"):
+        answer = evcosim("schema", "-o", path)
+        assert answer.code == 2
+        assert f"{path}: cannot be written: {tmp_path / 'file'} is a file, not a folder" in answer.err
 
 
 def test_it_is_read_by_whatever_reads_json(process) -> None:
