@@ -245,5 +245,5 @@ def load_scenario(system: System, name: str | None = None) -> Scenario:
     name = name or system.file.scenario
     if name is None:
         return Scenario("", None, ScenarioFile())
-    path = find(name, system.scenario_folders, f"scenario of system '{system.file.name}'")
+    path = find(name, system.scenario_folders, "scenario", f"system '{system.file.name}'")
     return Scenario(path.stem, path, read_toml(path, ScenarioFile))

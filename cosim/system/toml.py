@@ -114,10 +114,10 @@ def names_in(folder: Path) -> list[str]:
     return sorted(path.stem for path in folder.glob("*.toml"))
 
 
-def find(name: str, folders: list[Path], kind: str) -> Path:
+def find(name: str, folders: list[Path], kind: str, owner: str = "") -> Path:
     """Return the path of a file of this kind by its name in one of the folders, or by its path.
 
-    Raises ConfigError with the nearest name where there is none.
+    Raises ConfigError with the nearest name where there is none, or `owner` has none of that name.
     """
     if name.endswith(".toml") or "/" in name or "\\" in name:
         path = Path(name)
@@ -128,7 +128,9 @@ def find(name: str, folders: list[Path], kind: str) -> Path:
         if (folder / f"{name}.toml").is_file():
             return folder / f"{name}.toml"
     known = [known for folder in folders for known in names_in(folder)]
-    raise ConfigError(f"unknown {kind} '{name}'{nearest(name, known)}; known: {', '.join(known) or 'none'}")
+    said = f"{owner} has no {kind} '{name}'" if owner else f"unknown {kind} '{name}'"
+    there_are = ", ".join(dict.fromkeys(known)) or "none"
+    raise ConfigError(f"{said}{nearest(name, known)}; known: {there_are}")
 
 
 def data_file(name: str, beside: Path, place: str) -> Path:

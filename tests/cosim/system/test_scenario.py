@@ -99,5 +99,5 @@ def test_an_event_is_a_table():
 
 
 def test_an_unknown_scenario_says_what_there_is():
-    with pytest.raises(ConfigError, match=r"unknown scenario of system 'scooter' 'fig7' \(did you mean 'fig"):
+    with pytest.raises(ConfigError, match=r"^system 'scooter' has no scenario 'fig7' \(did you mean 'fig"):
         load_scenario(load_system("scooter"), "fig7")

@@ -23,7 +23,11 @@ SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
     [
         (["run", "scoter"], ["unknown system 'scoter' (did you mean 'scooter'?)"]),
         (["run", "no/such.toml"], ["no/such.toml: there is no such system file"]),
-        (["run", "scooter", "-s", "fig88"], ["unknown scenario", "'fig88' (did you mean 'fig8'?)"]),
+        (
+            ["run", "scooter", "-s", "fig88"],
+            ["system 'scooter' has no scenario 'fig88' (did you mean 'fig8'?); known: "],
+        ),
+        (["run", "scooter", "-s", "no.toml"], ["no.toml: there is no such scenario file"]),
         (["run", "scooter", "--set", "ecu.gian=1"], ["--set ecu.gian=1:", "(did you mean 'gain'?)"]),
         (["run", "scooter", "--set", "ecm.gain=1"], ["--set ecm.gain=1:", "(did you mean 'ecu'?)"]),
         (
