@@ -28,8 +28,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from ..fmi import crash
     from . import completion
     from .app import command
-    from .failures import guarded
+    from .failures import guarded, open_closed_streams
 
+    open_closed_streams()
     if arguments is None:  # the process is ours
         if instruction := os.environ.get(completion.VARIABLE):
             return completion.completed(command(), instruction)

@@ -42,6 +42,20 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
         return code
 
 
+def open_closed_streams() -> None:
+    """Let the standard streams that the caller closed, as by `>&-`, lead nowhere: what is printed is lost.
+
+    Each gets its own descriptor, for units in other processes too. Else the next file that is opened would
+    have it, and what native code prints would stand in the results.
+    """
+    for descriptor, (name, mode) in enumerate((("stdin", "r"), ("stdout", "w"), ("stderr", "w"))):
+        if getattr(sys, name) is None:  # Python's own name for a descriptor that is closed at its start
+            stream = open(os.devnull, mode)  # noqa: SIM115 - it stays open to the end of the process
+            setattr(sys, name, stream)
+            if stream.fileno() == descriptor:
+                os.set_inheritable(descriptor, True)
+
+
 def complain(message: str, whole: bool = False) -> None:
     """Print a message on stderr: at most a screen, unless `whole`."""
     lines = message.strip().splitlines() or ["no reason given"]

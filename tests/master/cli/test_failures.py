@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -255,3 +258,35 @@ def test_reader_that_goes_away_is_no_error(process):
     run.stdout = None
     assert run.communicate()[1] == ""
     assert run.returncode == 141
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell closes the streams")
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize(
+    ("arguments", "begins", "complains"),
+    [
+        ("run scooter --stop-time 0.1 --no-plot -q", "", ""),
+        ("run scooter --stop-time 0.1 --no-plot --isolation process", "run ", ""),
+        ("list", "System ", ""),
+        ("run scoter", "", "evcosim: unknown system"),
+    ],
+)
+def test_a_closed_stream_is_no_error(tmp_path, arguments, begins, complains, closed):
+    """What would be printed there is lost, and the other stream has what it has else."""
+    command = f"{shlex.join([sys.executable, '-m', 'evcosim'])} {arguments} {closed}"
+    ended = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == (2 if complains else 0), ended.stderr
+    out, err = begins if closed == "2>&-" else "", complains if closed == ">&-" else ""
+    assert ended.stdout.startswith(out) and bool(ended.stdout) == bool(out)
+    assert ended.stderr.startswith(err) and bool(ended.stderr) == bool(err)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell closes the streams")
+def test_no_file_gets_the_number_of_a_closed_stream(tmp_path):
+    """What native code, or a process started from this one, prints would stand in it."""
+    code = (
+        "import os, subprocess; from evcosim.master.cli.failures import open_closed_streams as o; o();"
+        "file = open('file', 'w'); os.write(1, b'native'); subprocess.run(['echo', 'started'], check=True)"
+    )
+    subprocess.run(f"{shlex.join([sys.executable, '-c', code])} >&-", shell=True, cwd=tmp_path, check=True)
+    assert (tmp_path / "file").read_text() == ""
