@@ -25,9 +25,10 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, SupportsIndex, TypeVar
 
 from ...cosim.errors import RunError
+from ..fmi import crash
 
 T = TypeVar("T")
 
@@ -96,8 +97,11 @@ def run_all(
     """Run all tasks in `workers` processes (default: one for each core) and return their outcomes in order.
 
     A script that calls this needs `if __name__ == "__main__":` around its own calls, since every worker
-    imports it. Raises TypeError, before any task is started, for one that cannot be pickled.
+    imports it. Before any task is started it raises TypeError for one that cannot be pickled and for
+    `workers` that are no whole number, ValueError for fewer than one.
     """
+    if workers is not None and not isinstance(workers, SupportsIndex):
+        raise TypeError(f"workers = {workers!r}: a whole number is needed, or None")
     if workers is not None and workers < 1:
         raise ValueError(f"workers = {workers}: at least one is needed")
     queue = [_packed(task) for task in tasks]
@@ -169,7 +173,8 @@ class _Pool:
 
     def _start_worker(self) -> _Worker:
         ours, theirs = self.context.Pipe()
-        process = self.context.Process(target=_serve, args=(theirs, self.folder.name), daemon=True)
+        sent = (theirs, self.folder.name, crash.report() is not None)
+        process = self.context.Process(target=_serve, args=sent, daemon=True)
         with _without_ctrl_c():
             process.start()
         theirs.close()  # so that the end of the process is the end of the pipe
@@ -218,10 +223,15 @@ def _without_ctrl_c() -> Iterator[None]:
 # ---- in the worker
 
 
-def _serve(pipe: Connection, folder: str) -> None:
-    """Do the tasks that come through the pipe until it is closed; `folder` is for temporary files."""
+def _serve(pipe: Connection, folder: str, reports_crash: bool) -> None:
+    """Do the tasks that come through the pipe until it is closed; `folder` is for temporary files.
+
+    It `reports_crash`, as its caller does, on stderr: the stack and the unit that was called last.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     sys.stdout = sys.stderr
+    if reports_crash:
+        crash.enable()
     os.dup2(2, 1)  # for native code too: the caller's stdout may be read by a machine
     tempfile.tempdir = folder
     threading.Thread(target=_end_with_caller, daemon=True).start()

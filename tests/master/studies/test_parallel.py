@@ -13,6 +13,7 @@ import pytest
 
 from evcosim.master.studies.parallel import Task, TaskError, cores, run_all
 from support import tasks
+from support.c_fmu import mixed_fmu
 
 
 def test_results_stand_in_the_order_of_the_tasks():
@@ -61,6 +62,32 @@ def test_a_process_that_dies_is_a_failure_of_its_task_alone():
     assert outcomes[2].failure.kind == "ProcessDied"
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere faulthandler alone speaks")
+@pytest.mark.parametrize("enabled", [True, False])
+def test_a_worker_reports_the_unit_of_a_crash_if_its_caller_does(tmp_path, enabled):
+    bad = mixed_fmu(tmp_path / "bad.fmu", 2, behavior=50)  # SIGSEGV in a step
+    system = tmp_path / "one.toml"
+    system.write_text(f'name = "one"\n[experiment]\nstop_time = 1.0\n[units.unit]\nfmu = "{bad}"\n')
+    (tmp_path / "script.py").write_text(f"""
+from evcosim import Task, run_all, simulate
+from evcosim.master.fmi import crash
+
+if __name__ == "__main__":
+    if {enabled}:
+        crash.enable()
+    task = Task("run", simulate, ({str(system)!r},), {{"isolation": "none"}})
+    (outcome,) = run_all([task])
+    print(outcome.failure.reason)
+""")
+    done = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True)
+    assert (done.stdout, done.returncode) == ("its process died: SIGSEGV\n", 0)
+    if enabled:
+        assert "Fatal Python error" in done.stderr
+        assert "the unit called last was unit (bad.fmu)" in done.stderr
+    else:
+        assert done.stderr == ""
+
+
 def test_what_cannot_be_sent():
     with pytest.raises(TypeError, match="task 'local' cannot be sent to a process"):
         run_all([Task("local", lambda: 1)])
@@ -74,6 +101,9 @@ def test_no_tasks_and_no_workers():
     assert cores() >= 1
     with pytest.raises(ValueError, match="workers = 0"):
         run_all([Task("t", tasks.square, (1,))], workers=0)
+    for wrong in ("2", 2.0):
+        with pytest.raises(TypeError, match=rf"workers = {wrong!r}: a whole number is needed"):
+            run_all([Task("t", tasks.square, (1,))], workers=wrong)
 
 
 def test_workers_keep_the_stdout_of_the_caller_clean(capfd):
