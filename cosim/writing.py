@@ -18,6 +18,8 @@ def in_place_of(path: Path) -> Iterator[Path]:
     Where the block raises, the file is removed and `path` is as it was. The folder is made if needed. Raises
     ConfigError naming the path and the reason when the folder or the disk refuses, within the block too.
     """
+    if not path.name:  # "", "." or "/"
+        raise ConfigError(f"{path}: cannot be written: it is a folder")
     # beside it: a rename must not cross disks
     partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:

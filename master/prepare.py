@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Unpack
 
@@ -65,7 +65,7 @@ def prepare(
         if unit in interfaces:
             _check_complete(read, driven, unit, interfaces[unit], path)
     # the plan, and the figures and metrics that name its columns
-    plan = _advised(read, lambda: resolve(read, driven, interfaces, options), swaps)
+    plan = _advised(read, driven, interfaces, options)
     plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
@@ -121,15 +121,27 @@ def _advice(system: System, unit: str, path: str | Path) -> str:
     return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
 
 
-def _advised(system: System, resolved: Callable[[], Plan], swaps: Mapping[str, str | Path] | None) -> Plan:
-    """Return the plan; add to an error, if units are swapped, the command that shows everything missing."""
+def _advised(
+    system: System,
+    scenario: Scenario,
+    interfaces: Mapping[str, UnitInterface],
+    options: RunOptions,
+) -> Plan:
+    """Return the plan; add to an error, if FMUs are put in, the command that shows everything missing."""
+    swaps, fmus = options.get("swaps") or {}, options.get("fmus") or {}
     try:
-        return resolved()
+        return resolve(system, scenario, interfaces, options)
     except ConfigError as error:
-        if not swaps:
-            raise
-        unit, path = next(iter(swaps.items()))
-        raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
+        if swaps:
+            unit, path = next(iter(swaps.items()))
+            raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
+        for unit, path in fmus.items():
+            if lacking(system, scenario, unit, interfaces[unit]):
+                raise ConfigError(
+                    f"{error}\n{_advice(system, unit, path)}; with --write it makes a swap file for an FMU "
+                    f"with other names: --swap {unit}=FILE, or in Python `swaps`"
+                ) from error
+        raise
 
 
 def _read_fmus(
@@ -140,12 +152,12 @@ def _read_fmus(
     for unit in fmus:
         if unit not in entries:
             raise ConfigError(
-                f"--fmu {unit}: there is no unit '{unit}'{nearest(unit, entries)}: {', '.join(entries)}"
+                f"fmus: there is no unit '{unit}'{nearest(unit, entries)}: {', '.join(entries)}"
             )
     read = {}
     for unit, entry in entries.items():
         if unit in fmus:
-            path = fmu_file(str(fmus[unit]), place=f"--fmu {unit}")
+            path = fmu_file(str(fmus[unit]), place=f"fmus.{unit}")
         else:
             path = fmu_file(entry.fmu, system.path, f"{system.keys_of(unit)}fmu")
         read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)

@@ -54,16 +54,24 @@ def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, st
 
 
 @contextlib.contextmanager
-def as_typed(options: Sequence[str]) -> Iterator[None]:
-    """Add the `--set` option that was typed to an error about its parameter."""
+def as_typed(settings: Sequence[str], fmus: Sequence[str] = ()) -> Iterator[None]:
+    """Put the option that was typed into an error: `--set` for its parameter, `--fmu` for its unit."""
+    places = {f"parameter {_name(option)}:": f"--set {option}:" for option in settings}
+    for option in fmus:
+        unknown = f"there is no unit '{_name(option)}'"
+        places |= {f"fmus: {unknown}": f"--fmu {option}: {unknown}"}
+        places |= {f"fmus.{_name(option)}:": f"--fmu {_name(option)}:"}
     try:
         yield
     except ConfigError as error:
-        for option in options:
-            place = f"parameter {option.partition('=')[0].strip()}:"
+        for place, typed in places.items():
             if str(error).startswith(place):
-                raise ConfigError(f"--set {option}:{str(error).removeprefix(place)}") from error
+                raise ConfigError(f"{typed}{str(error).removeprefix(place)}") from error
         raise
+
+
+def _name(option: str) -> str:
+    return option.partition("=")[0].strip()
 
 
 def seconds(option: str, text: str) -> float:

@@ -129,7 +129,7 @@ def takes_run_options(*without: str) -> Callable[[Callable[..., T]], Callable[..
     """Declare the options of a run on a verb, which receives them together as its argument `options`.
 
     They stand in the place of that argument, all but those named in `without`. An error about a parameter
-    names the `--set` option that was typed.
+    or an FMU names the `--set` or `--fmu` option that was typed.
     """
     known = inspect.signature(_run_options, locals={"RunOptions": Any}, eval_str=True).parameters
     declared = [parameter for name, parameter in known.items() if name not in without]
@@ -140,7 +140,7 @@ def takes_run_options(*without: str) -> Callable[[Callable[..., T]], Callable[..
             from .arguments import as_typed
 
             given = {parameter.name: arguments.pop(parameter.name) for parameter in declared}
-            with as_typed(given.get("settings") or []):
+            with as_typed(given.get("settings") or [], given.get("fmus") or []):
                 return verb(**arguments, options=_run_options(**given))
 
         own = inspect.signature(verb, locals={"RunOptions": Any}, eval_str=True).parameters.values()

@@ -57,6 +57,16 @@ def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
         pytest.fail("there is nothing to write into")
 
 
+@pytest.mark.parametrize("path", ["", ".", "/"])
+def test_a_folder_without_a_name_is_refused(path: str) -> None:
+    shown = path or "."
+    with (
+        pytest.raises(ConfigError, match=f"^{shown}: cannot be written: it is a folder$"),
+        replacing(Path(path)),
+    ):
+        pytest.fail("there is nothing to write into")
+
+
 def test_a_file_that_was_not_written_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="cannot be written: No such file"), in_place_of(tmp_path / "a"):
         pass

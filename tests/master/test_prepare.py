@@ -50,9 +50,9 @@ def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
         ({"ideal": True, "bus": BusVariation(cycle=2)}, "'ideal' leaves the buses out"),
         (
             {"fmus": {"batery": "x.fmu"}},
-            r"--fmu batery: there is no unit 'batery' \(did you mean 'battery'\?\)",
+            r"^fmus: there is no unit 'batery' \(did you mean 'battery'\?\)",
         ),
-        ({"fmus": {"battery": "x.fmu"}}, r"x\.fmu: there is no such FMU file"),
+        ({"fmus": {"battery": "x.fmu"}}, r"^fmus\.battery: x\.fmu: there is no such FMU file"),
         ({"swaps": {"batery": "x.toml"}}, "batery"),
         (
             {"swaps": {"battery": "a.toml"}, "fmus": {"vehicle": "x.fmu", "battery": "x.fmu"}},
@@ -87,6 +87,22 @@ def test_the_fmu_that_a_swap_file_lacks_is_named_with_the_swap_file(tmp_path):
     path.write_text('fmu = "no.fmu"\n')
     with pytest.raises(ConfigError, match=rf"^{re.escape(str(path))}: fmu: no\.fmu: there is no such FMU"):
         prepare("scooter", swaps={"vehicle": path})
+
+
+def test_an_fmu_with_other_names_is_refused_with_advice():
+    """For both ways of putting it in: the option's and Python's."""
+    with pytest.raises(ConfigError) as refusal:
+        prepare("scooter", fmus={"vehicle": "Battery"})
+    first, advice = str(refusal.value).split("\n")
+    assert "vehicle" in first
+    assert "'evcosim check Battery --as scooter.vehicle' shows what the system needs" in advice
+    assert advice.endswith("--swap vehicle=FILE, or in Python `swaps`")
+
+
+def test_there_is_no_advice_about_an_fmu_that_is_not_at_fault():
+    with pytest.raises(ConfigError, match=r"vehicle\.mass: 0\.1 kg is below") as refusal:
+        prepare("scooter", fmus={"vehicle": "Scooter"}, parameters={"vehicle.mass": 0.1})
+    assert "evcosim check" not in str(refusal.value)
 
 
 def test_a_misspelled_option():

@@ -22,5 +22,6 @@ def format_of(path: Path) -> Format:
     """Return the format that a file's suffix names. Raises ConfigError for another suffix, naming all."""
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise ConfigError(f"{path}: results are written as {', '.join(FORMATS)}, not as '{suffix}'")
+        wrong = f"not as '{suffix}'" if suffix else f"and the name '{path.name}' has no suffix"
+        raise ConfigError(f"{path}: results are written as {', '.join(FORMATS)}, {wrong}")
     return FORMATS[suffix]

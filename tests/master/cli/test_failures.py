@@ -41,8 +41,15 @@ SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
         (["run", "scooter", "--set", "vehicle.mass"], ["--set vehicle.mass:", "unit.parameter=value"]),
         (["run", "scooter", "--set", "ecu.throttle=1"], ["--set ecu.throttle=1:", "output", "parameter"]),
         (["run", "scooter", "--fmu", "vehicle"], ["--fmu vehicle:", "unit=PATH"]),
-        (["run", "scooter", "--fmu", "vehicel=x.fmu"], ["--fmu vehicel", "(did you mean 'vehicle'?)"]),
-        (["run", "scooter", "--fmu", "vehicle=x.fmu"], ["x.fmu: there is no such FMU file"]),
+        (
+            ["run", "scooter", "--fmu", "vehicel=x.fmu"],
+            ["--fmu vehicel=x.fmu: there is no unit 'vehicel' (did you mean 'vehicle'?)"],
+        ),
+        (
+            ["run", "scooter", "--fmu", "vehicle=Battery"],
+            ["'evcosim check Battery --as scooter.vehicle' shows"],
+        ),
+        (["run", "scooter", "--fmu", "vehicle=x.fmu"], ["--fmu vehicle: x.fmu: there is no such FMU file"]),
         (["run", "scooter", "--stop-time", "inf"], ["stop_time inf s is not finite"]),
         (["run", "scooter", "--stop-time", "nan"], ["stop_time nan s is not finite"]),
         (["run", "scooter", "--stop-time", "-1"], ["stop_time -1.0 s is not after start_time 0.0 s"]),

@@ -65,10 +65,10 @@ def test_the_suffix_chooses_the_format(tmp_path: Path) -> None:
 def test_a_suffix_that_names_no_format_is_refused_before_anything_is_written(
     name: str, tmp_path: Path
 ) -> None:
-    suffix = Path(name).suffix
+    wrong = f"not as '{Path(name).suffix}'" if Path(name).suffix else f"and the name '{name}' has no suffix"
     with pytest.raises(ConfigError) as refusal:
         Results([0.0], [[1.0, 0.0]], VARIABLES).save(tmp_path / name)
-    assert str(refusal.value) == f"{tmp_path / name}: results are written as .csv, .toy, not as '{suffix}'"
+    assert str(refusal.value) == f"{tmp_path / name}: results are written as .csv, .toy, {wrong}"
     assert list(tmp_path.iterdir()) == []
 
 
