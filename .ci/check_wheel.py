@@ -2,12 +2,14 @@
 
     python3 .ci/check_wheel.py dist/evcosim-0.2.0-py3-none-any.whl    # exit code 1 and what is wrong
 
-It needs the standard library alone, so that it runs before anything is installed.
+It needs the standard library (and git in a clone) alone, so that it runs before anything is installed.
 """
 
 from __future__ import annotations
 
 import pathlib
+import shutil
+import subprocess
 import sys
 import tomllib
 import zipfile
@@ -18,13 +20,23 @@ _METADATA = {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt",
 
 
 def wanted(root: pathlib.Path = ROOT) -> dict[str, pathlib.Path]:
-    """The files of the packages by their names in the wheel."""
+    """The files of the packages by their names in the wheel: in a git checkout those that git knows."""
+    known = _tracked(root)
     return {
         f"evcosim/{inside}{path.relative_to(root / folder).as_posix()}": path
         for folder, inside in _FOLDERS.items()
         for path in (root / folder).rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file() and "__pycache__" not in path.parts and (known is None or path in known)
     }
+
+
+def _tracked(root: pathlib.Path) -> set[pathlib.Path] | None:
+    """The files that git tracks, so that a stray one is no part of a package; None where git says nothing."""
+    if not (root / ".git").exists() or shutil.which("git") is None:  # a source distribution, or no git
+        return None
+    call = ["git", "-c", "safe.directory=*", "ls-files", "-z"]  # the clone may be another user's
+    listed = subprocess.run(call, cwd=root, capture_output=True, text=True, check=True)
+    return {root / name for name in listed.stdout.split("\0") if name}
 
 
 def problems(wheel: pathlib.Path, root: pathlib.Path = ROOT) -> list[str]:

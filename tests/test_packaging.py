@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import importlib.util
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
 import zipfile
@@ -108,6 +110,27 @@ def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes]) -> list[st
 def test_a_wheel_with_more_fails(check_wheel, tmp_path, name):
     found = found_in(check_wheel, tmp_path, contents(check_wheel) | {name: b""})
     assert found == [f"it has {name}, which no package has"]
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_a_wheel_with_a_stray_file_of_the_clone_fails(check_wheel, tmp_path):
+    """A file that git does not track, as an editor or a trial leaves one."""
+    clone = tmp_path / "clone"
+    for file in ("cosim/__init__.py", "cosim/data/can/ev.dbc", "pyproject.toml"):
+        (clone / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / file, clone / file)
+    for command in (["init", "-q"], ["add", "."]):
+        subprocess.run(["git", *command], cwd=clone, check=True)
+    (clone / "cosim" / "stray.py").write_text("")
+    names = {"evcosim/cosim/__init__.py", "evcosim/cosim/data/can/ev.dbc"}
+    assert check_wheel.wanted(clone).keys() == names
+    shutil.rmtree(clone / ".git")  # as in a source distribution
+    assert check_wheel.wanted(clone).keys() == names | {"evcosim/cosim/stray.py"}
+
+
+def test_the_source_distribution_leaves_all_tests_out():
+    """setuptools takes tests/test*.py by itself; .ci/run looks into the archive."""
+    assert "prune tests" in (ROOT / "MANIFEST.in").read_text().splitlines()
 
 
 @pytest.mark.parametrize("name", ["evcosim/__main__.py", "evcosim/cosim/data/systems/scooter.toml"])
