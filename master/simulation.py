@@ -329,8 +329,9 @@ def simulate(
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
 
-    Raises ConfigError before any step, RunError when a step fails; what a failed run has recorded is in
-    the error's `results` (None where it failed before the first step).
+    The options, as `parameters` and `stop_time`, are the keys of `evcosim.RunOptions`. Raises
+    ConfigError before any step, RunError when a step fails; what a failed run has recorded is in the
+    error's `results` (None where it failed before the first step).
     """
     simulation = Simulation(system, scenario, **options)
     try:

@@ -51,6 +51,31 @@ def alone(code: str) -> bool:
     return "__main__" in code
 
 
+def imported(tree: ast.Module) -> set[str]:
+    """Return the names that an example imports."""
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return {alias.asname or alias.name for node in imports for alias in node.names}
+
+
+def test_every_example_imports_what_it_uses():
+    """Results and systems may come from an example above; modules and what is in them may not."""
+    trees = [ast.parse(code) for code, _ in EXAMPLES]
+    everything = set.union(*map(imported, trees))
+    for tree in trees:
+        used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+        assert used & everything <= imported(tree), ast.unparse(tree)
+
+
+def test_the_page_says_what_mypy_needs_after_an_editable_installation():
+    """tests/test_api.py lets mypy do it."""
+    assert "MYPYPATH=CLONE/.typing mypy --follow-imports=silent script.py" in TEXT
+    assert (ROOT / ".typing" / "evcosim" / "py.typed").is_file()
+
+
+def test_the_help_of_a_run_names_its_options():
+    assert "`evcosim.RunOptions`" in (evcosim.simulate.__doc__ or "")
+
+
 def test_the_examples_print_what_is_shown(tmp_path, monkeypatch):
     """In one interpreter, from top to bottom: later ones use what earlier ones made."""
     monkeypatch.chdir(tmp_path)
