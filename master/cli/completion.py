@@ -16,6 +16,7 @@ VARIABLE = "_EVCOSIM_COMPLETE"
 """The environment variable by which a shell requests completions."""
 
 _SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
+_START_FILES = {"bash": ".bashrc", "zsh": ".zshrc"}  # to which typer adds lines; the script stands elsewhere
 _DETECTED = "detected"  # the value of an option that names no shell
 _DATA = Path(__file__).parents[2] / "cosim" / "data"
 
@@ -34,7 +35,8 @@ def install(context: typer.Context, wanted: str | None) -> None:
     if wanted is None or context.resilient_parsing:
         return
     shell, path = _typer().install(shell=_shell(wanted), prog_name="evcosim", complete_var=VARIABLE)
-    typer.echo(f"{path}: completion for {shell}, from its next start on")
+    edited = f"; {Path.home() / _START_FILES[shell]} was edited to read it" if shell in _START_FILES else ""
+    typer.echo(f"{path}: completion for {shell}, from its next start on{edited}")
     raise typer.Exit
 
 
@@ -104,10 +106,23 @@ def systems_and_fmus() -> list[str]:
 def scenarios(ctx: typer.Context) -> list[str]:
     """Return the scenarios of the system that the line names; of every system where it names none yet."""
     # behind an option without its value yet, what stands before it is in `args`
-    words = {ctx.params.get("system"), ctx.params.get("target"), *ctx.args}
-    named = [name for name in systems() if name in words] or systems()
-    files = (file for name in named for file in (_DATA / "scenarios" / name).glob("*.toml"))
-    return sorted({file.stem for file in files})
+    words = [ctx.params.get("system"), ctx.params.get("target"), *ctx.args]
+    named = next((word for word in words if word and not word.startswith("-")), None)
+    folders = [f for name in systems() for f in _folders(name)] if named is None else _folders(named)
+    return sorted({file.stem for folder in folders for file in folder.glob("*.toml")})
+
+
+def _folders(system: str) -> list[Path]:
+    """The folders of a system's scenarios, as `System.scenario_folders`; none of an unknown or broken one."""
+    import tomllib
+
+    if system in systems():
+        return [_DATA / "scenarios" / system]
+    try:
+        name = tomllib.loads(Path(system).read_text(encoding="utf-8"))["name"]
+        return [root / "scenarios" / name for root in (Path(system).parent, _DATA)]
+    except (OSError, ValueError, KeyError, TypeError):  # no file, no TOML, no name, or one that is no text
+        return []
 
 
 def places() -> list[str]:

@@ -39,6 +39,27 @@ def test_names_for_a_line(offered):
     assert offered("evcosim run my.toml --fmu ") == []  # then the shell offers files
 
 
+def test_scenarios_of_a_system_of_ones_own_stand_beside_it(offered, tmp_path, monkeypatch):
+    """And those built in for a system of its name, as a run finds them."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenarios" / "mine").mkdir(parents=True)
+    for name in ("calm.toml", "windy.toml", "notes.txt"):
+        (tmp_path / "scenarios" / "mine" / name).touch()
+    (tmp_path / "own.toml").write_text('name = "mine"\n')
+    assert offered("evcosim run own.toml --scenario ") == ["calm", "windy"]
+    assert offered(f"evcosim run --ideal {tmp_path}/own.toml -s w") == ["windy"]
+    (tmp_path / "own.toml").write_text('name = "scooter"\n')
+    assert "fig8" in offered("evcosim budget own.toml --scenario ")
+
+
+@pytest.mark.parametrize("text", [None, "name = ", "title = 'x'", "name = 3", "name = 'other'"])
+def test_an_unknown_or_broken_system_has_no_scenarios(offered, tmp_path, text):
+    if text is not None:
+        (tmp_path / "own.toml").write_text(text)
+    assert offered("evcosim run own.toml --scenario ") == []
+    assert offered("evcosim run scoter --scenario ") == []
+
+
 def test_names_are_those_of_the_files():
     assert completion.systems() == system_names()
     assert completion.fmus() == sorted(builtin_names())
@@ -93,6 +114,16 @@ def test_installing_it(evcosim, monkeypatch, tmp_path):
     assert str(script) in answer.out
     assert "_evcosim_completion" in script.read_text()
     assert str(script) in (tmp_path / ".bashrc").read_text()
+    assert f"{tmp_path / '.bashrc'} was edited" in answer.out
+
+
+def test_installing_it_for_a_shell_without_a_start_file_to_edit(evcosim, monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    assert "was edited" in evcosim("--install-completion", "zsh").out
+    assert (tmp_path / ".zshrc").is_file()
+    answer = evcosim("--install-completion", "fish")
+    assert "evcosim.fish: completion for fish" in answer.out and "edited" not in answer.out
 
 
 def test_the_key_is_answered_at_once():
