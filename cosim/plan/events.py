@@ -81,7 +81,7 @@ def _check_value(event: Override | Bias, kind: str, at: Callable[[str], str]) ->
     """
     action, name, value = event.action, event.variable, event.value
     if not math.isfinite(value):
-        raise ConfigError(f"{at('value')}: {action} of {name} needs a finite number, not {value}")
+        raise ConfigError(f"{at('value')}: {name} needs a finite number, not {value}")
     if kind == "Boolean" and (isinstance(event, Bias) or value not in (0, 1)):
         place = at("action" if isinstance(event, Bias) else "value")
         raise ConfigError(

@@ -78,8 +78,8 @@ def bias(name: str, value: float) -> Bias:
     [
         (override("display.levle", 1.0), "there is no input 'display.levle' (did you mean 'display.level'?); override acts on what a unit receives"),
         (Reset.model_construct(time=0.0, action="reset", variable="x.y"), "there is no input 'x.y'; reset acts on what a unit receives"),
-        (override("display.level", float("nan")), "override of display.level needs a finite number, not nan"),
-        (bias("display.level", float("inf")), "bias of display.level needs a finite number, not inf"),
+        (override("display.level", float("nan")), "display.level needs a finite number, not nan"),
+        (bias("display.level", float("inf")), "display.level needs a finite number, not inf"),
         (override("display.flag", 2.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not override 2.0"),
         (bias("display.flag", 1.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not bias 1.0"),
         (override("display.state", 1.5), "display.state is an Enumeration; override needs a whole number, not 1.5"),
