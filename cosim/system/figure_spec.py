@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .toml import FileModel, OrText
+from .toml import FileModel, OrText, text_as
 
 
 class SignalSpec(FileModel):
@@ -38,7 +38,7 @@ class PanelSpec(FileModel):
     unit: str = ""
     """The unit of measure of the axis, to which all signals are converted; "" for states and counts."""
 
-    signals: list[Annotated[SignalSpec, OrText("name")]] = Field(min_length=1)
+    signals: list[Annotated[SignalSpec, text_as("name"), OrText()]] = Field(min_length=1)
     """The lines: names of variables, or tables of a name and how it is drawn."""
 
     limits: tuple[float, float] | None = None

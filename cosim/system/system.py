@@ -13,7 +13,18 @@ from ..can.bus_settings import BusSettings
 from ..interface import InterfaceType
 from .figure_spec import FigureSpec
 from .metric_spec import MetricSpec
-from .toml import DATA, FileModel, FileValue, FiniteModel, OrText, find, names_in, read_toml, text_type
+from .toml import (
+    DATA,
+    FileModel,
+    FileValue,
+    FiniteModel,
+    OrText,
+    find,
+    names_in,
+    read_toml,
+    text_as,
+    text_type,
+)
 
 Algorithm = Literal["gauss_seidel", "jacobi"]
 Isolation = Literal["process", "none"]
@@ -86,7 +97,7 @@ class MapEntry(FileModel):
     """Take the value with the other sign."""
 
 
-Mapped = Annotated[MapEntry, OrText("variable")]
+Mapped = Annotated[MapEntry, text_as("variable"), OrText()]
 
 
 class MapTables(FileModel):

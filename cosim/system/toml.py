@@ -11,12 +11,10 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
-    GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ValidationError,
     WithJsonSchema,
 )
-from pydantic_core import core_schema
 
 from ..errors import ConfigError, nearest
 from ..interface import Value
@@ -62,23 +60,21 @@ FORBIDDEN_KEY: dict[str, Any] = {"not": {}}
 """The JSON schema of a key that may not stand there; for `false` some validators mark the whole table."""
 
 
-class OrText:
-    """The mark of a table for which a file may give a text alone: the value of one key."""
+def text_as(key: str) -> BeforeValidator:
+    """Return the validator of a table for which a file may give the value of one key alone, a text."""
 
-    def __init__(self, key: str) -> None:
-        self.key = key
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return core_schema.no_info_before_validator_function(self._table, handler(source))
-
-    def _table(self, value: Any) -> Any:
+    def table(value: Any) -> Any:
         if isinstance(value, str):
-            return {self.key: value}
+            return {key: value}
         if not isinstance(value, Mapping | BaseModel):
             raise ValueError("a table or a text is needed")
         return value
+
+    return BeforeValidator(table)
+
+
+class OrText:
+    """The mark of a table for which a file may give a text alone; `text_as` makes the table of it."""
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"anyOf": [{"type": "string"}, handler(schema)]}
