@@ -68,3 +68,20 @@ def test_the_number_of_hostile_fmus():
     assert f"\n{classes} classes, {len(CASES)} FMUs, " in (ROOT / "docs" / "hostile.md").read_text(
         encoding="utf-8"
     )
+
+
+def test_contributing_names_every_command_that_makes_a_file():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    support = ROOT / "tests" / "support"
+    programs = [p for p in support.glob("*.py") if '__name__ == "__main__"' in p.read_text(encoding="utf-8")]
+    assert len(programs) >= 4
+    assert [p.name for p in programs if f"tests/support/{p.name}" not in text] == []
+    packages = [main.parent.name for main in support.glob("*/__main__.py")]
+    assert [name for name in packages if f"-m support.{name}" not in text] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_files_are_named_as_they_stand_in_the_clone(page):
+    """There is no folder of the package's name; models/base.py is imported as evcosim.models.base."""
+    text = page.read_text(encoding="utf-8")
+    assert re.findall(r"\bevcosim/(?:models|fmus|cosim|master)/\S*", text) == []

@@ -1,4 +1,4 @@
 """FMUs that are sloppy, broken or hostile, what is expected of a run with each, and what came of it.
 
-python -m support.hostile (from tests/) runs all of them and prints docs/hostile.md.
+python -m support.hostile (from tests/) runs all of them and writes docs/hostile.md.
 """
