@@ -49,6 +49,12 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         yield file
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text as UTF-8, with the line ends that it has. Raises ConfigError as `in_place_of` does."""
+    with replacing(path) as file:
+        file.write(text.encode())
+
+
 def markdown_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Return the lines of a Markdown table; `|` and line ends in a cell are escaped, other marks are not."""
     escaped = [[cell.replace("|", "\\|").replace("\n", " ") for cell in cells] for cells in (headers, *rows)]

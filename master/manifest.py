@@ -11,7 +11,7 @@ from typing import Any
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
-from ..cosim.system.toml import DATA
+from ..cosim.system.toml import is_built_in
 from .engine.engine import Engine
 from .prepare import Prepared
 
@@ -82,5 +82,5 @@ def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
     return {
         kind: str(path.resolve())
         for kind, path in paths.items()
-        if path is not None and DATA.resolve() not in path.resolve().parents
+        if path is not None and not is_built_in(path)
     }

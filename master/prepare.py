@@ -18,7 +18,7 @@ from ..cosim.swap.swap_file import swapped
 from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
 from ..cosim.system.system import System, load_system
-from ..cosim.system.toml import DATA
+from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
 from .builtin import fmu_file
 from .engine.initialization import ordered_links
@@ -117,7 +117,7 @@ def _check_complete(
 
 def _advice(system: System, unit: str, path: str | Path) -> str:
     """Return the command that checks a swap file against the place of the unit."""
-    name = system.path if DATA.resolve() not in system.path.resolve().parents else system.file.name
+    name = system.file.name if is_built_in(system.path) else system.path
     return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
 
 

@@ -13,7 +13,7 @@ from pydantic import Field
 from ..errors import ConfigError, nearest
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
-from ..writing import replacing
+from ..writing import write_text
 from .matching import Match
 from .requirements import ROLES, Role
 
@@ -110,9 +110,7 @@ def write(
     from tomlkit import dumps
 
     relative = os.path.relpath(fmu, path.parent or Path("."))
-    text = dumps(_document(relative, place, matches, entry, proposal or Proposal()))
-    with replacing(path) as file:
-        file.write(text.encode())
+    write_text(path, dumps(_document(relative, place, matches, entry, proposal or Proposal())))
 
 
 def _document(

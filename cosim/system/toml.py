@@ -24,6 +24,11 @@ DATA = Path(__file__).parents[1] / "data"
 """The folder of the built-in systems, scenarios, databases and cycles."""
 
 
+def is_built_in(path: Path) -> bool:
+    """Return True for a file below DATA."""
+    return DATA.resolve() in path.resolve().parents
+
+
 class FileModel(BaseModel):
     """Base of the tables of a file: an unknown key is an error, and nothing changes after reading.
 

@@ -59,10 +59,10 @@ def budget(
 def _default_folder(system: str, scenario: str | None) -> Path:
     from ...cosim.system.scenario import load_scenario
     from ...cosim.system.system import load_system
+    from .outputs import default_folder
 
     read = load_system(system)
-    names = (read.file.name, load_scenario(read, scenario).name, "budget")
-    return Path("results") / "-".join(name for name in names if name)
+    return default_folder(read.file.name, load_scenario(read, scenario).name, "budget")
 
 
 def _write(folder: Path, found: Budget) -> list[str]:
@@ -70,18 +70,12 @@ def _write(folder: Path, found: Budget) -> list[str]:
     from ...cosim.analysis.bus_budget import as_data, as_markdown
     from ...cosim.figures import draw as figures
     from ...cosim.figures.bus_budget import draw_budget
+    from ...cosim.writing import write_text
 
-    _write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
-    _write_text(folder / _DATA, json.dumps(as_data(found), indent=2, ensure_ascii=False) + "\n")
+    write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
+    write_text(folder / _DATA, json.dumps(as_data(found), indent=2, ensure_ascii=False) + "\n")
     drawn = figures.save(draw_budget(found), folder, _FIGURE)
     return [_PAGE, _DATA, *(path.name for path in drawn)]
-
-
-def _write_text(path: Path, text: str) -> None:
-    from ...cosim.writing import replacing
-
-    with replacing(path) as file:
-        file.write(text.encode())
 
 
 def _show(found: Budget, folder: Path, files: list[str]) -> None:

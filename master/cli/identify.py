@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import completion
-from .options import QuietOption, takes_run_options
+from .options import QuietOption, scenario_option, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.analysis.first_order import Estimate
@@ -28,16 +28,7 @@ TargetArgument = Annotated[
         autocompletion=completion.systems_and_fmus,
     ),
 ]
-ScenarioOption = Annotated[
-    str | None,
-    typer.Option(
-        "--scenario",
-        "-s",
-        metavar="S",
-        help="Default: 'identification' where there is one.",
-        autocompletion=completion.scenarios,
-    ),
-]
+ScenarioOption = Annotated[str | None, scenario_option("Default: 'identification' where there is one.")]
 InputOption = Annotated[
     str | None, typer.Option(metavar="NAME", help="The input to sweep: unit.variable; of an FMU variable.")
 ]
@@ -215,12 +206,11 @@ _SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}
 
 def _write(folder: Path, found: list[Identification], figures: bool) -> list[str]:
     """Write data and figures and return the names of the files. Raises ConfigError."""
-    from ...cosim.writing import replacing
+    from ...cosim.writing import write_text
     from .console import finite
 
     text = json.dumps(finite([each.as_data() for each in found]), indent=2, allow_nan=False)
-    with replacing(folder / DATA) as file:
-        file.write((text + "\n").encode())
+    write_text(folder / DATA, text + "\n")
     return [DATA, *(_draw(folder, found) if figures else ())]
 
 

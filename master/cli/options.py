@@ -35,16 +35,14 @@ SystemArgument = Annotated[
         metavar="SYSTEM", help="A built-in system, or a TOML file.", autocompletion=completion.systems
     ),
 ]
-ScenarioOption = Annotated[
-    str | None,
-    typer.Option(
-        "--scenario",
-        "-s",
-        metavar="S",
-        help="Name or TOML file; default: the system's own.",
-        autocompletion=completion.scenarios,
-    ),
-]
+
+
+def scenario_option(text: str) -> Any:
+    """Return the declaration of `--scenario`; `text` is its help."""
+    return typer.Option("--scenario", "-s", metavar="S", help=text, autocompletion=completion.scenarios)
+
+
+ScenarioOption = Annotated[str | None, scenario_option("Name or TOML file; default: the system's own.")]
 
 
 class EngineChoice(enum.StrEnum):

@@ -16,6 +16,11 @@ FIGURES = ("figure.png", "figure.svg")
 CAN_LOGS = ("can.log", "can.blf", "can.asc")
 
 
+def default_folder(*names: str) -> Path:
+    """Return the folder of a run for which `--output` names none; names that are "" are left out."""
+    return Path("results") / "-".join(name for name in names if name)
+
+
 def output_folder(folder: Path) -> Path:
     """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
     from ...cosim.errors import ConfigError

@@ -100,7 +100,7 @@ def _run(order: Order) -> FinishedRun:
     from ...cosim.errors import ConfigError, RunError
     from ..simulation import Simulation
     from .interrupts import Interrupts
-    from .outputs import run_folder
+    from .outputs import default_folder, run_folder
 
     if order.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
@@ -112,18 +112,14 @@ def _run(order: Order) -> FinishedRun:
         try:
             with simulation:
                 interrupts.check()
-                folder = run_folder(order.output or _default_folder(simulation))
+                named = default_folder(simulation.system.file.name, simulation.scenario.name)
+                folder = run_folder(order.output or named)
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
             if simulation.time <= simulation.plan.experiment.start_time and not isinstance(failure, RunError):
                 raise  # before the first step there is nothing to keep
             error = failure
     return FinishedRun(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
-
-
-def _default_folder(simulation: Simulation) -> Path:
-    names = (simulation.system.file.name, simulation.scenario.name)
-    return Path("results") / "-".join(name for name in names if name)
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:

@@ -36,15 +36,14 @@ def schema(
     An editor that knows TOML completes and checks a file whose first line is #:schema ./system.schema.json
     """
     from ...cosim.system.schema import json_schema
-    from ...cosim.writing import replacing
+    from ...cosim.writing import write_text
 
     text = json.dumps(json_schema(_model(kind), f"evcosim {kind} file"), indent=2, ensure_ascii=False) + "\n"
     if output is None:
         typer.echo(text, nl=False)
         return
     path = output / f"{kind}.schema.json" if output.is_dir() else output
-    with replacing(path) as file:
-        file.write(text.encode())
+    write_text(path, text)
     typer.echo(path)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.figures import draw as figures
-from ...cosim.writing import markdown_table, replacing
+from ...cosim.writing import markdown_table, write_text
 from .page import VERDICTS, Page, PublishedNumber
 
 _HEAD = ("what", "published", "to reach", "obtained", "verdict", "reason")
@@ -37,8 +37,7 @@ def write_page(page: Page, folder: Path) -> list[Path]:
     images = {p.stem: written[2 * i] for i, p in enumerate(page.pictures)}
     for suffix, text in ((".md", _markdown(page)), (".html", _html(page, images))):
         path = folder / f"{page.name}{suffix}"
-        with replacing(path) as file:
-            file.write(text.encode())
+        write_text(path, text)
         written.append(path)
     return written
 
@@ -55,8 +54,7 @@ def write_index(pages: Sequence[Page], folder: Path) -> Path:
     ]
     lines = ["# Reproduced papers", "", *markdown_table(("system", "paper", *VERDICTS), rows)]
     path = folder / "README.md"
-    with replacing(path) as file:
-        file.write(("\n".join(lines) + "\n").encode())
+    write_text(path, "\n".join(lines) + "\n")
     return path
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.writing import in_place_of, markdown_table, replacing
+from evcosim.cosim.writing import in_place_of, markdown_table, replacing, write_text
 
 
 def test_the_file_takes_its_place_at_the_end(tmp_path: Path) -> None:
@@ -74,3 +74,8 @@ def test_a_file_that_was_not_written_is_refused(tmp_path: Path) -> None:
 
 def test_a_cell_stays_a_cell() -> None:
     assert markdown_table(("a|b", "c"), [("1", "2\n3")]) == [r"| a\|b | c |", "|---|---|", "| 1 | 2 3 |"]
+
+
+def test_a_text_keeps_its_line_ends(tmp_path: Path) -> None:
+    write_text(tmp_path / "a.txt", "ä\r\nb\n")
+    assert (tmp_path / "a.txt").read_bytes() == "ä\r\nb\n".encode()

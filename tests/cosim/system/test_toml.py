@@ -19,6 +19,7 @@ from evcosim.cosim.system.toml import (
     FiniteModel,
     data_file,
     find,
+    is_built_in,
     names_in,
     read_toml,
 )
@@ -114,3 +115,9 @@ def test_a_file_beside_comes_before_a_built_in_one(tmp_path: Path) -> None:
         ConfigError, match=r"^s.toml: buses.can0.dbc: there is no file 'no.dbc', neither in .* nor built in"
     ):
         data_file("no.dbc", system, "s.toml: buses.can0.dbc")
+
+
+def test_the_data_of_evcosim_is_built_in(tmp_path: Path) -> None:
+    assert is_built_in(DATA / "systems" / "scooter.toml")
+    assert not is_built_in(tmp_path / "scooter.toml")
+    assert not is_built_in(DATA)

@@ -85,3 +85,8 @@ def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch,
     assert "No space left on device" in answer.err
     assert f"the results are kept in {kept}" in answer.err
     assert len(Results.read(kept)) == 11
+
+
+def test_a_default_folder_is_named_by_what_has_a_name():
+    assert outputs.default_folder("scooter", "fig8", "budget") == Path("results/scooter-fig8-budget")
+    assert outputs.default_folder("scooter", "") == Path("results/scooter")
