@@ -81,13 +81,13 @@ def build(name: str, folder: str | Path) -> Path:
     return cache.write(Path(folder) / f"{name}.fmu", _content(_catalog_recipe(name)))
 
 
-def built(name: str) -> Path:
-    """Return the FMU of the present sources in the user's cache, built first if it is missing.
+def built(name: str, anew: bool = False) -> Path:
+    """Return the FMU of the present sources in the user's cache, built first if it is missing or damaged.
 
-    Raises ValueError for an unknown name.
+    With `anew` it is built in any case. Raises ValueError for an unknown name.
     """
     recipe = _catalog_recipe(name)
-    return cache.fetch(f"{recipe.identity}.fmu", lambda: _content(recipe))
+    return cache.fetch(f"{recipe.identity}.fmu", lambda: _content(recipe), anew)
 
 
 def build_model(

@@ -25,6 +25,20 @@ def cache_folder() -> Path:
     return cache.folder()
 
 
+def kept(name: str) -> bytes | None:
+    """Return what `keep` kept in the cache under a name; None if there is none that can be trusted."""
+    from ..fmus import cache
+
+    return cache.load(name)
+
+
+def keep(name: str, content: bytes) -> str:
+    """Keep bytes in the cache under a name, and return "", or the reason why that is impossible."""
+    from ..fmus import cache
+
+    return cache.keep(name, content)
+
+
 def builtin_text(name: str) -> str:
     """Return one line about a built-in FMU."""
     from ..fmus import catalog
@@ -46,14 +60,14 @@ def is_builtin(name: str, path: Path) -> bool:
 
 
 def build_fmu(name: str, folder: Path | None = None) -> Path:
-    """Build a built-in FMU into a folder (default: the cache) and return its file.
+    """Build a built-in FMU into a folder (default: the cache, anew) and return its file.
 
     Raises ConfigError if the folder cannot be written.
     """
     from ..fmus import build
 
     try:
-        path = build.built(name) if folder is None else build.build(name, folder)
+        path = build.built(name, anew=True) if folder is None else build.build(name, folder)
     except OSError as error:
         where = folder or cache_folder()
         said = reason(where / f"{name}.fmu", error)

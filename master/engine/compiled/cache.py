@@ -1,7 +1,8 @@
 """The compiled kernel, from numba's cache or compiled now.
 
-The cache is in the user's folder of built FMUs, since the folder of the sources may be read-only; its name
-has a digest of all SOURCES of the kernel, of which numba itself compares only one.
+What numba keeps in its own cache folder stands as one entry in the user's cache of built FMUs, which gives
+nothing back that somebody else could have written or that was changed (`evcosim.fmus.cache`). Its name has a
+digest of all SOURCES of the kernel, of which numba itself compares only one, and of this processor.
 """
 
 # numba has no types
@@ -11,15 +12,18 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
+import io
+import tempfile
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import llvmlite.binding
 import numba
 
-from ...builtin import cache_folder
+from ...builtin import cache_folder, keep, kept
 from ...fmi import types
 from . import call, kernel, tables
 
@@ -33,34 +37,56 @@ def compiled(timed: bool = False) -> tuple[int, str]:
 
     The notice is "", unless the kernel could not be kept. Compiling takes some seconds, the cache 0.1 s.
     """
-    function = kernel.run_timed if timed else kernel.run
-    folder, notice = _folder()
+    notice = ""
     if timed not in _made:
-        with _cached_in(folder):
-            _made[timed] = numba.cfunc("int64(int64)", cache=not notice, error_model="numpy")(function)
+        function = kernel.run_timed if timed else kernel.run
+        _made[timed], reason = _through_the_cache(function, _name(timed))
+        if reason:
+            notice = f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
     return int(_made[timed].address), notice
 
 
-def _folder() -> tuple[Path, str]:
-    """Return the folder of the cache, and a notice if nothing can be written there, else ""."""
-    content = b"".join(Path(module.__file__ or "").read_bytes() for module in SOURCES)
-    digest = hashlib.sha256(content + numba.__version__.encode()).hexdigest()[:16]
-    folder = cache_folder() / f"engine-{digest}"
+def _name(timed: bool) -> str:
+    """Return the name of the entry: another one for other sources, in another place, on another processor."""
+    parts = [Path(module.__file__ or "").read_bytes() for module in SOURCES]
+    parts += [numba.__version__.encode(), str(kernel.__file__).encode()]  # numba's files name that place
+    parts += [llvmlite.binding.get_host_cpu_name().encode()]
+    parts += [llvmlite.binding.get_host_cpu_features().flatten().encode()]
+    digest = hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
+    return f"engine-{digest}-{'timed' if timed else 'plain'}.zip"
+
+
+def _through_the_cache(function: Any, name: str) -> tuple[Any, str]:
+    """Return the compiled function, and why it could not be kept, or ""."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        reason = "" if os.access(folder, os.W_OK) else "Permission denied"
-    except OSError as error:
-        reason = error.strerror or str(error)
-    if not reason:
-        return folder, ""
-    return folder, f"cannot write to the cache folder {folder.parent} ({reason}): the engine is compiled anew"
+        with tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True) as folder:
+            if (packed := kept(name)) is not None:
+                zipfile.ZipFile(io.BytesIO(packed)).extractall(folder)
+            with _cached_in(folder):
+                made = _compiled(function, cache=True)
+            return made, "" if made.cache_hits else keep(name, _packed(Path(folder)))
+    except OSError as error:  # no temporary folder, or a full disk
+        return _compiled(function, cache=False), error.strerror or str(error)
+
+
+def _compiled(function: Any, cache: bool) -> Any:
+    return numba.cfunc("int64(int64)", cache=cache, error_model="numpy")(function)
+
+
+def _packed(folder: Path) -> bytes:
+    """Return the files below a folder as an archive."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
+        for file in sorted(path for path in folder.rglob("*") if path.is_file()):
+            archive.write(file, file.relative_to(folder).as_posix())
+    return packed.getvalue()
 
 
 @contextlib.contextmanager
-def _cached_in(folder: Path) -> Iterator[None]:
+def _cached_in(folder: str) -> Iterator[None]:
     """Let numba use this folder as its cache within the block."""
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    numba.config.CACHE_DIR = folder
     try:
         yield
     finally:

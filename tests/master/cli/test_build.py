@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import zipfile
 from pathlib import Path
 
@@ -22,3 +23,15 @@ def test_build_needs_a_cache_that_lasts(evcosim, tmp_path, monkeypatch):
     monkeypatch.setenv("EVCOSIM_CACHE", str(blocked))
     refused(evcosim("build", "Battery"), f"{blocked}: Battery.fmu cannot be kept there", "--output DIR")
     assert evcosim("build", "Battery", "-o", "made").out.strip() == "made/Battery.fmu"
+
+
+def test_build_repairs_the_cache(evcosim, tmp_path, monkeypatch):
+    """Also what was changed together with its digest."""
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    path = Path(evcosim("build", "Battery").out.strip())
+    whole, other = path.read_bytes(), b"something else"
+    path.write_bytes(other)
+    record = path.with_name(f"{path.name}.sha256")
+    record.write_text(f"{hashlib.sha256(other).hexdigest()}  {path.name}\n")
+    assert evcosim("build", "Battery").code == 0
+    assert path.read_bytes() == whole

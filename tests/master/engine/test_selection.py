@@ -32,7 +32,7 @@ def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch,
     from evcosim.master.engine.compiled import cache
 
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / "file" / "below")
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "file" / "below"))
     monkeypatch.setattr(cache, "_made", {})
     with Simulation("scooter", stop_time=1.0, engine="compiled") as simulation:
         simulation.run()

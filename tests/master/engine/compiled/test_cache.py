@@ -1,4 +1,4 @@
-"""The cache of the kernel has another folder as soon as one of the kernel's sources is another."""
+"""The cache of the kernel has another entry as soon as one of the sources is another, and heals."""
 
 from __future__ import annotations
 
@@ -34,11 +34,73 @@ def test_the_sources_are_the_kernel_and_all_that_it_imports() -> None:
 
 
 @pytest.mark.parametrize("place", range(len(cache.SOURCES)))
-def test_another_source_gives_another_folder(
+def test_another_source_gives_another_entry(
     place: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = cache._folder()[0]
+    before = cache._name(False)
     changed = tmp_path / "changed.py"
     changed.write_bytes(Path(cache.SOURCES[place].__file__ or "").read_bytes() + b"\n")
     monkeypatch.setattr(cache.SOURCES[place], "__file__", str(changed))
-    assert cache._folder()[0] != before
+    assert cache._name(False) != before
+
+
+def test_another_processor_and_the_kernel_with_a_profile_have_entries_of_their_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = cache._name(False)
+    assert cache._name(True) != before
+    monkeypatch.setattr("llvmlite.binding.get_host_cpu_name", lambda: "another")
+    assert cache._name(False) != before
+
+
+def small(address: int) -> int:
+    """Stand for the kernel, of which the compilation takes seconds."""
+    return address + 1
+
+
+@pytest.fixture
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def hits(name: str = "small.zip") -> int:
+    """Return 1 where the machine code came from the cache, 0 where it was compiled; it works in any case."""
+    made, reason = cache._through_the_cache(small, name)
+    assert (made.ctypes(41), reason) == (42, "")
+    return int(made.cache_hits)
+
+
+def test_machine_code_comes_from_the_cache_unless_it_was_changed(
+    own_cache: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert [hits(), hits()] == [0, 1]
+    entry = own_cache / "small.zip"
+    whole = entry.read_bytes()
+    for place in (0, 70, len(whole) // 2, len(whole) - 1):
+        changed = bytearray(whole)
+        changed[place] ^= 1
+        entry.write_bytes(changed)
+        assert hits() == 0
+        assert capsys.readouterr().err.count(f"{entry}: is damaged") == 1
+        assert hits() == 1
+    for size in (0, 1, len(whole) - 1):
+        entry.write_bytes(whole[:size])
+        assert [hits(), hits()] == [0, 1]
+
+
+def test_an_entry_in_which_numba_finds_nothing_is_made_anew(own_cache: Path, tmp_path: Path) -> None:
+    """As after an installation that gave the sources another date, which some versions of numba compare."""
+    (tmp_path / "empty").mkdir()
+    assert cache.keep("small.zip", cache._packed(tmp_path / "empty")) == ""
+    assert [hits(), hits()] == [0, 1]
+
+
+def test_without_a_temporary_folder_it_is_compiled_in_memory(
+    own_cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "nowhere"))
+    made, reason = cache._through_the_cache(small, "small.zip")
+    assert made.ctypes(41) == 42
+    assert reason == "No such file or directory"
+    assert not own_cache.exists()
