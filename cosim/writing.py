@@ -1,37 +1,74 @@
-"""Writing result files so that the name they end under never stands for half a file, and tables in pages."""
+"""The writer of all files, so that the name of one never stands for half a file, and tables in pages."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import secrets
+import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
 from .errors import ConfigError
+from .leftovers import partial
+
+_DRAFT, _DRAFT_SUFFIX = ".evcosim-", ".part"  # begin and end of the name of a file that is being written
 
 
 @contextlib.contextmanager
-def in_place_of(path: Path) -> Iterator[Path]:
-    """Give the name of a file to write, which takes the place of `path` at the end of the `with` block.
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    """Give a binary file, open for writing and reading, which takes the place of `path` when the block ends.
 
-    Where the block raises, the file is removed and `path` is as it was. The folder is made if needed. Raises
-    ConfigError naming the path and the reason when the folder or the disk refuses, within the block too.
+    It is a new file in the same folder, which is made if needed; where the block raises, it is removed and
+    `path` is as it was. A link in the place of `path` is replaced, never followed; anything else that is no
+    regular file is refused. Raises ConfigError naming the path and the reason when the folder or the disk
+    refuses, within the block too.
     """
     if not path.name:  # "", "." or "/"
         raise ConfigError(f"{path}: cannot be written: it is a folder")
     # beside it: a rename must not cross disks
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    draft = path.with_name(f"{_DRAFT}{secrets.token_hex(6)}{_DRAFT_SUFFIX}")
     try:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            yield partial
-            partial.replace(path)
-        finally:
-            with contextlib.suppress(OSError):  # renamed, or a first error is on its way
-                partial.unlink()
+        _check_replaceable(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with partial(draft):
+            with create(draft) as file:
+                yield file
+            draft.replace(path)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written: {reason(path, error)}") from error
+
+
+def create(path: Path) -> BinaryIO:
+    """Make a new file and open it for writing and reading. Raises OSError, also where anything is there."""
+    return path.open("x+b")  # exclusively: it follows no link and truncates nothing
+
+
+def _check_replaceable(path: Path) -> None:
+    """Raise OSError for a folder, a device or a pipe in the place of a file, behind a link too."""
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(mode):
+            raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", str(path))
+
+
+def try_folder(folder: Path) -> None:
+    """Make a folder if needed, and try to write into it. Raises OSError with the reason."""
+    folder.mkdir(parents=True, exist_ok=True)
+    trial = folder / f"{_DRAFT}{secrets.token_hex(6)}{_DRAFT_SUFFIX}"
+    with partial(trial), create(trial) as file:
+        file.write(b"evcosim")
+
+
+def remove_drafts(folder: Path) -> None:
+    """Remove what a killed process was writing in a folder that no other process writes into."""
+    for draft in folder.glob(f"{_DRAFT}*{_DRAFT_SUFFIX}"):
+        with contextlib.suppress(OSError):
+            draft.unlink()
 
 
 def reason(path: Path, error: OSError) -> str:
@@ -42,15 +79,8 @@ def reason(path: Path, error: OSError) -> str:
     return error.strerror or str(error)
 
 
-@contextlib.contextmanager
-def replacing(path: Path) -> Iterator[BinaryIO]:
-    """Give a binary file, open for writing, which takes the place of `path` as `in_place_of` says."""
-    with in_place_of(path) as partial, partial.open("wb") as file:
-        yield file
-
-
 def write_text(path: Path, text: str) -> None:
-    """Write a text as UTF-8, with the line ends that it has. Raises ConfigError as `in_place_of` does."""
+    """Write a text as UTF-8, with the line ends that it has. Raises ConfigError as `replacing` does."""
     with replacing(path) as file:
         file.write(text.encode())
 

@@ -13,12 +13,13 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import heapq
+import io
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ..errors import ConfigError
-from ..writing import in_place_of
+from ..writing import replacing
 from .database import Message, Signal
 from .transmissions import RawLog
 
@@ -54,7 +55,7 @@ def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, st
     path = Path(path)
     check_suffix(path)
     count = 0
-    with in_place_of(path) as partial, _FORMATS[path.suffix.lower()](partial) as write:
+    with replacing(path) as file, _FORMATS[path.suffix.lower()](file) as write:
         for frame in frames(logs, step_size, start_time):
             write(frame)
             count += 1
@@ -132,25 +133,25 @@ def _codec_signal(signal: Signal) -> Any:
 
 
 @contextlib.contextmanager
-def _candump(path: Path) -> Iterator[Callable[[Frame], None]]:
+def _candump(file: BinaryIO) -> Iterator[Callable[[Frame], None]]:
     """Write as candump -L does. Lines of python-can's writer end in the direction, which tshark refuses."""
-    with path.open("w", encoding="ascii", newline="\n") as file:
+    with _text(file) as lines:
 
         def write(frame: Frame) -> None:
             m = frame.message
             frame_id = f"{m.frame_id:08X}" if m.extended else f"{m.frame_id:03X}"
             separator = "##0" if m.fd else "#"  # CAN FD: no bit rate switch
             payload = frame.data.hex().upper()
-            file.write(f"({frame.time:.6f}) {frame.bus} {frame_id}{separator}{payload}\n")
+            lines.write(f"({frame.time:.6f}) {frame.bus} {frame_id}{separator}{payload}\n")
 
         yield write
 
 
 @contextlib.contextmanager
-def _blf(path: Path) -> Iterator[Callable[[Frame], None]]:
+def _blf(file: BinaryIO) -> Iterator[Callable[[Frame], None]]:
     import can
 
-    with path.open("wb") as file, contextlib.closing(_Stopped(can.BLFWriter(file))) as log:
+    with contextlib.closing(_Stopped(can.BLFWriter(file))) as log:
         log.writer.start_timestamp = 0.0  # else times count from the first frame
 
         def write(frame: Frame) -> None:
@@ -161,7 +162,7 @@ def _blf(path: Path) -> Iterator[Callable[[Frame], None]]:
 
 
 @contextlib.contextmanager
-def _asc(path: Path) -> Iterator[Callable[[Frame], None]]:
+def _asc(file: BinaryIO) -> Iterator[Callable[[Frame], None]]:
     import can
 
     class FixedDateWriter(can.ASCWriter):  # type: ignore[misc] # python-can is not followed by mypy
@@ -170,11 +171,8 @@ def _asc(path: Path) -> Iterator[Callable[[Frame], None]]:
         def _format_header_datetime(self, dt: object) -> str:
             return _ASC_DATE
 
-    with (
-        path.open("w", encoding="ascii", newline="\n") as file,
-        contextlib.closing(_Stopped(FixedDateWriter(file))) as log,
-    ):
-        file.write(f"Begin Triggerblock {_ASC_DATE}\n")
+    with _text(file) as lines, contextlib.closing(_Stopped(FixedDateWriter(lines))) as log:
+        lines.write(f"Begin Triggerblock {_ASC_DATE}\n")
         log.writer.header_written = True  # else times count from the first frame
         log.writer.log_event("Start of measurement", 0.0)
 
@@ -182,6 +180,10 @@ def _asc(path: Path) -> Iterator[Callable[[Frame], None]]:
             log.writer.on_message_received(_can_message(frame, frame.time))
 
         yield write
+
+
+def _text(file: BinaryIO) -> io.TextIOWrapper:
+    return io.TextIOWrapper(file, encoding="ascii", newline="\n")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -207,7 +209,7 @@ def _can_message(frame: Frame, timestamp: float) -> Any:
     )
 
 
-_FORMATS: dict[str, Callable[[Path], contextlib.AbstractContextManager[Callable[[Frame], None]]]] = {
+_FORMATS: dict[str, Callable[[BinaryIO], contextlib.AbstractContextManager[Callable[[Frame], None]]]] = {
     ".log": _candump,
     ".blf": _blf,
     ".asc": _asc,

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ConfigError, nearest
 from ..row_store import Array, Grid, MemoryTable, Table
-from ..writing import in_place_of
+from ..writing import replacing
 from .formats.format import Format
 from .formats.suffixes import CSV, FORMATS, format_of
 from .manifest import read_manifest, write_manifest
@@ -207,8 +207,8 @@ class Results:
         return self._save(Path(path), CSV)
 
     def _save(self, path: Path, form: Format) -> Path:
-        with in_place_of(path) as partial:
-            form.write(self, partial)
+        with replacing(path) as file:
+            form.write(self, file)
         return path
 
     def write(self, folder: str | os.PathLike[str]) -> Path:

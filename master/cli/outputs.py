@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,16 +23,14 @@ def default_folder(*names: str) -> Path:
 def output_folder(folder: Path) -> Path:
     """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
     from ...cosim.errors import ConfigError
-    from ...cosim.writing import reason
+    from ...cosim.writing import reason, try_folder
 
-    trial = folder / f".trial.{os.getpid()}"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        trial.write_bytes(b"evcosim")
-        trial.unlink()
+        try_folder(folder)
     except OSError as error:
+        said = reason(folder / "results.csv", error)
         raise ConfigError(
-            f"output folder {folder}: cannot be written: {reason(trial, error)}; --output names another one"
+            f"output folder {folder}: cannot be written: {said}; --output names another one"
         ) from error
     return folder
 

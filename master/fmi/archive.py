@@ -11,15 +11,14 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-import shutil
 import stat
-import tempfile
 import unicodedata
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
+from ...cosim import leftovers
 from ...cosim.errors import ConfigError
 
 _VARIABLE = "EVCOSIM_FMU_LIMITS"
@@ -167,7 +166,7 @@ def extract(path: Path) -> Path:
     Raises FmuError naming the entry; then no folder is left.
     """
     entries = entries_of(path)
-    folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
+    folder = leftovers.temporary_folder()
     left, place = archive_limits().size, ""
     try:
         with zipfile.ZipFile(path) as archive:
@@ -181,7 +180,7 @@ def extract(path: Path) -> Path:
                 with archive.open(entry) as source, target.open("wb") as copy:
                     left -= _copied(path, entry, source, copy, left)
     except BaseException as error:
-        shutil.rmtree(folder, ignore_errors=True)
+        leftovers.remove_folder(folder)
         if isinstance(error, FmuError) or not isinstance(error, Exception):
             raise
         reason = getattr(error, "strerror", None) or error

@@ -5,14 +5,18 @@ FMPy's own command needs CMake, a valid description and the list of its sources;
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import zipfile
 from pathlib import Path
 from typing import Any
 
+from ...cosim import leftovers
+from ...cosim.writing import replacing
 from .archive import FmuError, extract, read_entry
 from .description import parsed_xml
 from .fmu import Fmu, read_fmu
@@ -38,7 +42,7 @@ def compile_fmu(path: Path, output: Path | None = None) -> Path:
         made = {used.binary: _library(used, folder) for used in missing}
         return _written(path, output or path, made)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        leftovers.remove_folder(folder)
 
 
 def _interfaces(fmu: Fmu) -> list[Fmu]:
@@ -60,9 +64,7 @@ def _library(fmu: Fmu, folder: Path) -> bytes:
         "-o", str(target), "-lm",
     ]  # fmt: skip # the order in which compilers want it
     try:
-        done = subprocess.run(
-            command, cwd=folder / "sources", capture_output=True, timeout=_TIME, check=False
-        )
+        code, said = _ran(command, folder / "sources")
     except FileNotFoundError as error:
         raise FmuError(
             f"{fmu.path}: there is no C compiler '{command[0]}' here; install one (apt-get install gcc) or "
@@ -70,10 +72,35 @@ def _library(fmu: Fmu, folder: Path) -> bytes:
         ) from error
     except subprocess.TimeoutExpired as error:
         raise FmuError(f"{fmu.path}: compiling its sources took more than {_TIME:g} s") from error
-    if done.returncode:
-        said = (done.stderr + done.stdout).decode("utf-8", "replace").replace(f"{folder}{os.sep}", "")
+    if code:
+        said = said.replace(f"{folder}{os.sep}", "")
         raise FmuError(f"{fmu.path}: {command[0]} cannot compile its sources:\n{said.strip()[:_SHOWN]}")
     return target.read_bytes()
+
+
+def _ran(command: list[str], folder: Path) -> tuple[int, str]:
+    """Run a command in a folder; return its exit code and its messages. It ends with this process."""
+    running = subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    )
+
+    def kill() -> None:  # a compiler starts processes of its own
+        if hasattr(os, "killpg"):
+            os.killpg(running.pid, signal.SIGKILL)
+        else:
+            running.kill()
+
+    leftovers.add_child(running.pid, kill)
+    try:
+        out, err = running.communicate(timeout=_TIME)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            kill()
+        running.communicate()
+        raise
+    finally:
+        leftovers.forget_child(running.pid)
+    return running.returncode, (err + out).decode("utf-8", "replace")
 
 
 def _fmpy_folder() -> str:
@@ -120,16 +147,11 @@ def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
 
 
 def _written(path: Path, output: Path, made: dict[str, bytes]) -> Path:
-    """Write the archive beside `output`, then put it in place, so that no half of one is ever there."""
-    part = output.with_name(f"{output.name}.{os.getpid()}.part")
-    try:
-        shutil.copyfile(path, part)
-        with zipfile.ZipFile(part, "a", zipfile.ZIP_DEFLATED) as archive:
-            for name, content in made.items():
-                archive.writestr(name, content)
-        part.replace(output)
-    except OSError as error:
-        raise FmuError(f"{output}: cannot be written: {error.strerror or error}") from error
-    finally:
-        part.unlink(missing_ok=True)
+    """Write the archive with the libraries that were made."""
+    with replacing(output) as file:
+        with path.open("rb") as content:
+            shutil.copyfileobj(content, file)
+        with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive:
+            for name, library in made.items():
+                archive.writestr(name, library)
     return output

@@ -7,10 +7,10 @@ the folder removed with the last of them.
 from __future__ import annotations
 
 import dataclasses
-import shutil
 import threading
 from pathlib import Path
 
+from ...cosim.leftovers import remove_folder
 from .fmu import Fmu, FmuError, is_true
 
 
@@ -50,4 +50,4 @@ def give_back(fmu: Fmu, unit: str) -> None:
         folder.units.remove(unit)
         if not folder.units:
             del _folders[fmu.digest]
-            shutil.rmtree(folder.path, ignore_errors=True)
+            remove_folder(folder.path)

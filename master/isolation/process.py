@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import os
 import pickle
-import shutil
 import signal
 import socket
 import subprocess
@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from ...cosim import leftovers
 from . import framing
 
 _ENDING = 2.0  # s
@@ -44,7 +45,7 @@ class Process:
 
     def __init__(self, loading: tuple[Any, ...], memory: int, limits: ProcessLimits) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._folder = Path(tempfile.mkdtemp(prefix="evcosim-"))
+        self._folder = leftovers.temporary_folder()
         self._output = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `close`
         self.connection, theirs = socket.socketpair()
         end, life = os.pipe()
@@ -70,6 +71,7 @@ class Process:
             start_new_session=True,  # Ctrl-C is the master's alone; its own processes end with it
             env=os.environ | {"TMPDIR": str(self._folder), "OPENBLAS_NUM_THREADS": "1"},
         )
+        leftovers.add_child(self._process.pid, functools.partial(_kill, self._process.pid))
 
     def check_alive(self) -> None:
         """Raise EOFError when it has ended, though something that it started may hold its socket open."""
@@ -101,11 +103,9 @@ class Process:
     def kill(self) -> None:
         """End it and the processes that it started, while it lives also those that left its process group."""
         if self._process is not None:
-            if self._process.poll() is None:
-                _end_descendants(self._process.pid)
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
+            _kill(self._process.pid, self._process.poll() is None)
             self._process.wait()
+            leftovers.forget_child(self._process.pid)
 
     def close(self) -> None:
         """Kill it and release all that belongs to it."""
@@ -113,7 +113,15 @@ class Process:
         self._process = None
         for each in (self.connection, self._life, self._output):
             each.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        leftovers.remove_folder(self._folder)
+
+
+def _kill(process: int, alive: bool = True) -> None:
+    """Kill the group of a process, and while it is alive also what it started and left the group."""
+    if alive:
+        _end_descendants(process)
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(process, signal.SIGKILL)
 
 
 def _end_descendants(process: int) -> None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...cosim.leftovers import temporary
 from ...cosim.results.results import Results
 from ...models.scooter import Scooter, level_road_load, maximum_force
 from ..simulation import Simulation, simulate
@@ -93,8 +92,8 @@ def estimate_error(speed: float, **options: Any) -> float:
         to = "ecu.throttle_request"
         constant = {steady_throttle(speed)}
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "constant.toml"
+    with temporary() as folder:
+        path = folder / "constant.toml"
         path.write_text(text)
         results = simulate("scooter", path, **options)
     error = np.abs(results["ecu.speed_estimate"] - results["vehicle.speed"] * KMH)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import itertools
 import multiprocessing
 import os
@@ -27,6 +28,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, SupportsIndex, TypeVar
 
+from ...cosim import leftovers
 from ...cosim.errors import RunError
 from ..fmi import crash
 
@@ -143,16 +145,15 @@ class _Pool:
 
     def __enter__(self) -> _Pool:
         # FMUs are extracted below this folder, which is removed here: a killed worker cannot do it
-        self.folder = tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True)
+        self.folder = leftovers.temporary_folder()
         return self
 
     def __exit__(self, *error: object) -> None:
         for worker in self.workers:
             worker.process.kill()
         for worker in self.workers:
-            worker.process.join()
-            worker.pipe.close()
-        self.folder.cleanup()
+            _forget(worker)
+        leftovers.remove_folder(self.folder)
 
     def work(self, tasks: Sequence[Task[T]], queue: Sequence[bytes]) -> Iterator[tuple[int, Outcome[T]]]:
         """Yield each task's place and outcome as it ends."""
@@ -167,18 +168,20 @@ class _Pool:
                 worker.task = -1
                 if not worker.process.is_alive():
                     self.workers.remove(worker)
-                    worker.pipe.close()
+                    _forget(worker)
                 if (following := next(waiting, None)) is not None:
                     self._submit(worker if worker in self.workers else self._start_worker(), following, queue)
 
     def _start_worker(self) -> _Worker:
         ours, theirs = self.context.Pipe()
-        sent = (theirs, self.folder.name, crash.report() is not None)
+        sent = (theirs, str(self.folder), crash.report() is not None)
         process = self.context.Process(target=_serve, args=sent, daemon=True)
         with _without_ctrl_c():
             process.start()
         theirs.close()  # so that the end of the process is the end of the pipe
         self.workers.append(_Worker(process, ours))
+        assert process.pid is not None  # it was started
+        leftovers.add_child(process.pid, functools.partial(_kill, process.pid))
         return self.workers[-1]
 
     @staticmethod
@@ -186,6 +189,18 @@ class _Pool:
         worker.task, worker.begin = i, time.perf_counter()
         with contextlib.suppress(OSError):  # it died while it was idle: receiving its outcome reports that
             worker.pipe.send_bytes(queue[i])
+
+
+def _kill(process: int) -> None:
+    os.kill(process, signal.SIGTERM if os.name == "nt" else signal.SIGKILL)  # Windows has no SIGKILL
+
+
+def _forget(worker: _Worker) -> None:
+    """Wait for the end of a worker that is killed or has ended, and release what belongs to it."""
+    worker.process.join()
+    worker.pipe.close()
+    if worker.process.pid is not None:
+        leftovers.forget_child(worker.process.pid)
 
 
 def _received(worker: _Worker) -> tuple[Any, Failure | None]:

@@ -4,20 +4,30 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.writing import in_place_of, markdown_table, replacing, write_text
+from evcosim.cosim.writing import (
+    create,
+    markdown_table,
+    remove_drafts,
+    replacing,
+    try_folder,
+    write_text,
+)
+
+needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links and modes as POSIX has them")
 
 
 def test_the_file_takes_its_place_at_the_end(tmp_path: Path) -> None:
     path = tmp_path / "made" / "here" / "a.csv"
-    with in_place_of(path) as partial:
-        partial.write_text("new")
+    with replacing(path) as file:
+        file.write(b"new")
         assert not path.exists()
-        assert (partial.parent, partial.suffix) == (path.parent, ".csv")
+        assert os.listdir(path.parent) == [os.path.basename(file.name)]
     assert path.read_text() == "new"
     assert os.listdir(path.parent) == ["a.csv"]
 
@@ -67,9 +77,66 @@ def test_a_folder_without_a_name_is_refused(path: str) -> None:
         pytest.fail("there is nothing to write into")
 
 
-def test_a_file_that_was_not_written_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="cannot be written: No such file"), in_place_of(tmp_path / "a"):
-        pass
+@needs_links
+def test_a_link_is_replaced_and_not_followed(tmp_path: Path) -> None:
+    own, path, dangling = tmp_path / "own.txt", tmp_path / "a.csv", tmp_path / "b.csv"
+    own.write_text("mine")
+    path.symlink_to(own)
+    dangling.symlink_to(tmp_path / "new.txt")
+    for each in (path, dangling):
+        write_text(each, "results")
+        assert not each.is_symlink()
+        assert each.read_text() == "results"
+    assert own.read_text() == "mine"
+    assert not (tmp_path / "new.txt").exists()
+
+
+@needs_links
+def test_a_new_file_is_made_exclusively(tmp_path: Path) -> None:
+    (tmp_path / "there").write_text("mine")
+    (tmp_path / "link").symlink_to(tmp_path / "there")
+    (tmp_path / "dangling").symlink_to(tmp_path / "new")
+    for name in ("there", "link", "dangling"):
+        with pytest.raises(FileExistsError):
+            create(tmp_path / name)
+    assert (tmp_path / "there").read_text() == "mine"
+    assert not (tmp_path / "new").exists()
+
+
+@needs_links
+def test_a_device_a_pipe_or_a_folder_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to("/dev/null")
+    (tmp_path / "folder").mkdir()
+    for name, why in (("pipe", "a device or a pipe"), ("link", "a device or a pipe"), ("folder", "Is a dir")):
+        with pytest.raises(ConfigError, match=f"{name}: cannot be written: .*{why}"):
+            write_text(tmp_path / name, "results")
+    assert (tmp_path / "link").is_symlink()
+
+
+@needs_links
+def test_a_file_has_the_mode_of_a_new_file(tmp_path: Path) -> None:
+    write_text(tmp_path / "a.txt", "")
+    (tmp_path / "b.txt").touch()
+    assert (tmp_path / "a.txt").stat().st_mode == (tmp_path / "b.txt").stat().st_mode
+
+
+def test_drafts_of_a_killed_process_are_removed(tmp_path: Path) -> None:
+    (tmp_path / "notes.part").write_text("mine")
+    with pytest.raises(ConfigError), replacing(tmp_path / "a.csv") as file:
+        os.link(file.name, tmp_path / ".evcosim-123456.part")
+        raise OSError(errno.EIO, "no matter")
+    assert len(os.listdir(tmp_path)) == 2
+    remove_drafts(tmp_path)
+    assert os.listdir(tmp_path) == ["notes.part"]
+
+
+def test_trying_a_folder_leaves_nothing(tmp_path: Path) -> None:
+    try_folder(tmp_path / "a" / "b")
+    assert os.listdir(tmp_path / "a" / "b") == []
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match="file"):
+        try_folder(tmp_path / "file")
 
 
 def test_a_cell_stays_a_cell() -> None:

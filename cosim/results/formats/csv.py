@@ -8,6 +8,7 @@ it.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -21,15 +22,14 @@ from .format import Contents
 _ROWS = 4096  # formatted at a time: 40 columns of text then take about 10 MB
 
 
-def write(recording: Recording, path: Path) -> None:
+def write(recording: Recording, file: BinaryIO) -> None:
     """Write all rows. Raises OSError where the disk refuses."""
     kinds = [v.type for v in recording.variables]
-    with path.open("wb") as file:
-        file.write((",".join(["time", *map(_quoted, recording.names)]) + "\n").encode())
-        for time, values in recording.pieces(recording.names, rows=_ROWS):
-            columns = [list(map(repr, time.tolist()))]
-            columns += [_texts(values[:, j], kind) for j, kind in enumerate(kinds)]
-            file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
+    file.write((",".join(["time", *map(_quoted, recording.names)]) + "\n").encode())
+    for time, values in recording.pieces(recording.names, rows=_ROWS):
+        columns = [list(map(repr, time.tolist()))]
+        columns += [_texts(values[:, j], kind) for j, kind in enumerate(kinds)]
+        file.write(("\n".join(map(",".join, zip(*columns, strict=True))) + "\n").encode())
 
 
 def _texts(values: Array, kind: str) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ...row_store import Array
 from ..recording import Recording
@@ -30,9 +30,9 @@ class Contents:
 class Format:
     """A format by its two functions; what they need beyond numpy, they import when they are called.
 
-    `write(recording, path)` makes the file `path`; it lets OSError through, and the file it leaves then is
-    removed by the caller. `read(path)` raises ConfigError naming the file, and the place in it where it can.
+    `write(recording, file)` writes into a new binary file and lets OSError through; the caller then removes
+    what is there. `read(path)` raises ConfigError naming the file, and the place in it where it can.
     """
 
-    write: Callable[[Recording, Path], None]
+    write: Callable[[Recording, BinaryIO], None]
     read: Callable[[Path], Contents]

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim import writing
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.results import Results
 from evcosim.master.cli import outputs
@@ -52,10 +53,10 @@ def test_other_files_in_the_output_folder_stay(evcosim, tmp_path):
 
 
 def test_full_disk_before_the_run(evcosim, monkeypatch):
-    def full(self, data):
-        raise OSError(errno.ENOSPC, "No space left on device", str(self))
+    def full(path):
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(writing, "create", full)
     refused(evcosim("run", "scooter", "-o", "out"), "output folder out", "No space left on device")
 
 

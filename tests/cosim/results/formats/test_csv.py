@@ -27,7 +27,7 @@ finite = st.floats(allow_nan=False, allow_infinity=False)
 def test_what_is_written_reads_back_bit_for_bit(data: np.ndarray, name: str, tmp_path_factory) -> None:
     path = tmp_path_factory.getbasetemp() / "x.csv"
     written = Results(np.arange(len(data)) * 0.01, data, [ResultVariable("a.b[1,2]"), ResultVariable(name)])
-    csv.write(written, path)
+    written.to_csv(path)
     read = csv.read(path)
     assert read.time.tobytes() == written.time.tobytes()
     assert read.data.tobytes() == data.tobytes()
@@ -37,7 +37,7 @@ def test_what_is_written_reads_back_bit_for_bit(data: np.ndarray, name: str, tmp
 def test_the_text_of_the_file(tmp_path: Path) -> None:
     k = np.arange(4)
     data = np.column_stack([0.1 * k, k // 3, k, k % 2])
-    csv.write(Results(k * 0.01, data, [SPEED, STATE, COUNT, FLAG]), tmp_path / "x.csv")
+    Results(k * 0.01, data, [SPEED, STATE, COUNT, FLAG]).to_csv(tmp_path / "x.csv")
     assert (tmp_path / "x.csv").read_bytes().decode() == (
         "time,vehicle.speed,ecu.state,ecu.count,ecu.on\n"
         "0.0,0.0,0,0,0\n"
@@ -49,12 +49,12 @@ def test_the_text_of_the_file(tmp_path: Path) -> None:
 
 def test_negative_zero_is_kept_among_zeros(tmp_path: Path) -> None:
     values = np.array([[0.0], [-0.0], [-0.0], [0.0]])
-    csv.write(Results([0, 1, 2, 3], values, [SPEED]), tmp_path / "x.csv")
+    Results([0, 1, 2, 3], values, [SPEED]).to_csv(tmp_path / "x.csv")
     assert np.signbit(csv.read(tmp_path / "x.csv").data[:, 0]).tolist() == [False, True, True, False]
 
 
 def test_a_whole_type_whose_values_are_none_is_written_as_it_is(tmp_path: Path) -> None:
-    csv.write(Results([0, 1], [[1.5], [2.0]], [COUNT]), tmp_path / "x.csv")
+    Results([0, 1], [[1.5], [2.0]], [COUNT]).to_csv(tmp_path / "x.csv")
     assert (tmp_path / "x.csv").read_text() == "time,ecu.count\n0.0,1.5\n1.0,2.0\n"
 
 
@@ -63,9 +63,9 @@ def test_the_text_does_not_depend_on_how_many_rows_are_formatted_at_a_time(
 ) -> None:
     k = np.arange(50)
     results = Results(k * 0.1, np.column_stack([k // 7, k]), [STATE, SPEED])
-    csv.write(results, tmp_path / "a.csv")
+    results.to_csv(tmp_path / "a.csv")
     monkeypatch.setattr(csv, "_ROWS", 3)
-    csv.write(results, tmp_path / "b.csv")
+    results.to_csv(tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pytest
@@ -18,14 +19,13 @@ VARIABLES = [
 ]
 
 
-def write_toy(recording: Recording, path: Path) -> None:
+def write_toy(recording: Recording, file: BinaryIO) -> None:
     """A line of JSON for the head, and one for each row."""
     head = {"about": dict(recording.manifest), "variables": [[v.name, v.unit] for v in recording.variables]}
-    with path.open("w") as file:
-        print(json.dumps(head), file=file)
-        for time, values in recording.pieces(recording.names, rows=2):
-            for row in np.column_stack([time, values]).tolist():
-                print(json.dumps(row), file=file)
+    file.write(f"{json.dumps(head)}\n".encode())
+    for time, values in recording.pieces(recording.names, rows=2):
+        for row in np.column_stack([time, values]).tolist():
+            file.write(f"{json.dumps(row)}\n".encode())
 
 
 def read_toy(path: Path) -> Contents:
