@@ -1,9 +1,9 @@
 """Numbers in CSV files: a header with the names of the columns, and in each line below a value for each.
 
-Values are separated by ','; double quotes may stand around a value, or around a name that holds commas or
-line ends; a byte order mark counts for nothing. A file of numbers alone is read by numpy. Any other one is
-read line by line: one of which few columns are wanted, one with a column of texts, and one with a mistake,
-whose place is found so. Beside the numbers, no more than a few lines are in memory.
+`csv_text` says how a file may be written. Double quotes may stand around a value, or around a name that holds
+separators or line ends. A file of numbers alone is read by numpy. Any other one is read line by line: one of
+which few columns are wanted, one with decimal commas or a column of texts, and one with a mistake, whose
+place is found so. Beside the numbers, no more than a few lines are in memory.
 """
 
 from __future__ import annotations
@@ -13,83 +13,108 @@ import contextlib
 import csv
 import dataclasses
 import itertools
-import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
+from .csv_text import Comments, encoding_of, number_in, opened, read_header, time_column
 from .errors import ConfigError, counted
 from .row_store import Array
 
 _NUMPY_PAYS = 3  # numpy reads the numbers of all columns: faster where a third or more of them is wanted
+_TRUTHS = {"true": 1.0, "false": 0.0}
 
 
 @dataclasses.dataclass(frozen=True)
 class CsvFile:
-    """A CSV file of which the header was read: the `names` of its columns, and how many lines they take."""
+    """A CSV file of which the header was read: the `names` of its columns, and the lines up to its end."""
 
     path: Path
     names: tuple[str, ...]
     header_lines: int
+    encoding: str = "utf-8"
+    separator: str = ","
 
     @classmethod
     def of(cls, path: Path) -> CsvFile:
-        """Read the header of a file: no names where the file is empty or begins with an empty line.
+        """Read the header of a file: no names where the file is empty.
 
-        Raises ConfigError naming the file where it cannot be read, is not UTF-8 text, does not close a quote,
-        separates its columns by ';', or has numbers in place of names.
+        Raises ConfigError naming the file where it cannot be read, is no text, does not close a quote, or has
+        numbers in place of names.
         """
-        lines: list[str] = []
-        with _opened(path) as file:
-            reader = csv.reader(_noted(file, lines), skipinitialspace=True)
-            try:
-                names = tuple(name.strip() for name in next(reader, []))
-            except csv.Error as error:
-                raise ConfigError(f"{path}: line 1: is not well-formed CSV: {error}") from error
-            all_taken = len(lines) > 1 and next(file, None) is None
-        if all_taken and "".join(lines).count('"') % 2:
-            raise ConfigError(f"{path}: line 1: a quote of the header is not closed: {lines[0].strip()!r}")
-        if len(names) == 1 and ";" in names[0]:
-            raise ConfigError(f"{path}: line 1: columns are separated by ',', not by ';': {names[0]!r}")
-        if names and all(_finite(name) is not None for name in names):
-            shown = ",".join(names)
-            raise ConfigError(f"{path}: line 1: a header with names is needed, not numbers: {shown!r}")
-        return cls(path, names, len(lines))
+        encoding = encoding_of(path)
+        names, lines, separator = read_header(path, encoding)
+        return cls(path, names, lines, encoding, separator)
 
-    def numbers(self, columns: Sequence[int] | None = None, *, empty_lines: bool = False) -> Array:
+    def time_column(self) -> int:
+        """Return the column of the time, by its name. Raises ConfigError where there is none, or several."""
+        return time_column(self.names, f"{self.path}: line {self.header_lines}")
+
+    def numbers(
+        self, columns: Sequence[int] | None = None, *, empty_lines: bool = False, truths: Sequence[int] = ()
+    ) -> Array:
         """Return the numbers of some columns (default: of all), shape (n, len(columns)).
 
-        What stands in the other columns counts for nothing, but each line has as many values as the header.
-        Empty lines at the end are passed over; with `empty_lines`, those above are too. Raises ConfigError
-        naming file, line, column and value of what is missing or is not a finite number.
+        In the columns `truths` true and false are 1 and 0. What stands in columns that are not wanted counts
+        for nothing, but each line has as many values as the header. Empty lines at the end are passed over;
+        with `empty_lines`, those above are too. Raises ConfigError naming file, line, column and value of
+        what is missing or is not a finite number.
         """
         wanted = range(len(self.names)) if columns is None else columns
         table = None
         if _NUMPY_PAYS * len(wanted) >= len(self.names):
             table = self._by_numpy(wanted, empty_lines)
-        return self._line_by_line(wanted, empty_lines) if table is None else table
+        return self._line_by_line(wanted, empty_lines, truths) if table is None else table
+
+    def texts(self, column: int) -> list[str]:
+        """Return the texts of a column, without spaces around them; empty lines are passed over.
+
+        Raises ConfigError as `numbers` does for a line of another length.
+        """
+        return [row[column].strip() for _, row in self._full_rows(empty_lines=True)]
+
+    def line_of(self, row: int) -> int:
+        """Return the line of the file in which a row (0, 1, ...) ends; empty lines are passed over."""
+        return next(itertools.islice(self._full_rows(empty_lines=True), row, None))[0]
 
     def _by_numpy(self, columns: Sequence[int], empty_lines: bool) -> Array | None:
         """Return the numbers as `numbers` does, shape (n, len(columns)), or None where a value is none."""
-        with _opened(self.path, self.header_lines) as file:
-            table = _all_numbers(file, len(self.names))
+        if self.encoding.startswith(("utf-16", "utf-32")):
+            return None  # the lines of such a file are not counted by their bytes
+        comments = Comments()
+        with opened(self.path, self.encoding, self.header_lines) as file:
+            table = _all_numbers(comments.without(file), len(self.names), self.separator)
         if table is None:
             return None
         if columns != range(len(self.names)):
             table = table[:, list(columns)]
         if not np.isfinite(table).all():
             return None
-        if not empty_lines and _count_lines(self.path) != self.header_lines + len(table):
+        if not empty_lines and _count_lines(self.path) != self.header_lines + comments.count + len(table):
             return None  # numpy passes over empty lines without a word
         return table
 
-    def _line_by_line(self, columns: Sequence[int], empty_lines: bool) -> Array:
+    def _line_by_line(self, columns: Sequence[int], empty_lines: bool, truths: Sequence[int] = ()) -> Array:
         """Return the numbers, shape (n, len(columns)). Raises ConfigError for the file's first mistake."""
         found = array.array("d")
+        marks: dict[str, str] = {}
+        for line, row in self._full_rows(empty_lines):
+            for j in columns:
+                text = row[j]
+                if self.separator != ",":
+                    self._check_mark(text, line, j, marks)
+                value = number_in(text, self.separator)
+                if value is None and j in truths:
+                    value = _TRUTHS.get(text.strip().lower())
+                found.append(self._no_number(text, line, j) if value is None else value)
+        return np.asarray(found, dtype=np.float64).reshape(-1, len(columns))
+
+    def _full_rows(self, empty_lines: bool) -> Iterator[tuple[int, list[str]]]:
+        """Yield the rows with the line that each ends in; an empty one is passed over as in `numbers`."""
         empty = 0  # the first empty line
-        with _opened(self.path, self.header_lines) as file:
+        with opened(self.path, self.encoding, self.header_lines) as file:
             for line, row in self._rows(file):
                 if not row:
                     empty = empty or line
@@ -98,30 +123,41 @@ class CsvFile:
                     raise self._wrong_length(empty, 0)
                 if len(row) != len(self.names):
                     raise self._wrong_length(line, len(row))
-                found.extend(self._number(row[j], line, self.names[j]) for j in columns)
-        return np.asarray(found, dtype=np.float64).reshape(-1, len(columns))
+                yield line, row
 
     def _rows(self, file: TextIO) -> Iterator[tuple[int, list[str]]]:
         """Yield the values of each row with the line that it ends in."""
-        reader = csv.reader(file)
+        comments = Comments()
+        reader = csv.reader(comments.without(file), delimiter=self.separator, skipinitialspace=True)
         try:
             for row in reader:
-                yield self.header_lines + reader.line_num, row
+                yield self.header_lines + comments.count + reader.line_num, row
         except csv.Error as error:
-            line = self.header_lines + reader.line_num
+            line = self.header_lines + comments.count + reader.line_num
             raise ConfigError(f"{self.path}: line {line}: is not well-formed CSV: {error}") from error
+
+    def _check_mark(self, text: str, line: int, column: int, marks: dict[str, str]) -> None:
+        """Note the decimal mark of a number in `marks`. Raises ConfigError where another one came before."""
+        for mark, other in ((",", "."), (".", ",")):
+            if mark in text and number_in(text, self.separator) is not None:
+                marks.setdefault(mark, text.strip())
+                if other in marks:
+                    raise ConfigError(
+                        f"{self._place(line, column)}: {text.strip()!r} has '{mark}' as its decimal mark, "
+                        f"and {marks[other]!r} above has '{other}'"
+                    )
+
+    def _place(self, line: int, column: int) -> str:
+        return f"{self.path}: line {line}, column '{self.names[column]}'"
 
     def _wrong_length(self, line: int, count: int) -> ConfigError:
         """Return the error for a line that has another number of values than the header."""
         values = counted(count, "value")
         return ConfigError(f"{self.path}: line {line} has {values}, the header has {len(self.names)} columns")
 
-    def _number(self, text: str, line: int, name: str) -> float:
-        """Return the number of a cell. Raises ConfigError naming its place where it has none."""
-        value = _finite(text)
-        if value is not None:
-            return value
-        place = f"{self.path}: line {line}, column '{name}'"
+    def _no_number(self, text: str, line: int, column: int) -> float:
+        """Raise ConfigError naming the place of a cell that has no number."""
+        place = self._place(line, column)
         if not text.strip():
             raise ConfigError(f"{place}: the value is missing")
         kind = "a number"
@@ -131,38 +167,14 @@ class CsvFile:
         raise ConfigError(f"{place}: {text.strip()!r} is not {kind}")
 
 
-@contextlib.contextmanager
-def _opened(path: Path, skipped: int = 0) -> Iterator[TextIO]:
-    """Open a file and pass over its first `skipped` lines.
-
-    Raises ConfigError naming it where it cannot be read or is not UTF-8 text, within the `with` block too.
-    """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            for _ in range(skipped):
-                file.readline()
-            yield file
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: is not UTF-8 text: {error.reason} at byte {error.start}") from error
-
-
-def _noted(lines: Iterable[str], taken: list[str]) -> Iterator[str]:
-    """Yield lines, each of which is appended to `taken`."""
-    for line in lines:
-        taken.append(line)
-        yield line
-
-
-def _all_numbers(file: TextIO, columns: int) -> Array | None:
+def _all_numbers(file: Iterator[str], columns: int, separator: str) -> Array | None:
     """Return the rest of a file, shape (n, columns), or None where it is something else."""
     first = next((line for line in file if line.strip("\r\n")), None)
     if first is None:
         return np.empty((0, columns))
     try:
         lines = itertools.chain([first], file)
-        table = np.loadtxt(lines, delimiter=",", comments=None, quotechar='"', ndmin=2)
+        table = np.loadtxt(lines, delimiter=separator, comments=None, quotechar='"', ndmin=2)
     except ValueError:
         return None
     return table if table.shape[1] == columns else None
@@ -178,12 +190,3 @@ def _count_lines(path: Path) -> int:
             tail = (tail + block)[-4096:]
     empty = len(tail) - len(tail.rstrip(b"\r\n"))
     return count - tail[len(tail) - empty :].count(b"\n") + 1
-
-
-def _finite(text: str) -> float | None:
-    """Return the number that a text is, or None: for other texts, NaN, infinity, and '_' among digits."""
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) and "_" not in text else None

@@ -226,9 +226,9 @@ class Results:
     def read(cls, path: str | os.PathLike[str]) -> Results:
         """Read a results folder, its results.csv, or a file in a format that its suffix names.
 
-        Any other file is read as CSV: the first column is the time [s], and without a run.json beside
-        results.csv every variable is a Real without a unit of measure. Raises ConfigError naming file, line,
-        column and value of what is not a number.
+        Any other file is read as CSV: the time [s] is the column of such a name, and without a run.json
+        beside results.csv every variable is a Real without a unit of measure. Raises ConfigError naming file,
+        line, column and value of what is not a number.
         """
         path = Path(path)
         if path.is_dir():

@@ -82,10 +82,16 @@ class StimulusEntry(FiniteModel):
     its value holds, after the last that of the last."""
 
     csv: str | None = None
-    """A CSV file with a header, beside this file or built in; its first column is time in s as in `table`."""
+    """A CSV file with a header, beside this file or built in, with rows as in `table`: UTF-8, UTF-16 or
+    Windows-1252, separated by commas, or by semicolons or tabs with decimal points or commas; a line that
+    begins with # is a comment."""
 
     column: str | None = None
-    """The column of `csv` that holds the values; without it the second."""
+    """The column of `csv` that holds the values; without it the first one beside the time."""
+
+    time_column: str | None = None
+    """The column of `csv` that holds the time in s; without it the one of a name like time, t, Time [s] or
+    timestamps. A file without such a name is refused."""
 
     interpolation: Interpolation = "linear"
     """Between the rows of `table` or `csv`: a straight line, or the earlier value held."""
@@ -99,7 +105,7 @@ class StimulusEntry(FiniteModel):
     model_config = ConfigDict(
         json_schema_extra={
             "allOf": _one_kind_rules(),
-            "dependentRequired": {"column": ["csv"]},
+            "dependentRequired": {"column": ["csv"], "time_column": ["csv"]},
         }
     )
 
@@ -109,8 +115,9 @@ class StimulusEntry(FiniteModel):
         if len(given) != 1:
             has = " and ".join(given) or "none"
             raise ValueError(f"a stimulus has exactly one of {', '.join(_KINDS)}; this one has {has}")
-        if self.column is not None and self.csv is None:
-            raise ValueError("'column' belongs to a csv stimulus")
+        for key in ("column", "time_column"):
+            if getattr(self, key) is not None and self.csv is None:
+                raise ValueError(f"'{key}' belongs to a csv stimulus")
         return self
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,18 +26,18 @@ def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> TimeFunct
     ConfigError naming `place` with the key, rule and values.
     """
     if entry.constant is not None:
-        return _table(np.zeros(1), np.array([entry.constant]), "hold", f"{place}.constant")
+        return _table(np.zeros(1), np.array([entry.constant]), "hold", Rows(f"{place}.constant"))
     if entry.sine is not None:
         return _sine(entry.sine)
     if entry.ramp is not None:
         return _ramp(entry.ramp, f"{place}.ramp")
     if entry.table is not None:
         points = np.array(entry.table, dtype=float).reshape(-1, 2)
-        return _table(points[:, 0], points[:, 1], entry.interpolation, f"{place}.table")
+        return _table(points[:, 0], points[:, 1], entry.interpolation, Rows(f"{place}.table"))
     assert entry.csv is not None  # the entry has exactly one kind
     path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
-    times, values = read_columns(path, entry.column)
-    return _table(times, values, entry.interpolation, f"{place}.csv: {path}")
+    times, values, rows = read_columns(path, entry.column, entry.time_column)
+    return _table(times, values, entry.interpolation, rows)
 
 
 def _sine(sine: Sine) -> TimeFunction:
@@ -62,26 +63,57 @@ def _ramp(ramp: Ramp, place: str) -> TimeFunction:
     return values
 
 
+class Rows:
+    """The place of each row of a table for messages: `place` of the table, and `file` it is read from."""
+
+    def __init__(self, place: str, file: CsvFile | None = None, time: int = 0, value: int = 0) -> None:
+        self._place, self._file, self._columns = place, file, (time, value)
+
+    def at(self, row: int, column: Literal[0, 1]) -> str:
+        """Return the place of the time (column 0) or the value (1) of a row."""
+        if self._file is None:
+            return f"{self._place}: row {row + 1}"
+        name = self._file.names[self._columns[column]]
+        return f"{self._file.path}: line {self._file.line_of(row)}, column '{name}'"
+
+    @property
+    def place(self) -> str:
+        """The place of the whole table."""
+        return self._place
+
+
 def _table(
-    times: NDArray[np.float64], values: NDArray[np.float64], interpolation: Interpolation, place: str
+    times: NDArray[np.float64], values: NDArray[np.float64], interpolation: Interpolation, rows: Rows
 ) -> TimeFunction:
+    """Return the function of a table. Raises ConfigError naming the row that no function has."""
     if len(times) == 0:
-        raise ConfigError(f"{place}: the table is empty")
+        raise ConfigError(f"{rows.place}: the table is empty")
     finite = np.isfinite(times) & np.isfinite(values)
     if not finite.all():
         row = int(np.argmin(finite))
-        raise ConfigError(f"{place}: row {row + 1} is ({times[row]}, {values[row]}), not two finite numbers")
+        raise ConfigError(f"{rows.at(row, 1)}: ({times[row]}, {values[row]}) are not two finite numbers")
     # two equal times are a jump: the later row holds from that time on
-    backward = np.flatnonzero(np.diff(times) < 0.0)
+    backward = np.flatnonzero(times[1:] < times[:-1])
     if len(backward):
-        row = int(backward[0])
-        raise ConfigError(
-            f"{place}: time goes back from {times[row]} s to {times[row + 1]} s in row {row + 2}"
-        )
-
+        row = int(backward[0]) + 1
+        raise ConfigError(f"{rows.at(row, 0)}: time goes back from {times[row - 1]} s to {times[row]} s")
     if interpolation == "linear":
+        _check_differences(times, 0, rows)
+        _check_differences(values, 1, rows)
         return lambda t: _interpolate(t, times, values)
     return lambda t: values[np.maximum(np.searchsorted(times, t, side="right") - 1, 0)]
+
+
+def _check_differences(column: NDArray[np.float64], number: Literal[0, 1], rows: Rows) -> None:
+    """Raise ConfigError where the difference of two rows of a column, shape (n,), overflows."""
+    with np.errstate(over="ignore"):
+        beyond = np.flatnonzero(~np.isfinite(np.diff(column)))
+    if len(beyond):
+        row = int(beyond[0]) + 1
+        raise ConfigError(
+            f"{rows.at(row, number)}: {column[row]} is too far from {column[row - 1]} in the row above for a "
+            f'straight line between them; interpolation = "hold" needs none'
+        )
 
 
 def _interpolate(
@@ -94,25 +126,39 @@ def _interpolate(
     return values[left] + np.clip(share, 0.0, 1.0) * (values[right] - values[left])
 
 
-def read_columns(path: Path, column: str | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the time [s] and one column (default: the second) of a CSV file with a header, shapes (n,).
+def read_columns(
+    path: Path, column: str | None, time_column: str | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Rows]:
+    """Return the time [s] and one column of a CSV file, shapes (n,), and the places of the rows.
 
-    The time is the first column. What stands in the others counts for nothing, nor do empty lines. Raises
-    ConfigError naming file, line, column and value where a number is missing or is none, and where there is
-    no such column or no row.
+    The time is the column of the name `time_column`, else that whose name says so (`csv_text.time_column`);
+    the values are in that of the name `column`, else in the first one beside the time. What stands in the
+    others counts for nothing, nor do empty lines. Raises ConfigError naming file, line, column and value
+    where a number is missing or is none, and where there is no such column or no row.
     """
     file = CsvFile.of(path)
-    names = file.names
-    if len(names) < 2:
+    if len(file.names) < 2:
         raise ConfigError(
-            f"{path}: line 1: a header of two or more column names is needed, not {list(names)}"
+            f"{path}: line {max(1, file.header_lines)}: a header of two or more column names is needed, not "
+            f"{list(file.names)}"
         )
-    if column is not None and column not in names[1:]:
-        raise ConfigError(
-            f"{path}: there is no column '{column}'{nearest(column, names[1:])}; "
-            f"columns: {', '.join(names[1:])}"
-        )
-    table = file.numbers((0, names.index(column, 1) if column is not None else 1), empty_lines=True)
+    time = file.time_column() if time_column is None else _column(file, time_column, range(len(file.names)))
+    others = [j for j in range(len(file.names)) if j != time]
+    value = others[0] if column is None else _column(file, column, others)
+    table = file.numbers((time, value), empty_lines=True)
     if not len(table):
         raise ConfigError(f"{path}: there is no row below the header")
-    return table[:, 0].copy(), table[:, 1].copy()
+    return table[:, 0].copy(), table[:, 1].copy(), Rows(str(path), file, time, value)
+
+
+def _column(file: CsvFile, name: str, among: Sequence[int]) -> int:
+    """Return the place of the column of a name. Raises ConfigError where there is none, or several."""
+    found = [j for j in among if file.names[j] == name]
+    if len(found) == 1:
+        return found[0]
+    names = [file.names[j] for j in among]
+    if found:
+        raise ConfigError(f"{file.path}: {len(found)} columns have the name '{name}'; which is meant?")
+    raise ConfigError(
+        f"{file.path}: there is no column '{name}'{nearest(name, names)}; columns: {', '.join(names)}"
+    )

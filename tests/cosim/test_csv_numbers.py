@@ -84,7 +84,8 @@ def test_old_line_ends_and_digits_of_other_scripts_are_read_too(tmp_path: Path) 
 
 HEADERS = {
     b"": (),
-    b"\n0,1\n": (),
+    b"\n": (),
+    b"\n\nt,v\n": ("t", "v"),
     b"t\n0\n": ("t",),
     b",,\n": ("", "", ""),
     b"1,x\n": ("1", "x"),
@@ -99,10 +100,12 @@ def test_names_are_read_as_they_are(text: bytes, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (b"t;v\n0;1\n", "line 1: columns are separated by ',', not by ';': 't;v'"),
+        (b"0;1,5\n1;2\n", "line 1: a header with names is needed, not numbers: '0;1,5'"),
+        (b"# nothing, known\n0\n", "line 2: a header with names is needed, not numbers: '0'"),
         (b"0,1\n1,2\n", "line 1: a header with names is needed, not numbers: '0,1'"),
         (b't,"v\n0,1\n2,3\n', "line 1: a quote of the header is not closed: 't,\"v'"),
-        (b"t,\xff\n0,1\n", "is not UTF-8 text: invalid start byte at byte 2"),
+        (b"t,\x81\n0,1\n", "is not UTF-8 or Windows-1252 text: character maps to <undefined> at byte 2"),
+        (b"\xff\xfet\x00,", "is not UTF-16 or UTF-32 text: truncated data"),
         (b't,"' + 200_000 * b"x", "line 1: is not well-formed CSV: field larger than field limit"),
     ],
 )
@@ -125,7 +128,13 @@ def test_a_broken_header_is_refused(text: bytes, said: str, tmp_path: Path) -> N
         (b"t,v\n0,1,2\n1,1,2\n", "line 2 has 3 values, the header has 2 columns"),
         (b"t,v\n0,1\n  \n", "line 3 has 1 value, the header has 2 columns"),
         (b'"t\n",v\n0,"1\n"\n1,x\n', "line 5, column 'v': 'x' is not a number"),
-        (b"t,v\n0,1\n0,\xff\n", "is not UTF-8 text: invalid start byte at byte"),
+        (b"t,v\n0,1\n0,\x81\n", "is not UTF-8 or Windows-1252 text: character maps to <undefined> at byte"),
+        (b't,v\n# 1\n0,1\n#\n"1",no\n', "line 5, column 'v': 'no' is not a number"),
+        (b"t,v\n0,true\n", "line 2, column 'v': 'true' is not a number"),
+        (b't,v\n0,"1,5"\n', "line 2, column 'v': '1,5' is not a number"),
+        (b"t;v\n0;1.234,5\n", "line 2, column 'v': '1.234,5' is not a number"),
+        (b"t;v\n0,5;1.5\n", "line 2, column 'v': '1.5' has '.' as its decimal mark, and '0,5' above has ','"),
+        (b"t\tv\n0.5\t1\n1\t1,5\n", "line 3, column 'v': '1,5' has ',' as its decimal mark, and '0.5'"),
         (b't,v\n0,"' + 200_000 * b"x", "line 2: is not well-formed CSV: field larger than field limit"),
     ],
 )
@@ -162,3 +171,60 @@ def test_few_columns_of_many_are_not_all_converted(tmp_path: Path, monkeypatch: 
     file = opened(tmp_path / "x.csv", text_of(np.ones((2, 7))))
     monkeypatch.setattr(csv_numbers, "_all_numbers", lambda *_: pytest.fail("numpy converts every column"))
     assert file.numbers((0, 6)).tolist() == [[1.0, 1.0]] * 2
+
+
+GERMAN = 'Zeit [s];v, "gemessen" [\N{DEGREE SIGN}C]\r\n0;1,5\r\n"0,5";-2,25e1\r\n'
+
+
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16", "utf-16-le", "utf-16-be", "utf-32"]
+)
+def test_a_german_table_is_read_in_every_encoding_that_excel_writes(encoding: str, tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", GERMAN.encode(encoding))
+    assert file.names == ("Zeit [s]", 'v, "gemessen" [\N{DEGREE SIGN}C]')
+    assert file.numbers().tolist() == [[0.0, 1.5], [0.5, -22.5]]
+
+
+@given(table=tables, separator=st.sampled_from([";", "\t"]), comma=st.booleans())
+def test_other_separators_give_the_same_numbers(
+    table: np.ndarray, separator: str, comma: bool, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    text = text_of(table).replace(",", separator)
+    file = opened(tmp_path_factory.getbasetemp() / "other.csv", text.replace(".", ",") if comma else text)
+    if table.shape[1] > 1:
+        assert file.numbers().tobytes() == table.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "rows"),
+    [
+        ("# made by hand\n\n  # twice\nt,v\n# half way\n0,1\n#1,5\n1,2\n", ("t", "v"), [[0, 1], [1, 2]]),
+        ("# t,v\n0,1\n1,2\n", ("t", "v"), [[0, 1], [1, 2]]),  # as numpy.savetxt writes it
+        ("sep=;\nt,s;v\n0;1\n", ("t,s", "v"), [[0, 1]]),
+        ("t;v [m/s, raw]\n0;1,5\n", ("t", "v [m/s, raw]"), [[0, 1.5]]),
+        ("t,v;w\n0,1\n", ("t", "v;w"), [[0, 1]]),
+        ('t,"v;w;x"\n0,1\n', ("t", "v;w;x"), [[0, 1]]),
+        ("t;v\n0.5;1e3\n", ("t", "v"), [[0.5, 1000]]),
+        ('t, "v"\n0, "1.5"\n', ("t", "v"), [[0, 1.5]]),
+    ],
+)
+def test_comments_and_separators_are_told_from_names_and_numbers(
+    text: str, names: tuple[str, ...], rows: list[list[float]], tmp_path: Path
+) -> None:
+    file = opened(tmp_path / "x.csv", text)
+    assert file.names == names
+    assert file.numbers().tolist() == rows
+    assert file._line_by_line(range(2), empty_lines=False).tolist() == rows
+
+
+def test_truth_is_a_number_only_where_it_is_allowed(tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", "t,v\n0,TRUE\n1,false\n2,1\n")
+    assert file.numbers(truths=[1]).tolist() == [[0.0, 1.0], [1.0, 0.0], [2.0, 1.0]]
+    with pytest.raises(ConfigError, match="line 2, column 'v': 'TRUE' is not a number"):
+        file.numbers()
+
+
+def test_texts_and_the_lines_of_rows_pass_over_comments_and_empty_lines(tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", '# a\nt,v\n\n0, warm \n# b\n1,"cold,\nwet"\n2,\n')
+    assert file.texts(1) == ["warm", "cold,\nwet", ""]
+    assert [file.line_of(row) for row in range(3)] == [4, 7, 8]

@@ -55,32 +55,37 @@ def _quoted(name: str) -> str:
 
 
 def read(path: Path) -> Contents:
-    """Read any CSV file of finite numbers whose first column is the time [s].
+    """Read any CSV file of finite numbers of which a column is the time [s], by its name.
 
-    Its variables are Reals without a unit of measure. Raises ConfigError naming file, line, column and value
-    of what is missing, is no finite number, or is a time before the one above it.
+    Its variables, in the order of the other columns, are Reals without a unit of measure; true is 1 and
+    false is 0. Raises ConfigError naming file, line, column and value of what is missing, is no finite
+    number, or is a time before the one above it.
     """
     file = CsvFile.of(path)
-    _check_names(file)
-    table = file.numbers()
-    backward = np.flatnonzero(np.diff(table[:, 0]) < 0.0)
+    time = _time_column(file)
+    others = [j for j in range(len(file.names)) if j != time]
+    table = file.numbers(truths=others)
+    times = table[:, time]
+    backward = np.flatnonzero(times[1:] < times[:-1])
     if len(backward):
         k = int(backward[0])
         raise ConfigError(
-            f"{path}: line {file.header_lines + k + 2}, column '{file.names[0]}': {float(table[k + 1, 0])!r} "
-            f"comes after {float(table[k, 0])!r}; time must not decrease"
+            f"{path}: line {file.line_of(k + 1)}, column '{file.names[time]}': {float(times[k + 1])!r} "
+            f"comes after {float(times[k])!r}; time must not decrease"
         )
-    return Contents(table[:, 0], table[:, 1:], [ResultVariable(name) for name in file.names[1:]])
+    variables = [ResultVariable(file.names[j]) for j in others]
+    return Contents(times, table[:, 1:] if time == 0 else table[:, others], variables)
 
 
-def _check_names(file: CsvFile) -> None:
-    """Raise ConfigError where a column has no name, or the name of another one."""
+def _time_column(file: CsvFile) -> int:
+    """Return the column of the time. Raises ConfigError where a column has no name, or another one's."""
     names = file.names
     if not any(names):
         raise ConfigError(f"{file.path}: line 1: a header with the names of the columns is needed")
     for j, name in enumerate(names):
-        place = f"{file.path}: line 1, column {j + 1}"
+        place = f"{file.path}: line {file.header_lines}, column {j + 1}"
         if not name:
             raise ConfigError(f"{place}: a name is needed")
-        if name in names[:j] or (name == "time" and j > 0):
+        if name in names[:j]:
             raise ConfigError(f"{place}: '{name}' is the name of two columns")
+    return file.time_column()

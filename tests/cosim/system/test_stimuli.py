@@ -62,9 +62,15 @@ def test_linear_is_numpys_where_times_differ(points):
         ("t,v\n0,1\n1,fast\n", r"line 3, column 'v': 'fast' is not a number"),
         ("t,v\n0,1\n1,nan\n", r"line 3, column 'v': 'nan' is not a finite number"),
         ("t,v\n0,1\n1\n", r"line 3 has 1 value, the header has 2"),
-        ("t,v\n1,1\n0,2\n", r"time goes back from 1.0 s to 0.0 s in row 2"),
+        ("t,v\n1,1\n0,2\n", r"line 3, column 't': time goes back from 1.0 s to 0.0 s"),
+        ("# c\nt,v\n\n1,1\n#\n0,2\n", r"line 6, column 't': time goes back from 1.0 s to 0.0 s"),
         ("t,v\n", r"no row below the header"),
-        ("t;v\n0;1\n", r"line 1: columns are separated by .,., not by .;.: .t;v."),
+        ("a,b\n0,1\n", r"line 1: no column has a name of the time in s .*: 'a', 'b'"),
+        ("time [ms],b\n0,1\n", r"line 1: no column has a name of the time in s .*: 'time \[ms\]', 'b'"),
+        ("b,t,Time [s]\n0,1,2\n", r"line 1: 2 columns could be the time: 'b', 't', 'Time \[s\]'"),
+        ("t,v\n0,1\n1,true\n", r"line 3, column 'v': 'true' is not a number"),
+        ("t,v\n0,1e308\n1,-1e308\n", r"line 3, column 'v': -1e\+308 is too far from 1e\+308"),
+        ("t,v\n-1e308,1\n1e308,1\n", r"line 3, column 't': 1e\+308 is too far from -1e\+308"),
         ("t,v\n0,1_0\n", r"line 2, column .v.: .1_0. is not a finite number"),
         ("t,v\n0,1\n1,1,2\n", r"line 3 has 3 values, the header has 2 columns"),
         ("0,1\n1,2\n", r"line 1: a header with names is needed, not numbers: '0,1'"),
@@ -89,6 +95,50 @@ def test_a_csv_column_by_name(tmp_path):
         values([1], csv=str(path), column="bb")
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["time", "t", "T", "TIME", "Time [s]", "time (s)", "t/s", "time_s", "timestamps", "Zeit [s]", "Time, s"],
+)
+def test_the_time_is_the_column_of_such_a_name_wherever_it_stands(tmp_path, name):
+    path = tmp_path / "cycle.csv"
+    path.write_text(f'u,"{name}",v\n5,0,1\n7,2,9\n')
+    assert values([1], csv=str(path)) == pytest.approx([6])
+    assert values([1], csv=str(path), column="v") == pytest.approx([5])
+    with pytest.raises(ConfigError, match="there is no column"):
+        values([1], csv=str(path), column=name)
+
+
+def test_of_several_names_of_the_time_the_plain_one_counts_then_the_first_column(tmp_path):
+    path = tmp_path / "cycle.csv"
+    path.write_text("t,u,time\n1,2,0\n3,4,2\n")
+    assert values([1], csv=str(path)) == pytest.approx([2])
+    path.write_text("t,u,Time [s]\n0,2,7\n2,4,9\n")
+    assert values([1], csv=str(path)) == pytest.approx([3])
+
+
+def test_the_time_of_another_name_is_named(tmp_path):
+    path = tmp_path / "cycle.csv"
+    path.write_text("u,x,t\n5,0,1\n7,2,1\n")
+    assert values([1], csv=str(path), time_column="x") == pytest.approx([6])
+    with pytest.raises(ConfigError, match=r"no column 'y'.*; columns: u, x, t"):
+        values([1], csv=str(path), time_column="y")
+
+
+def test_a_name_that_two_columns_have_is_no_choice(tmp_path):
+    path = tmp_path / "cycle.csv"
+    path.write_text("time,u,v,v\n0,1,2,3\n")
+    assert values([0], csv=str(path), column="u") == pytest.approx([1])
+    with pytest.raises(ConfigError, match="2 columns have the name 'v'"):
+        values([0], csv=str(path), column="v")
+
+
+def test_two_rows_too_far_apart_for_a_line_may_be_held():
+    table = [[0.0, 1e308], [1.0, -1e308]]
+    with pytest.raises(ConfigError, match=r'here.table: row 2: -1e\+308 is too far .* = "hold" needs none'):
+        values([0], table=table)
+    assert list(values([0, 1], table=table, interpolation="hold")) == [1e308, -1e308]
+
+
 def test_what_stands_beside_the_wanted_columns_counts_for_nothing(tmp_path):
     path = tmp_path / "cycle.csv"
     path.write_text('"time\n[s]",phase,"v, raw",w\n\n0,cold,1,\n\n2,"warm, dry",3,nan\n')
@@ -98,7 +148,13 @@ def test_what_stands_beside_the_wanted_columns_counts_for_nothing(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "entry", [{}, {"constant": 1.0, "table": [[0, 1]]}, {"constant": 1.0, "column": "a"}]
+    "entry",
+    [
+        {},
+        {"constant": 1.0, "table": [[0, 1]]},
+        {"constant": 1.0, "column": "a"},
+        {"constant": 1.0, "time_column": "t"},
+    ],
 )
 def test_exactly_one_kind(entry):
     with pytest.raises(ConfigError):

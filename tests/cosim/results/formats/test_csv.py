@@ -92,9 +92,11 @@ BROKEN = {
     "time,x\n\n0,1\n": "line 2 has 0 values, the header has 2 columns",
     "time,x\n0,1\n2,1\n1.5,1\n": "line 4, column 'time': 1.5 comes after 2.0; time must not decrease",
     'time,"x\ny"\n0,1\n2,1\n1.5,1\n': "line 5, column 'time': 1.5 comes after 2.0; time must not decrease",
-    "time;x\n0;1\n": "columns are separated by ',', not by ';'",
+    "time;x\n0;1\n2;no\n": "line 3, column 'x': 'no' is not a number",
+    "x,y\n0,1\n": "line 1: no column has a name of the time in s",
+    "time,x\n# run 2\n0,1\n\n1,1\n": "line 4 has 0 values, the header has 2 columns",
     "time,x,x\n0,1,1\n": "line 1, column 3: 'x' is the name of two columns",
-    "t,time\n0,1\n": "line 1, column 2: 'time' is the name of two columns",
+    "time,time\n0,1\n": "line 1, column 2: 'time' is the name of two columns",
     "time,,x\n0,1,1\n": "line 1, column 2: a name is needed",
     "0,1\n1,2\n": "a header with names is needed, not numbers: '0,1'",
     ",,\n1,2,3\n": "line 1: a header with the names of the columns is needed",
@@ -110,6 +112,13 @@ def test_a_broken_csv_is_refused_with_its_place(text: str, tmp_path: Path) -> No
         csv.read(path)
     assert str(refusal.value).startswith(f"{path}: ")
     assert BROKEN[text] in str(refusal.value)
+
+
+def test_the_time_may_stand_anywhere_and_truth_is_1_or_0(tmp_path: Path) -> None:
+    (tmp_path / "x.csv").write_text("u;Time [s];on\n5,5;0;true\n6;0,5;false\n")
+    results = Results.read(tmp_path / "x.csv")
+    assert results.time.tolist() == [0.0, 0.5] and results.names == ("u", "on")
+    assert results.data.tolist() == [[5.5, 1.0], [6.0, 0.0]]
 
 
 @pytest.mark.parametrize("value", [2.0**63, -(2.0**63), 2.0**64, 1e300])

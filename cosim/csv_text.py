@@ -1,0 +1,216 @@
+"""The text of CSV files as people, spreadsheets and tools write it: encoding, comments, separator, header.
+
+Text is UTF-8, UTF-16 as Excel writes it, or else Windows-1252. Values are separated by ',', ';' or a tab: the
+header says by which. A line that begins with '#' is a comment, and empty lines above the header count for
+nothing. The header is the first line, or, where that has numbers, the comment right above it, as numpy writes
+it. A first line `sep=;`, as Excel knows it, names the separator.
+"""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import csv
+import itertools
+import math
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from .errors import ConfigError, counted
+
+SEPARATORS = (";", "\t", ",")
+"""In the order in which they are tried: a ';' or a tab that stands in each line is no part of a name."""
+
+_BLOCK = 1 << 20
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),  # it begins as that of UTF-16 does
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_TIME = re.compile(r"(time|t|timestamps?|zeit)\s*(?:[\[(/_,]?\s*(s|sec|seconds?)\s*[\])]?)?", re.IGNORECASE)
+
+
+class Header(NamedTuple):
+    """The names of the columns, the lines of the file up to their end, and the separator of values."""
+
+    names: tuple[str, ...]
+    lines: int
+    separator: str
+
+
+class Comments:
+    """Counts the comments that it takes out of lines."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def without(self, lines: Iterable[str]) -> Iterator[str]:
+        """Yield the lines that are no comments."""
+        for line in lines:
+            if "#" in line and line.lstrip().startswith("#"):
+                self.count += 1
+            else:
+                yield line
+
+
+def encoding_of(path: Path) -> str:
+    """Return Python's name of the encoding of a file. Raises ConfigError for one that cannot be read."""
+    try:
+        with path.open("rb") as file:
+            first = file.read(4)
+            for mark, name in _MARKS:
+                if first.startswith(mark):
+                    return name
+            if len(first) >= 2 and 0 in first[:2]:  # UTF-16 without a mark: a letter has one byte of 0
+                return "utf-16-le" if first[1] == 0 else "utf-16-be"
+            file.seek(0)
+            return "utf-8" if _is_utf_8(iter(lambda: file.read(_BLOCK), b"")) else "cp1252"
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def _is_utf_8(blocks: Iterable[bytes]) -> bool:
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        for block in blocks:
+            decoder.decode(block)
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+@contextlib.contextmanager
+def opened(path: Path, encoding: str, skipped: int = 0) -> Iterator[TextIO]:
+    """Open a file and pass over its first `skipped` lines.
+
+    Raises ConfigError naming it where it cannot be read or is no text, within the `with` block too.
+    """
+    try:
+        with path.open(encoding=encoding, newline="") as file:
+            for _ in range(skipped):
+                file.readline()
+            yield file
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except UnicodeError as error:
+        kind = "UTF-16 or UTF-32" if encoding.startswith(("utf-16", "utf-32")) else "UTF-8 or Windows-1252"
+        where = f" at byte {error.start}" if isinstance(error, UnicodeDecodeError) else ""
+        raise ConfigError(f"{path}: is not {kind} text: {error.args[-1]}{where}") from error
+
+
+def read_header(path: Path, encoding: str) -> Header:
+    """Read the header of a file: no names where the file is empty.
+
+    Raises ConfigError naming the file where it cannot be read, does not close a quote, or has numbers in
+    place of names.
+    """
+    with opened(path, encoding) as file:
+        above, given, comment = _above(file)
+    candidates = [given] if given else SEPARATORS
+    found = [_with_separator(path, encoding, above, separator) for separator in candidates]
+    several = [(h, row) for h, row in found if len(h.names) > 1]
+    fits = [h for h, row in several if len(row) == len(h.names)]
+    header = fits[0] if fits else several[-1][0] if several else found[-1][0]
+    if header.names and all(number_in(name, header.separator) is not None for name in header.names):
+        names = _cells(comment, header.separator)
+        if len(names) == len(header.names) and any(number_in(n, header.separator) is None for n in names):
+            return Header(names, above, header.separator)
+        shown = header.separator.join(header.names)
+        raise ConfigError(f"{path}: line {above + 1}: a header with names is needed, not numbers: {shown!r}")
+    return header
+
+
+def _above(lines: Iterable[str]) -> tuple[int, str, str]:
+    """Return the number of lines above the header, the separator given there, and the comment right above.
+
+    Separator and comment are "" where there is none.
+    """
+    count, separator, comment = 0, "", ""
+    for line in lines:
+        text = line.strip()
+        given = re.fullmatch(r"sep=([;,\t])", line.strip("\r\n"), re.IGNORECASE)
+        if given and not separator:
+            separator, comment = given[1], ""
+        elif text.startswith("#"):
+            comment = text.lstrip("#")
+        elif text:
+            break
+        else:
+            comment = ""
+        count += 1
+    return count, separator, comment
+
+
+def _with_separator(path: Path, encoding: str, above: int, separator: str) -> tuple[Header, list[str]]:
+    """Return the header as a separator divides it, and the first row; both may be empty.
+
+    Raises ConfigError where the header does not close a quote or is no CSV.
+    """
+    taken: list[str] = []
+    with opened(path, encoding, above) as file:
+        reader = csv.reader(_noted(file, taken), delimiter=separator, skipinitialspace=True)
+        try:
+            names = tuple(name.strip() for name in next(reader, []))
+        except csv.Error as error:
+            raise ConfigError(f"{path}: line {above + 1}: is not well-formed CSV: {error}") from error
+        lines = len(taken)
+        rest = Comments().without(file)
+        first = next((line for line in rest if line.strip()), None)
+        if lines > 1 and first is None and "".join(taken).count('"') % 2:
+            raise ConfigError(
+                f"{path}: line {above + 1}: a quote of the header is not closed: {taken[0].strip()!r}"
+            )
+        row: list[str] = []
+        with contextlib.suppress(csv.Error, StopIteration):  # what is wrong in a row is said when it is read
+            row = next(csv.reader(itertools.chain([first or ""], rest), delimiter=separator))
+    return Header(names, above + lines, separator), row
+
+
+def _noted(lines: Iterable[str], taken: list[str]) -> Iterator[str]:
+    """Yield lines, each of which is appended to `taken`."""
+    for line in lines:
+        taken.append(line)
+        yield line
+
+
+def _cells(text: str, separator: str) -> tuple[str, ...]:
+    return tuple(cell.strip() for cell in next(csv.reader([text], delimiter=separator), []))
+
+
+def number_in(text: str, separator: str) -> float | None:
+    """Return the number that a text is, or None: for other texts, NaN, infinity, and '_' among digits.
+
+    Where the separator is no ',', there may be one in place of the decimal point.
+    """
+    if separator != "," and text.count(",") == 1 and "." not in text:
+        text = text.replace(",", ".")
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) and "_" not in text else None
+
+
+def time_column(names: tuple[str, ...], place: str) -> int:
+    """Return the column of the time, by its name: time, t, timestamp or Zeit, with or without a unit s.
+
+    Case counts for nothing: `Time [s]`, `t(s)` and `time_s` are such names. Where several columns have one,
+    it is that named `time`, else the first column. Raises ConfigError, which begins with `place`, where
+    there is none, or several and neither.
+    """
+    named = [j for j, name in enumerate(names) if _TIME.fullmatch(name.strip())]
+    plain = [j for j in named if names[j].strip().lower() == "time"]
+    for found in (named, plain, [j for j in named if j == 0]):
+        if len(found) == 1:
+            return found[0]
+    listed = ", ".join(repr(name) for name in names)
+    if named:
+        raise ConfigError(f"{place}: {counted(len(named), 'column')} could be the time: {listed}")
+    raise ConfigError(
+        f"{place}: no column has a name of the time in s ('time', 't', 'Time [s]', 'time_s', 'timestamps', "
+        f"...): {listed}"
+    )

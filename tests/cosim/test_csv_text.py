@@ -1,0 +1,55 @@
+"""The text of CSV files: the encoding that a file has, the header, and the column of the time by its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.cosim.csv_text import Header, encoding_of, number_in, read_header, time_column
+from evcosim.cosim.errors import ConfigError
+
+
+@pytest.mark.parametrize(
+    ("content", "name"),
+    [
+        (b"", "utf-8"),
+        (b"t,v\n", "utf-8"),
+        ("t,\N{DEGREE SIGN}C".encode(), "utf-8"),
+        ("t,\N{DEGREE SIGN}C".encode("cp1252"), "cp1252"),
+        ("t,v".encode("utf-16-le"), "utf-16-le"),
+        ("t,v".encode("utf-16-be"), "utf-16-be"),
+        ("t,v".encode("utf-16"), "utf-16"),
+        ("t,v".encode("utf-32"), "utf-32"),
+        ("t,v".encode("utf-8-sig"), "utf-8-sig"),
+        (b"x" * ((1 << 20) - 1) + "\N{DEGREE SIGN}".encode(), "utf-8"),  # its bytes stand in two blocks
+        (b"x" * (1 << 20) + b"\xc2", "cp1252"),  # a character of UTF-8 that is cut
+    ],
+)
+def test_the_encoding_is_known_by_the_bytes(content: bytes, name: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_bytes(content)
+    assert encoding_of(path) == name
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_decimal_comma_is_a_point_where_no_comma_separates(number: float) -> None:
+    text = repr(number)
+    assert number_in(text, ",") == number_in(text.replace(".", ","), ";") == number
+    if "." in text:
+        assert number_in(text.replace(".", ","), ",") is None
+    assert number_in("1,234,567", ";") is number_in("1.234,5", "\t") is number_in("1_0", ",") is None
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("time [ms]", "a"), ("Zeitpunkt", "a"), ("temperature", "tx")])
+def test_a_column_that_is_not_the_time_is_not_taken_for_it(names: tuple[str, ...]) -> None:
+    with pytest.raises(ConfigError, match="here: no column has a name of the time in s"):
+        time_column(names, "here")
+
+
+def test_the_header_says_the_lines_above_the_first_row(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text('# a\n\n"time\n[s]";v\n0;1\n')
+    assert read_header(path, "utf-8") == Header(("time\n[s]", "v"), 4, ";")
