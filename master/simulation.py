@@ -87,7 +87,7 @@ class Simulation:
             self._engine = made(self.plan, self._units, log_raw=log_frames)
             self._engine.profile = Profile() if profile else None
             self._extremes = Extremes(len(self.plan.columns))
-            initialize(self._units, self.plan)
+            self._notices = initialize(self._units, self.plan)
             self._engine.start()
         except BaseException:
             self._free()
@@ -236,7 +236,7 @@ class Simulation:
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
         notices = [notice for notice in (self._notice, self._engine.notice) if notice]
         beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
-        return [*notices, *defects, *self.plan.warnings, *from_units, *beyond]
+        return [*notices, *defects, *self.plan.warnings, *self._notices, *from_units, *beyond]
 
     def _unit_warnings(self) -> dict[str, int]:
         return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
@@ -20,6 +22,10 @@ def floats(memory: NDArray[np.float64]) -> memoryview[float]:
     return memory.data.cast("B").cast("d")
 
 
+NO_VALUES: Mapping[str, Value] = MappingProxyType({})
+"""No variable is set."""
+
+
 class UnitError(RunError):
     """A call of a unit failed; the message names unit, call, status, and the unit's last log messages."""
 
@@ -29,7 +35,7 @@ class Unit(Protocol):
 
     The calls come in this order:
 
-    1. `bind` once, then `set` of parameters and starts, then `enter_initialization(start, stop)`
+    1. `bind` once, then `enter_initialization` with parameters, start values and first inputs
     2. `set` of inputs and `get` of outputs, any number, then `exit_initialization`
     3. for each of its turns: `set_inputs`, `get_feedthrough`, `start_step`, `finish_step`, `get_outputs`
     4. `terminate`, then `free`; after an error `free` alone
@@ -48,8 +54,19 @@ class Unit(Protocol):
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Keep the run's memory, shape (size,), and the slots of this unit's slot groups in it."""
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """Set up the experiment (times in s) and enter initialization mode."""
+    def enter_initialization(
+        self,
+        start_time: float,
+        stop_time: float | None,
+        values: Mapping[str, Value] = NO_VALUES,
+        inputs: Mapping[str, Value] = NO_VALUES,
+    ) -> str:
+        """Set up the experiment (times in s), then set variables, and enter initialization mode.
+
+        `values` are parameters and start values, `inputs` the first values of inputs that are known before
+        any output is; all inputs are set again afterwards. Return a sentence for the user where the unit
+        takes inputs later only, else "".
+        """
 
     def exit_initialization(self) -> None:
         """Leave initialization mode: parameters are fixed from now on."""

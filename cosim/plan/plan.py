@@ -13,12 +13,15 @@ from __future__ import annotations
 import dataclasses
 import functools
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.database import Message
 from ..results.results import ResultVariable
 from ..system.scenario import Event
-from ..system.stimuli import TimeFunction
+from ..system.stimuli import TimeFunction, initial_value
 from ..system.system import Algorithm, Experiment
 from ..units import Affine
 from .unit_plan import UnitPlan
@@ -41,6 +44,14 @@ class Drive:
     sink: int
     signal: TimeFunction
     map: Affine
+
+    def at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the values that the input receives at the times [s], both of shape (n,)."""
+        return self.map.scale * self.signal(times) + self.map.offset
+
+    def first(self, start_time: float) -> float:
+        """Return the value that the input has in the initialization, which is at the start time [s]."""
+        return self.map(initial_value(self.signal, start_time))
 
 
 @dataclasses.dataclass(frozen=True)

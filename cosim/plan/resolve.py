@@ -97,7 +97,7 @@ def resolve(
         inputs=network.inputs,
         columns=tuple(result_variable(unit, v) for unit, v in columns),
         column_slots=tuple(slots.valid[unit, v.name] for unit, v in columns),
-        initial=_initial(interfaces, starts, network),
+        initial=_initial(interfaces, starts, network, drives, experiment.start_time),
         memory_size=slots.size,
         warnings=tuple(network.warnings),
     )
@@ -288,11 +288,16 @@ def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Net
 
 
 def _initial(
-    interfaces: Mapping[str, UnitInterface], starts: Mapping[str, Mapping[str, Value]], network: Network
+    interfaces: Mapping[str, UnitInterface],
+    starts: Mapping[str, Mapping[str, Value]],
+    network: Network,
+    drives: tuple[Drive, ...],
+    start_time: float,
 ) -> dict[int, float]:
     """Return the values of the inputs' slots and mailboxes before anything was computed or received.
 
-    A value is the connection's `initial`, else the start given in a file, else the FMU's; 0 for a String.
+    A value is that of the stimulus at the start time, else the connection's `initial`, else the start given
+    in a file, else the FMU's; 0 for a String.
     """
     values = {}
     for name, plan in network.inputs.items():
@@ -303,4 +308,4 @@ def _initial(
         values[plan.slot] = number
         if plan.mailbox is not None:
             values[plan.mailbox] = number
-    return values
+    return values | {drive.sink: drive.first(start_time) for drive in drives}

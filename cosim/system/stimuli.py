@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -100,8 +101,33 @@ def _table(
     if interpolation == "linear":
         _check_differences(times, 0, rows)
         _check_differences(values, 1, rows)
-        return lambda t: _interpolate(t, times, values)
-    return lambda t: values[np.maximum(np.searchsorted(times, t, side="right") - 1, 0)]
+    return _Table(times, values, interpolation)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Table:
+    """The function of a table of `times` [s] and `values`, shapes (n,)."""
+
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+    interpolation: Interpolation
+
+    def __call__(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self.interpolation == "linear":
+            return _interpolate(t, self.times, self.values)
+        return self.values[np.maximum(np.searchsorted(self.times, t, side="right") - 1, 0)]
+
+
+def initial_value(signal: TimeFunction, start_time: float) -> float:
+    """Return the value of a stimulus for the initialization, at the start time [s].
+
+    That is its value there; a jump of a table at the start time itself comes after the initialization.
+    """
+    if isinstance(signal, _Table):
+        (rows,) = np.nonzero(signal.times == start_time)
+        if len(rows) > 1:
+            return float(signal.values[rows[0]])
+    return float(signal(np.array([start_time]))[0])
 
 
 def _check_differences(column: NDArray[np.float64], number: Literal[0, 1], rows: Rows) -> None:

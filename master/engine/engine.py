@@ -257,7 +257,7 @@ class Engine:
         experiment = self.plan.experiment
         steps = np.arange(self.k, self.k + count, dtype=np.float64)
         times = experiment.start_time + steps * experiment.step_size
-        return np.array([d.map.scale * d.signal(times) + d.map.offset for d in self.plan.drives])
+        return np.array([drive.at(times) for drive in self.plan.drives])
 
     def _adapt(self, count: int, done: int, seconds: float) -> None:
         """Set the steps of the next chunk: as many as this one's time allowed, more if it left time."""

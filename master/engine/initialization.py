@@ -5,6 +5,10 @@ declared initial dependency from an input to an output of the same unit. Without
 in which every value is final when it is passed on. A loop is an algebraic loop: it is refused by name, or
 iterated until no value changes by more than a tolerance. Connections over a bus take no part: before the
 first message a receiver sees its initial value.
+
+What is known before any output is stands in every unit before it enters its initialization mode, since some
+FMUs solve their initial equations there: parameters, start values, the values of stimuli at the start time
+and the initial ones of buses. The inputs among them are set again within it.
 """
 
 from __future__ import annotations
@@ -14,8 +18,9 @@ import math
 from collections.abc import Iterable, Mapping
 
 from ...cosim.errors import ConfigError
-from ...cosim.interface import UnitInterface
+from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.plan import Link, Plan
+from ...cosim.plan.unit_plan import UnitPlan
 from ..unit import Unit, UnitError
 
 _ITERATIONS = 200
@@ -58,19 +63,20 @@ def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tu
         return list(error.args[1]), []
 
 
-def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
-    """Bring every unit from instantiated to ready for its first step.
+def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
+    """Bring every unit from instantiated to ready for its first step; return what the user should know.
 
     Raises UnitError if a unit refuses a call, an output is NaN or infinite, or a loop does not converge.
     """
     links, looped = ordered_links(plan)
     experiment = plan.experiment
-    # parameters, then initialization mode
-    for unit_plan in plan.units:
-        unit = units[unit_plan.name]
-        for name, value in unit_plan.parameters.items():
-            unit.set(name, value)
-        unit.enter_initialization(experiment.start_time, experiment.stop_time)
+    # parameters, start values and the inputs that no output reaches, then initialization mode
+    notices = [
+        units[p.name].enter_initialization(
+            experiment.start_time, experiment.stop_time, p.parameters, _first_inputs(plan, p)
+        )
+        for p in plan.units
+    ]
     # inputs: start values where no output is connected directly, then outputs along the connections
     _set_free_inputs(units, plan)
     if looped:
@@ -81,10 +87,27 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> None:
     # parameters are fixed from now on
     for unit in units.values():
         unit.exit_initialization()
+    return tuple(notice for notice in notices if notice)
+
+
+def _first_inputs(plan: Plan, unit: UnitPlan) -> dict[str, Value]:
+    """Return the first values of a unit's inputs that are driven other than directly, or given in a file.
+
+    The others keep the FMU's own start value until outputs are known.
+    """
+    linked = {link.sink for link in plan.links}
+    found: dict[str, Value] = {}
+    for variable in unit.interface.of_causality("input"):
+        receiver = plan.inputs.get(f"{unit.name}.{variable.name}")
+        if variable.name in unit.start:
+            found[variable.name] = unit.start[variable.name]
+        if receiver is not None and receiver.driver and (unit.name, variable.name) not in linked:
+            found[variable.name] = _typed(variable, plan.initial[receiver.slot])
+    return found
 
 
 def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
-    """Set the inputs that no output reaches directly, driven or not, to their start value."""
+    """Set the inputs that no output reaches directly, driven or not, to their first value."""
     linked = {".".join(link.sink) for link in plan.links}
     for name, receiver in plan.inputs.items():
         if name not in linked:
@@ -93,8 +116,12 @@ def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
 
 def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
     unit, _, variable = name.partition(".")
-    kind = units[unit].interface.variables[variable].type
-    units[unit].set(variable, value if kind == "Real" else bool(value) if kind == "Boolean" else round(value))
+    units[unit].set(variable, _typed(units[unit].interface.variables[variable], value))
+
+
+def _typed(variable: VariableInfo, value: float) -> Value:
+    """Return a number of the memory as a value of the variable's type."""
+    return value if variable.type == "Real" else bool(value) if variable.type == "Boolean" else round(value)
 
 
 def _pass_on(units: Mapping[str, Unit], link: Link) -> float:

@@ -83,6 +83,7 @@ class ModelExchange(Instance):
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Make the calls of a turn. Discrete inputs, which only events may set, have calls of their own."""
         super().bind(memory, plan)
+        self._inputs = {True: [], False: []}
         for group in plan.groups:
             for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
                 self._inputs[_is_continuous(variable)].append((slot, variable))
@@ -92,9 +93,9 @@ class ModelExchange(Instance):
         )
         self.set_inputs = self._noting(self._take_inputs)
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+    def _set_up(self, start_time: float, stop_time: float | None) -> None:
         self._time = ctypes.c_double(start_time)
-        super().enter_initialization(start_time, stop_time)
+        super()._set_up(start_time, stop_time)
 
     def _prepare_steps(self) -> None:
         """Continue `exit_initialization`: the FMU is in event mode now."""

@@ -24,6 +24,7 @@ class Fmi1Unit(Instance):
 
     fmi = "fmi"
     _true = _TRUE
+    _takes_inputs = "after it"
 
     def __init__(
         self,
@@ -35,6 +36,7 @@ class Fmi1Unit(Instance):
         if tolerance is not None:
             raise FmuError(f"{fmu.path}: unit '{name}': a unit of FMI 1.0 Co-Simulation takes no tolerance")
         self._given: dict[str, Value] = {}
+        self._late = False  # inputs are set after the initialization
         super().__init__(fmu, name, interface, tolerance)
 
     def _prefix(self) -> str:
@@ -67,17 +69,30 @@ class Fmi1Unit(Instance):
         return self.type_of(variable).kind.zero if variable.start is None else variable.start
 
     def set(self, name: str, value: Value) -> None:
-        super().set(name, value)
+        """Set a variable; before the initialization an input only where the FMU takes one then."""
+        if self._initialized or not (self._late and self.interface.variables[name].causality == "input"):
+            super().set(name, value)
         if not self._initialized:
             self._given[name] = value
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+    def _open_anew(self) -> None:
+        super()._open_anew()
+        self._late = True
+        self._given.clear()
+
+    def _set_up(self, start_time: float, stop_time: float | None) -> None:
         known = _FALSE if stop_time is None else _TRUE
         self._experiment: Any = ctypes.c_double(start_time), known, ctypes.c_double(stop_time or 0.0)
+
+    def _enter(self) -> None:
+        """FMI 1.0 has no initialization mode."""
 
     def exit_initialization(self) -> None:
         self._call("fmiInitializeSlave", self._component, *self._experiment)
         self._initialized = True
+        for name, value in self._given.items() if self._late else ():
+            if self.interface.variables[name].causality == "input":
+                self.set(name, value)
         self._do_step = self.function("fmiDoStep")
         self.step_call = StepCall(self._do_step)
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()

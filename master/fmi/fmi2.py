@@ -34,13 +34,15 @@ class Fmi2Unit(Instance):
         )
         return component
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+    def _set_up(self, start_time: float, stop_time: float | None) -> None:
         known = stop_time is not None
         self._call(
             "fmi2SetupExperiment", self._component,
             ctypes.c_int(self.tolerance is not None), ctypes.c_double(self.tolerance or 0.0),
             ctypes.c_double(start_time), ctypes.c_int(known), ctypes.c_double(stop_time or 0.0),
         )  # fmt: skip # tolerance, start, stop
+
+    def _enter(self) -> None:
         self._call("fmi2EnterInitializationMode", self._component)
 
     def exit_initialization(self) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from pathlib import Path
 from typing import Any
 
 from ..unit import UnitError
 from .exchange import ModelExchange
-from .instance import Instance, resources_path
+from .instance import Instance
 from .log import receive_3
 from .transfer import Call, StepCall
 
@@ -50,11 +51,14 @@ class Fmi3Unit(Instance):
         """Return the arguments of a get or set function: the values have a count of their own."""
         return self._component, references, ctypes.c_size_t(count), values, ctypes.c_size_t(count)
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+    def _set_up(self, start_time: float, stop_time: float | None) -> None:
         stop = ctypes.c_bool(stop_time is not None), ctypes.c_double(stop_time or 0.0)
         start = ctypes.c_double(start_time)
         tolerance = ctypes.c_bool(self.tolerance is not None), ctypes.c_double(self.tolerance or 0.0)
-        self._call("fmi3EnterInitializationMode", self._component, *tolerance, start, *stop)
+        self._experiment: Any = *tolerance, start, *stop
+
+    def _enter(self) -> None:
+        self._call("fmi3EnterInitializationMode", self._component, *self._experiment)
 
     def exit_initialization(self) -> None:
         self._call("fmi3ExitInitializationMode", self._component)
@@ -91,6 +95,11 @@ class Fmi3Unit(Instance):
                 f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though "
                 f"early return is not allowed{self._said()}"
             )
+
+
+def resources_path(folder: Path) -> bytes:
+    """Return FMI 3.0's resourcePath: the path of the resources with a separator behind it."""
+    return os.fsencode(folder / "resources") + os.sep.encode()
 
 
 class _DiscreteStates(ctypes.Structure):

@@ -7,7 +7,8 @@ A class for a version or a kind (Co-Simulation, Model Exchange) defines, describ
   `fmi`               the first part of the names of its C functions; `_prefix`: the text before that
   `_instantiate`      the one call that makes the component
   `arguments`         those of a function that gets or sets values, where they are not those of FMI 2.0
-  `enter_initialization`, `exit_initialization`, `start_step`; `_free_instance`, where it has another name
+  `_set_up`, `_enter`    the two parts of `enter_initialization`
+  `exit_initialization`, `start_step`; `_free_instance`, where it has another name
 and has for its own C functions `_call` (once or seldom), `function` with `_judge` (in a step) and `_fail`.
 A class that does more around a transfer wraps the calls that `bind` makes: `set_inputs`, `get_feedthrough`,
 `get_outputs`.
@@ -18,7 +19,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import functools
-import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -27,11 +28,11 @@ from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.unit_plan import UnitPlan
-from ..unit import UnitError
-from . import binary, crash, folders
+from ..unit import NO_VALUES, UnitError
+from . import crash, folders
 from .binding import Binding
 from .fmu import Fmu, FmuError, check_runnable
-from .library import Library
+from .library import Library, load_library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
 from .state import States
@@ -54,6 +55,8 @@ class Instance:
     """The first part of the names of the C functions."""
     _true: Any = ctypes.c_int(1)
     """True as an argument of a C function."""
+    _takes_inputs = "within it"
+    """The time when an FMU that refuses inputs before the initialization gets them."""
     _statuses = 6
     """The number of statuses of the version."""
     step_call: StepCall | None = None
@@ -76,18 +79,12 @@ class Instance:
         self._component: Any = None
         self._library: Any = None
         self._initialized = False
+        self._bound_to: tuple[NDArray[np.float64], UnitPlan] | None = None
         self._folder: Path | None = None
         self._crash_note = self._joined_crash_report()
         try:
-            folder = self._folder = folders.take(fmu, name)
-            self._library = self._load(folder)
-            with self.log.instantiating():
-                component = self._instantiate(folder)
-            if not component:
-                reason = why_refused(fmu, folder / fmu.binary, self.log.last())
-                raise FmuError(f"{fmu.path}: cannot be instantiated{reason}")
-            self._component = ctypes.c_void_p(component)
-            self._listen_to_trouble()
+            self._folder = folders.take(fmu, name)
+            self._open(self._folder)
         except BaseException:
             self.free()
             raise
@@ -98,6 +95,25 @@ class Instance:
         self.set_inputs: Call = one_after_the_other()
         self.get_feedthrough: Call = one_after_the_other()
         self.get_outputs: Call = one_after_the_other()
+
+    def _open(self, folder: Path) -> None:
+        """Load the library from the extracted FMU and instantiate."""
+        self._library = load_library(self.fmu, folder, self._prefix())
+        with self.log.instantiating():
+            component = self._instantiate(folder)
+        if not component:
+            reason = why_refused(self.fmu, folder / self.fmu.binary, self.log.last())
+            raise FmuError(f"{self.fmu.path}: cannot be instantiated{reason}")
+        self._component = ctypes.c_void_p(component)
+        self._listen_to_trouble()
+
+    def _open_anew(self) -> None:
+        """Free the instance and its library, load and instantiate it again, and bind it as it was."""
+        self._close()
+        assert self._folder is not None  # it is taken before the first instance, and given back with the last
+        self._open(self._folder)
+        if self._bound_to is not None:
+            self.bind(*self._bound_to)
 
     def _joined_crash_report(self) -> Call:
         """Return a call that notes that this unit is called now; without a report it does nothing."""
@@ -133,16 +149,6 @@ class Instance:
         """Return the arguments of a function that gets or sets `count` values."""
         return self._component, references, ctypes.c_size_t(count), values
 
-    def _load(self, folder: Path) -> Library:
-        path = folder / self.fmu.binary
-        if reason := binary.problem(path):
-            raise FmuError(f"{self.fmu.path}: its library cannot be loaded: {self.fmu.binary}: {reason}")
-        try:
-            return Library(path, self._prefix(), keeps_lock=self.fmu.holds_python)
-        except OSError as error:
-            reason = str(error).replace(str(path), self.fmu.binary)
-            raise FmuError(f"{self.fmu.path}: its library cannot be loaded: {reason}") from error
-
     def _prefix(self) -> str:
         return ""
 
@@ -164,12 +170,52 @@ class Instance:
 
     # ---- before the steps
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        """Set the experiment up and enter initialization mode (times in s)."""
+    def enter_initialization(
+        self,
+        start_time: float,
+        stop_time: float | None,
+        values: Mapping[str, Value] = NO_VALUES,
+        inputs: Mapping[str, Value] = NO_VALUES,
+    ) -> str:
+        """Set up the experiment, then values and inputs, and enter initialization mode.
+
+        FMI 2.0 lets an FMU refuse inputs before it, and after an error nothing but a new instance goes on.
+        """
+        self._prepare(start_time, stop_time, values)
+        refusal = self._refusal_of(inputs)
+        if refusal:
+            self._open_anew()
+            self._prepare(start_time, stop_time, values)
+        self._enter()
+        return refusal
+
+    def _prepare(self, start_time: float, stop_time: float | None, values: Mapping[str, Value]) -> None:
+        """Set up the experiment first: some FMUs compute their parameters there."""
+        self._set_up(start_time, stop_time)
+        for name, value in values.items():
+            self.set(name, value)
+
+    def _refusal_of(self, inputs: Mapping[str, Value]) -> str:
+        """Set inputs, and return a sentence if the FMU takes one not yet; "" if it took all."""
+        try:
+            for name, value in inputs.items():
+                self.set(name, value)
+        except UnitError as error:
+            said = f"{str(error).splitlines()[0]} before the initialization"
+            return f"{said}; instantiated anew, it gets its inputs {self._takes_inputs} only"
+        return ""
+
+    def _set_up(self, start_time: float, stop_time: float | None) -> None:
+        """Set up the experiment (times in s), or note it where the version has no call of its own for it."""
+        raise NotImplementedError
+
+    def _enter(self) -> None:
+        """Enter initialization mode."""
         raise NotImplementedError
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Make the calls of a turn, with all their arguments. `memory` has the shape (size,)."""
+        self._bound_to = memory, plan
         binding = self._binding = Binding(self, memory)
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
@@ -292,6 +338,16 @@ class Instance:
             self.log.add(_WARNING, f"the library lacks the function {name}")
 
     def free(self) -> None:
+        self._close()
+        self.log.close()
+        if (report := crash.report()) is not None:
+            report.remove(self)
+        folder, self._folder = self._folder, None
+        if folder is not None:
+            folders.give_back(self.fmu, self.name)
+
+    def _close(self) -> None:
+        """Free the instance and unload its library."""
         component, self._component = self._component, None
         library, self._library = self._library, None
         self._crash_note()
@@ -300,12 +356,6 @@ class Instance:
                 with contextlib.suppress(AttributeError):  # a library that lacks the function frees nothing
                     self._free_instance(library, component)
             library.close()
-        self.log.close()
-        if (report := crash.report()) is not None:
-            report.remove(self)
-        folder, self._folder = self._folder, None
-        if folder is not None:
-            folders.give_back(self.fmu, self.name)
 
     def _free_instance(self, library: Library, component: Any) -> None:
         library.function(f"{self.fmi}FreeInstance", None)(component)
@@ -342,8 +392,3 @@ class Instance:
         """Return the unit's last messages on lines of their own; "" where there are none."""
         said = self.log.last()
         return f"\n{said}" if said else ""
-
-
-def resources_path(folder: Path) -> bytes:
-    """Return FMI 3.0's resourcePath: the path of the resources with a separator behind it."""
-    return os.fsencode(folder / "resources") + os.sep.encode()

@@ -15,6 +15,9 @@ from typing import Any
 
 from fmpy import freeLibrary
 
+from . import binary
+from .fmu import Fmu, FmuError
+
 
 class Library:
     """A loaded library. `prefix` stands before every function's name (FMI 1.0).
@@ -49,3 +52,18 @@ class Library:
     def close(self) -> None:
         """Unload the library."""
         freeLibrary(self._library._handle)
+
+
+def load_library(fmu: Fmu, folder: Path, prefix: str) -> Library:
+    """Load an FMU's library from the folder into which it was extracted.
+
+    Raises FmuError naming the library and the reason.
+    """
+    path = folder / fmu.binary
+    if reason := binary.problem(path):
+        raise FmuError(f"{fmu.path}: its library cannot be loaded: {fmu.binary}: {reason}")
+    try:
+        return Library(path, prefix, keeps_lock=fmu.holds_python)
+    except OSError as error:
+        reason = str(error).replace(str(path), fmu.binary)
+        raise FmuError(f"{fmu.path}: its library cannot be loaded: {reason}") from error

@@ -8,6 +8,7 @@ import json
 import os
 import pickle
 import time
+from collections.abc import Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -18,7 +19,7 @@ from ...cosim.interface import UnitInterface, Value
 from ...cosim.plan.unit_plan import UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
-from ..unit import UnitError, floats
+from ..unit import NO_VALUES, UnitError, floats
 from . import framing, handover, shared
 from .process import Process, ProcessLimits
 from .waiting import WAITING
@@ -183,8 +184,15 @@ class IsolatedUnit:
         ]
         self._call("bind", theirs)
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
-        self._call("enter_initialization", start_time, stop_time)
+    def enter_initialization(
+        self,
+        start_time: float,
+        stop_time: float | None,
+        values: Mapping[str, Value] = NO_VALUES,
+        inputs: Mapping[str, Value] = NO_VALUES,
+    ) -> str:
+        notice = self._call("enter_initialization", start_time, stop_time, dict(values), dict(inputs))
+        return _printable(str(notice or ""))
 
     def exit_initialization(self) -> None:
         self._call("exit_initialization")

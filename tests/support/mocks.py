@@ -17,6 +17,7 @@ from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile
 from evcosim.master.engine.initialization import initialize
 from evcosim.master.engine.python_engine import PythonEngine
+from evcosim.master.unit import NO_VALUES
 
 Values = dict[str, Any]
 
@@ -54,8 +55,16 @@ class MockUnit:
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         self.memory, self.groups = memory, plan.groups
 
-    def enter_initialization(self, start_time: float, stop_time: float | None) -> None:
+    def enter_initialization(
+        self,
+        start_time: float,
+        stop_time: float | None,
+        values: Mapping[str, Value] = NO_VALUES,
+        inputs: Mapping[str, Value] = NO_VALUES,
+    ) -> str:
+        self.values |= dict(values) | dict(inputs)
         self.log.append("enter")
+        return ""
 
     def exit_initialization(self) -> None:
         self._through(self.values)

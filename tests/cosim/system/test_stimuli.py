@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.scenario import StimulusEntry
-from evcosim.cosim.system.stimuli import stimulus
+from evcosim.cosim.system.stimuli import initial_value, stimulus
 from evcosim.cosim.system.toml import validate
 
 
@@ -21,6 +21,22 @@ def values(times, **entry):
 def test_table_is_linear_between_its_points_and_constant_outside():
     table = [[1.0, 10.0], [2.0, 20.0], [2.0, 0.0], [4.0, 8.0]]
     assert values([0, 1, 1.5, 2, 3, 4, 9], table=table) == pytest.approx([10, 10, 15, 0, 4, 8, 8])
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "hold"])
+def test_a_jump_at_the_start_comes_after_the_initialization(interpolation):
+    table = [[0.0, 1.0], [0.7, 2.0], [0.7, 3.0], [0.7, 5.0], [1.0, 6.0]]
+    entry = StimulusEntry.model_validate({"to": "u.x", "table": table, "interpolation": interpolation})
+    signal = stimulus(entry, "here", None)
+    assert [initial_value(signal, t) for t in (-1.0, 0.0, 0.7, 1.0)] == [1.0, 1.0, 2.0, 6.0]
+    assert signal(np.array([0.7])) == 5.0
+
+
+@given(st.floats(-10.0, 10.0))
+def test_in_the_initialization_a_stimulus_without_a_jump_has_its_value(time):
+    for entry in ({"constant": 3.0}, {"sine": {"amplitude": 1.0, "period": 2.0}}, {"ramp": {"slope": 2.0}}):
+        signal = stimulus(StimulusEntry.model_validate({"to": "u.x"} | entry), "here", None)
+        assert initial_value(signal, time) == signal(np.array([time]))[0]
 
 
 def test_table_that_holds():

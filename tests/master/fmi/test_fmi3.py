@@ -9,7 +9,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.interface import UnitInterface
-from evcosim.master.fmi.fmi3 import Fmi3Unit
+from evcosim.master.fmi.fmi3 import Fmi3Unit, resources_path
 from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.simulation import simulate
 from evcosim.master.unit import UnitError
@@ -105,3 +105,7 @@ def test_a_number_beyond_its_type_is_refused(tmp_path: Path, kind: str) -> None:
                 unit.set(f"{kind}_in", int(number))
     finally:
         unit.free()
+
+
+def test_the_path_of_the_resources_ends_with_a_separator() -> None:
+    assert resources_path(Path("/tmp/a b")) == b"/tmp/a b/resources/"

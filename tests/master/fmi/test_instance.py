@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.master.fmi.fmu import FmuError, read_fmu
-from evcosim.master.fmi.instance import Instance, resources_path
+from evcosim.master.fmi.instance import Instance
 from evcosim.master.fmi.loading import load_unit
 from evcosim.master.unit import UnitError
 from support.c_fmu import mixed_fmu
@@ -94,7 +94,3 @@ def test_a_library_that_cannot_be_loaded_is_named_with_the_reason(tmp_path: Path
     reason = "its library cannot be loaded: binaries/linux64/mixed.so: it is a library for Windows"
     with pytest.raises(FmuError, match=rf"wrong.fmu: {reason}"):
         load_unit(fmu, "a", fmu.interface)
-
-
-def test_the_path_of_the_resources_ends_with_a_separator() -> None:
-    assert resources_path(Path("/tmp/a b")) == b"/tmp/a b/resources/"
