@@ -34,7 +34,7 @@ _RESOLUTION_SCHEMA = {"anyOf": [{"type": "number", "minimum": 1}, {"const": "ide
 class BusSettings(BaseModel):
     """Settings of a CAN bus: how its senders turn values into raw values, and how it differs from its DBC."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     bitrate: int = Field(default=500_000, gt=0)
     """Bits a second."""

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ConfigError
+from ..reading import content
 from .database import Database, Message, Signal
 
 _MILLISECOND = Fraction(1, 1000)
@@ -37,10 +38,7 @@ def load_dbc(path: str | Path) -> Database:
 
 
 def _read(path: Path) -> str:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot read the CAN database: {error.strerror or error}") from error
+    data = content(path, "the CAN database ")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ConfigError
+from ..reading import content
 from ..writing import replacing
 from .variable import ResultVariable
 
@@ -63,11 +64,10 @@ def _jsonable(value: Any) -> Any:
 def _read(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
+    text = content(path)
     try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:
+        manifest = json.loads(text.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{path}: is not a JSON file: {error}") from error
     if not isinstance(manifest, dict):
         raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .toml import FileModel, OrText, text_as
+from .toml import FileModel, OrText, Pair, text_as
 
 
 class SignalSpec(FileModel):
@@ -41,7 +41,7 @@ class PanelSpec(FileModel):
     signals: list[Annotated[SignalSpec, text_as("name"), OrText()]] = Field(min_length=1)
     """The lines: names of variables, or tables of a name and how it is drawn."""
 
-    limits: tuple[float, float] | None = None
+    limits: Pair[float] | None = None
     """Lower and upper end of the axis, in `unit`; without them the axis fits the data."""
 
     @model_validator(mode="after")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 import re
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -25,6 +26,8 @@ _NEEDED = {
     "tuple_type": "a list is needed",
 }
 
+_LONGEST_INTEGER = 2000  # bits
+
 Place = Sequence[str | int]
 """Keys and indexes of entries, counted from 0, from the file's top to one value."""
 
@@ -43,6 +46,8 @@ def _sentence(problem: Any, data: Any, model: type[BaseModel]) -> str:
         return f"{path}: unknown key{chosen}{_nearest_key(place, data, model)}"
     if kind == "missing":
         return f"{path}: this {'value' if isinstance(place[-1], int) else 'key'} is needed{chosen}"
+    if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
+        return f"{path}: a number may be {sys.float_info.max:.3g} at most, not {_cut(value)}"
     rule = _NEEDED.get(kind) or problem["msg"].removeprefix("Value error, ")
     if kind in ("too_short", "too_long"):
         return f"{path}: {rule.replace('Dictionary', 'Table')}"  # which says how many there are
@@ -122,6 +127,8 @@ def shown(value: Any) -> str:
             return f"{{ {inner} }}" if inner else "{}"
         case datetime.date() | datetime.time():
             return value.isoformat()
+        case int() if value.bit_length() > _LONGEST_INTEGER:
+            return f"{value:#x}"  # Python writes no decimal number of more than some thousand digits
         case _:
             return repr(value)
 

@@ -12,7 +12,7 @@ from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
 from .system import Algorithm, System, VariableName
-from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, find, names_in, read_toml
+from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, Pair, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
 
@@ -77,7 +77,7 @@ class StimulusEntry(FiniteModel):
     constant: float | None = None
     """One value for the whole run."""
 
-    table: list[tuple[float, float]] | None = None
+    table: list[Pair[float]] | None = None
     """Pairs of time in s and value, in rising time; two pairs of one time are a jump. Before the first pair
     its value holds, after the last that of the last."""
 

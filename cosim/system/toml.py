@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -11,13 +12,16 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     GetJsonSchemaHandler,
     ValidationError,
     WithJsonSchema,
+    model_validator,
 )
 
 from ..errors import ConfigError, nearest
 from ..interface import Value
+from ..reading import content
 from .problems import sentences
 
 DATA = Path(__file__).parents[1] / "data"
@@ -32,10 +36,26 @@ def is_built_in(path: Path) -> bool:
 class FileModel(BaseModel):
     """Base of the tables of a file: an unknown key is an error, and nothing changes after reading.
 
+    A value has the type that its key declares: `"0.5"` and `true` are no numbers, 1 and "no" no truth values.
+
     The docstring under a key is its text in the JSON schema (`schema.py`) and in docs/system-file.md.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_of_numpy(cls, data: Any) -> Any:
+        """Return numbers and arrays of numpy, which Python code may give, as Python's own."""
+        if isinstance(data, Mapping):
+            return {key: _of_python(value) for key, value in data.items()}
+        return data
+
+
+def _of_python(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return [_of_python(each) for each in value]
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 class FiniteModel(FileModel):
@@ -54,6 +74,11 @@ _VALUE_SCHEMA = {"anyOf": [{"type": kind} for kind in ("number", "string", "bool
 
 FileValue = Annotated[Value, BeforeValidator(_plain), WithJsonSchema(_VALUE_SCHEMA)]
 """A value that a file gives to a variable, of which the FMU says later what type it has."""
+
+
+Number = TypeVar("Number", bound=float)
+Pair = Annotated[tuple[Number, Number], Field(strict=False)]
+"""Two numbers, of which a file makes a list."""
 
 
 def text_type(title: str, pattern: str) -> WithJsonSchema:
@@ -88,12 +113,42 @@ class OrText:
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
+_DEEPEST = 64
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{_PART}[ \t]*+\.[ \t]*+){{{_DEEPEST}}}")
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text. Raises tomllib.TOMLDecodeError, whatever is wrong with it."""
+    too_deep = tomllib.TOMLDecodeError(f"tables or lists are nested more than {_DEEPEST} deep")
+    if _DEEP_KEY.search(text):  # tomllib takes hours for a key of many thousand parts
+        raise too_deep
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError as error:  # of thousands of digits
+        raise tomllib.TOMLDecodeError("a number has too many digits") from error
+    except RecursionError as error:
+        raise too_deep from error
+    level: list[Any] = [data]
+    for _ in range(_DEEPEST):
+        level = [inner for each in level for inner in _values(each)]
+    if level:
+        raise too_deep
+    return data
+
+
+def _values(data: Any) -> Iterable[Any]:
+    return data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+
+
 def read_toml(path: Path, model: type[_Model]) -> _Model:
     """Return a TOML file as a `model`. Raises ConfigError naming file, key, rule and value."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
+        # as the text of a file, with the line ends of all systems
+        text = content(path).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        data = parsed(text)
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: is not UTF-8 text: {error.reason} at byte {error.start}") from error
     except tomllib.TOMLDecodeError as error:

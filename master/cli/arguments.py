@@ -25,8 +25,10 @@ def scalar(text: str) -> Value:
     """Return a value that is written as in TOML: true, false, a number, a quoted string; else the text."""
     import tomllib
 
+    from ...cosim.system.toml import parsed
+
     with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is plain text
-        value = tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+        value = parsed(f"value = {text}")["value"] if "\n" not in text else text
         if isinstance(value, bool | int | float | str):
             return value
     try:

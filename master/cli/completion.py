@@ -121,7 +121,7 @@ def _folders(system: str) -> list[Path]:
     try:
         name = tomllib.loads(Path(system).read_text(encoding="utf-8"))["name"]
         return [root / "scenarios" / name for root in (Path(system).parent, _DATA)]
-    except (OSError, ValueError, KeyError, TypeError):  # no file, no TOML, no name, or one that is no text
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):  # no file, no TOML, no name, no text
         return []
 
 

@@ -67,6 +67,8 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
     """Return the entries of an archive. Raises FmuError for one that cannot be read or breaks a rule."""
     if path.is_dir():
         raise FmuError(f"{path}: is a folder, not an FMU; an FMU is one file (zip its content)")
+    if path.exists() and not path.is_file():
+        raise FmuError(f"{path}: is no file, but a pipe or a device")
     try:
         with zipfile.ZipFile(path) as archive:
             found = tuple(archive.infolist())

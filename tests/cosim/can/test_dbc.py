@@ -120,7 +120,7 @@ class TestReading:
 
 class TestRefusals:
     def test_a_missing_file(self, tmp_path: Path) -> None:
-        with pytest.raises(ConfigError, match=r"none\.dbc: cannot read the CAN database: No such file"):
+        with pytest.raises(ConfigError, match=r"none\.dbc: the CAN database cannot be read: No such file"):
             load_dbc(tmp_path / "none.dbc")
 
     @pytest.mark.parametrize("text", ["", "hello", "time,speed\n0,1\n", "<xml/>"])

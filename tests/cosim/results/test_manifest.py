@@ -50,6 +50,8 @@ def test_without_a_file_nothing_is_known(tmp_path: Path) -> None:
     [
         ("{", "is not a JSON file"),
         ("\xff", "is not a JSON file"),
+        ('{"a": ' + "[" * 200_000, "is not a JSON file"),
+        ('{"a": ' + "1" * 5000 + "}", "is not a JSON file"),
         ("[]", "a JSON object is needed, not list"),
         ('{"variables": [{"nome": 1}]}', "'variables' does not describe the variables"),
         ('{"variables": [3]}', "'variables' does not describe the variables"),

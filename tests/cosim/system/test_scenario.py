@@ -67,7 +67,7 @@ def test_every_record_is_found_by_its_action():
         ({"action": "override"}, 'event 1.value: this key is needed with action = "override"'),
         ({"action": "bias"}, 'event 1.value: this key is needed with action = "bias"'),
         ({"action": "reset", "value": 1.0}, 'event 1.value: unknown key with action = "reset"'),
-        ({"action": "bias", "value": "x"}, "event 1.value: Input should be a valid number, unable to parse string as a number, not 'x'"),
+        ({"action": "bias", "value": "x"}, "event 1.value: Input should be a valid number, not 'x'"),
         ({"action": "reset", "time": -1}, "event 1.time: Input should be greater than or equal to 0, not -1"),
         ({"action": "reset", "variable": "ab"}, "event 1.variable: a variable is written unit.variable, not 'ab'"),
         ({"action": "bias", "value": 1, "bias": 2}, 'event 1.bias: unknown key with action = "bias"'),

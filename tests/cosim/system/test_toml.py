@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,18 +19,30 @@ from evcosim.cosim.system.toml import (
     FileModel,
     FileValue,
     FiniteModel,
+    Pair,
     data_file,
     find,
     is_built_in,
     names_in,
+    parsed,
     read_toml,
 )
+
+
+DEEP = "is not valid TOML: tables or lists are nested more than 64 deep"
 
 
 class Numbers(FiniteModel):
     """A table of finite numbers."""
 
     x: float = 0.0
+
+
+class Many(FiniteModel):
+    """Numbers of several types."""
+
+    pair: Pair[float]
+    count: int = 0
 
 
 class Values(FileModel):
@@ -61,6 +75,14 @@ def test_unknown_names_say_what_there_is(tmp_path: Path) -> None:
         (b"name = 1\nname = 2\n", "is not valid TOML: Cannot overwrite a value"),
         (b"name = '\xff'\n", "is not UTF-8 text: invalid start byte at byte 8"),
         (None, "cannot be read: "),
+        (b"name = " + b"1" * 5000, "is not valid TOML: a number has too many digits"),
+        (b"name = " + b"[" * 200_000, DEEP),
+        (b"name = " + b"{a=" * 200_000, DEEP),
+        (b"name = " + b"[" * 65 + b"]" * 65, DEEP),
+        (b"[" + b"a." * 200_000 + b"a]", DEEP),
+        (b"'a'." * 200_000 + b"a = 1", DEEP),
+        (b'"a" .\t' * 65 + b"a = 1", DEEP),
+        (b"[x." + b"a." * 40 + b"a]\ny." + b"b." * 40 + b"b = 1", DEEP),
     ],
 )
 def test_what_cannot_be_read_is_said(tmp_path: Path, content: bytes | None, said: str) -> None:
@@ -74,10 +96,30 @@ def test_what_cannot_be_read_is_said(tmp_path: Path, content: bytes | None, said
     assert str(caught.value).startswith(f"{path}: {said}")
 
 
+def test_what_is_long_and_not_deep_is_read() -> None:
+    long = ".".join("a" * 30)
+    text = (
+        f"# {'word. ' * 50}\n[{long}]\nx = {'[' * 30}1{']' * 30}\ny = '{'-' * 100_000}'\nz = 0x{'f' * 5000}\n"
+    )
+    inner = parsed(text)
+    for _ in range(30):
+        inner = inner["a"]
+    assert inner["z"] == 16**5000 - 1
+    assert parsed("x = 1e5000")["x"] == math.inf
+
+
 @pytest.mark.parametrize("x", [math.nan, math.inf, -math.inf])
 def test_a_finite_table_has_finite_numbers(x: float) -> None:
     with pytest.raises(ValidationError, match="finite number"):
         Numbers(x=x)
+
+
+@pytest.mark.parametrize("number", [np.float32(2.0), np.int64(2), np.float64(2.0)])
+def test_numbers_of_numpy_are_numbers(number: Any) -> None:
+    assert Numbers(x=number).x == 2.0
+    read = Many(pair=np.array([number, number]), count=np.int64(3))
+    assert (read.pair, read.count, type(read.pair[0])) == ((2.0, 2.0), 3, float)
+    assert Many(pair=[number, 1]).pair == (2.0, 1.0)
 
 
 @given(st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text())

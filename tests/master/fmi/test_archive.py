@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import stat
 import tempfile
@@ -113,6 +114,14 @@ def test_a_damaged_entry_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.Mo
     assert list(folder.iterdir()) == []
     with pytest.raises(FmuError, match="entry 'second' cannot be read: Bad CRC-32"):
         read_entry(path, "second")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a pipe in the file system is a thing of POSIX systems")
+def test_a_device_or_a_pipe_is_no_fmu(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.fmu")
+    for path in (tmp_path / "pipe.fmu", Path("/dev/zero")):
+        with pytest.raises(FmuError, match=f"{path}: is no file, but a pipe or a device"):
+            entries_of(path)
 
 
 def test_folders_of_an_archive_that_separates_them_otherwise(tmp_path: Path) -> None:

@@ -1,0 +1,41 @@
+"""Reading files that somebody else wrote: whole, but no device or pipe, which has no end, and none too large."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from .errors import ConfigError
+
+LARGEST = 64 << 20
+"""Bytes of a file that is read whole: a system, a scenario, a swap or a CAN database."""
+
+
+def require_file(path: Path, about: str = "") -> os.stat_result:
+    """Return the status of a file. Raises ConfigError naming the path, and `about`, for anything else.
+
+    A pipe or a device would be read without an end, or waited for.
+    """
+    start = f"{path}: {about}"
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
+        raise ConfigError(f"{start}cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    if stat.S_ISDIR(found.st_mode):
+        raise ConfigError(f"{start}cannot be read: it is a folder, not a file")
+    if not stat.S_ISREG(found.st_mode):
+        raise ConfigError(f"{start}cannot be read: it is no file, but a pipe or a device")
+    return found
+
+
+def content(path: Path, about: str = "") -> bytes:
+    """Return the bytes of a file of at most LARGEST. Raises ConfigError as `require_file` does."""
+    size = require_file(path, about).st_size
+    if size > LARGEST:
+        raise ConfigError(f"{path}: {about}has {size} bytes; at most {LARGEST} are read")
+    try:
+        with path.open("rb") as file:
+            return file.read(LARGEST)
+    except OSError as error:
+        raise ConfigError(f"{path}: {about}cannot be read: {error.strerror or error}") from error

@@ -1,0 +1,39 @@
+"""Files are read; what has no end, or is none, is refused at once."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim import reading
+from evcosim.cosim.errors import ConfigError
+
+
+def test_a_file_is_read_whole(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(b"\0text\r\n" * 1000)
+    assert reading.content(path) == b"\0text\r\n" * 1000
+
+
+def test_what_is_no_file_is_refused_naming_it(tmp_path: Path) -> None:
+    refused = {tmp_path: "it is a folder", tmp_path / "none": "No such file", Path("a\0b"): "null byte"}
+    if os.name == "posix":
+        os.mkfifo(tmp_path / "pipe")  # of which nobody writes the other end
+        refused |= {tmp_path / "pipe": "a pipe or a device", Path("/dev/zero"): "a pipe or a device"}
+    for path, why in refused.items():
+        with pytest.raises(ConfigError) as caught:
+            reading.content(path, "the table ")
+        assert str(caught.value).startswith(f"{path}: the table cannot be read: ")
+        assert why in str(caught.value)
+
+
+def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "LARGEST", 10)
+    path = tmp_path / "file"
+    path.write_bytes(b"0123456789")
+    assert reading.content(path) == b"0123456789"
+    path.write_bytes(b"0123456789x")
+    with pytest.raises(ConfigError, match=r"file: has 11 bytes; at most 10 are read"):
+        reading.content(path)
