@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import NamedTuple, TextIO
 
 from .errors import ConfigError, counted
+from .reading import require_file
 
 SEPARATORS = (";", "\t", ",")
 """In the order in which they are tried: a ';' or a tab that stands in each line is no part of a name."""
@@ -58,6 +59,7 @@ class Comments:
 
 def encoding_of(path: Path) -> str:
     """Return Python's name of the encoding of a file. Raises ConfigError for one that cannot be read."""
+    require_file(path)
     try:
         with path.open("rb") as file:
             first = file.read(4)

@@ -1,4 +1,4 @@
-"""Reading files that somebody else wrote: whole, but no device or pipe, which has no end, and none too large."""
+"""Reading files that somebody else wrote: no device or pipe, which has no end, and none that is too large."""
 
 from __future__ import annotations
 

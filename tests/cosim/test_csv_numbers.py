@@ -149,7 +149,7 @@ def test_a_mistake_is_named_with_its_place(text: bytes, said: str, tmp_path: Pat
 def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"none.csv: cannot be read: No such file or directory"):
         CsvFile.of(tmp_path / "none.csv")
-    with pytest.raises(ConfigError, match="cannot be read: Is a directory"):
+    with pytest.raises(ConfigError, match="cannot be read: it is a folder, not a file"):
         CsvFile.of(tmp_path)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -53,3 +54,11 @@ def test_the_header_says_the_lines_above_the_first_row(tmp_path: Path) -> None:
     path = tmp_path / "x.csv"
     path.write_text('# a\n\n"time\n[s]";v\n0;1\n')
     assert read_header(path, "utf-8") == Header(("time\n[s]", "v"), 4, ";")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a pipe in the file system is a thing of POSIX systems")
+def test_a_device_or_a_pipe_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.csv")
+    for path in (tmp_path / "pipe.csv", Path("/dev/zero")):
+        with pytest.raises(ConfigError, match=f"{path}: cannot be read: it is no file, but a pipe"):
+            encoding_of(path)

@@ -28,7 +28,6 @@ from evcosim.cosim.system.toml import (
     read_toml,
 )
 
-
 DEEP = "is not valid TOML: tables or lists are nested more than 64 deep"
 
 
