@@ -13,6 +13,7 @@ from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
 from ..cosim.system.toml import is_built_in
 from .engine.engine import Engine
+from .fmi.tolerance import tolerance_of
 from .prepare import Prepared
 
 
@@ -50,6 +51,7 @@ def manifest(
 
 def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str, Any]:
     fmu = prepared.fmus[unit.name]
+    tolerance, origin = tolerance_of(fmu, prepared.system.file.units[unit.name].tolerance)
     return {
         "fmu": unit.fmu,
         "file": fmu.path.name,
@@ -58,6 +60,8 @@ def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str,
         "period": unit.every * prepared.plan.experiment.step_size,
         "substeps": unit.substeps,
         "interface": fmu.interface_type,
+        "tolerance": tolerance,
+        "tolerance_from": origin,
         "isolation": isolation,
         "map": prepared.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
     }

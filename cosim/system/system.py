@@ -156,7 +156,8 @@ class UnitEntry(FileModel):
     """The interface that is used of an FMU that has both; without it Co-Simulation."""
 
     tolerance: float | None = Field(default=None, gt=0.0, lt=1.0)
-    """Relative tolerance of the solver; without it the FMU's own, else 1e-6 under Model Exchange."""
+    """Relative tolerance of the solver, ours in Model Exchange and the FMU's in Co-Simulation; without it the
+    one that the FMU declares, else 1e-6 in Model Exchange and none in Co-Simulation."""
 
     strict: bool = False
     """Refuse the FMU when its description has defects, also such that could be mended."""

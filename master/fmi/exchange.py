@@ -11,7 +11,6 @@ the outputs there are those after it.
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import functools
 import math
@@ -31,7 +30,6 @@ from .fmu import Fmu
 from .instance import Instance
 from .transfer import Call, one_after_the_other
 
-_TOLERANCE = 1e-6
 _ABSOLUTE = 0.01  # of the relative tolerance times the nominal value (FMI 2.0, section 2.2.7)
 _ITERATIONS = 1000  # for new discrete states, in one event
 _EVENTS = 10_000  # in one step
@@ -67,18 +65,10 @@ class ModelExchange(Instance):
         self._inputs: dict[bool, list[Place]] = {True: [], False: []}  # continuous ones, discrete ones
         self._held: dict[bool, list[float]] = {True: [], False: []}  # their values, as last given to the FMU
         super().__init__(fmu, name, interface, tolerance)
+        assert self.tolerance is not None  # in Model Exchange there is one
+        self._relative: float = self.tolerance
 
     # ---- before the steps
-
-    @property
-    def tolerance(self) -> float:
-        """The relative tolerance of the solver: the system's, else the FMU's own, else 1e-6."""
-        if self._tolerance is not None:
-            return self._tolerance
-        with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
-            declared = float(getattr(self.fmu.description.defaultExperiment, "tolerance", None))  # type: ignore[arg-type] # None is a TypeError
-            return declared if 0.0 < declared < 1.0 else _TOLERANCE
-        return _TOLERANCE
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Make the calls of a turn. Discrete inputs, which only events may set, have calls of their own."""
@@ -135,7 +125,7 @@ class ModelExchange(Instance):
     def _make_solver(self) -> None:
         derivatives = self._evaluating(self._derivatives, self._nx)
         roots = self._evaluating("GetEventIndicators", self._nz)
-        self._solver = solver = Cvode(self._nx, self._nz, derivatives, roots, self.tolerance)
+        self._solver = solver = Cvode(self._nx, self._nz, derivatives, roots, self._relative)
         self._get_states = self._of_all("GetContinuousStates", solver.x)
         self._put_states = self._of_all("SetContinuousStates", solver.x)
         self._get_nominals = one_after_the_other()
@@ -184,7 +174,7 @@ class ModelExchange(Instance):
         """Set the absolute tolerances, which follow from the nominal values of the states."""
         solver.absolute[:] = [1.0] * len(solver.absolute)
         self._get_nominals()
-        factor = _ABSOLUTE * self.tolerance
+        factor = _ABSOLUTE * self._relative
         solver.absolute[:] = [factor * (abs(x) if math.isfinite(x) and x else 1.0) for x in solver.absolute]
 
     def _why_not(self) -> str:

@@ -37,6 +37,7 @@ from .log import STATUS, UnitLog
 from .refusal import why_refused
 from .state import States
 from .step_status import beside
+from .tolerance import tolerance_of
 from .transfer import Call, Copy, StepCall, Transfer, one_after_the_other
 from .types import BOOLEAN, FmiType, fmi_type
 
@@ -70,7 +71,8 @@ class Instance:
         tolerance: float | None = None,
     ) -> None:
         check_runnable(fmu)
-        self._tolerance = tolerance
+        self.tolerance, _ = tolerance_of(fmu, tolerance)
+        """The relative tolerance that the FMU, or the solver, gets; None: none."""
         self.name = name
         self.fmu = fmu
         self.interface = interface or fmu.interface
@@ -162,11 +164,6 @@ class Instance:
     @property
     def warnings(self) -> int:
         return self.log.warnings
-
-    @property
-    def tolerance(self) -> float | None:
-        """The relative tolerance that the FMU gets; None: none."""
-        return self._tolerance
 
     # ---- before the steps
 

@@ -17,6 +17,7 @@ _VARIABLES = [
     ("y", 6, "output", "continuous", "Real", "", "u"),
     ("h", 7, "local", "continuous", "Real", "0.5", ""),
     ("der_h", 8, "local", "continuous", "Real", "", ""),
+    ("told", 9, "output", "continuous", "Real", "", ""),
     ("n", 10, "input", "discrete", "Integer", "0", ""),
     ("n_entered", 11, "output", "discrete", "Integer", "", ""),
     ("b", 20, "input", "discrete", "Boolean", "false", ""),
@@ -26,11 +27,19 @@ _STATE, _DERIVATIVE = 7, 8  # places above
 SHOWN = ("entered", "within", "left", "gain", "y", "n_entered", "b_entered")
 
 
-def initial_fmu(path: Path, fmi: int, kind: str = "CS", resets: bool = False, refuses: int = 0) -> Path:
-    """Write the unit in FMI 1.0, 2.0 or 3.0; `kind` is "CS" or "ME", `refuses` a status of early inputs."""
+def initial_fmu(
+    path: Path, fmi: int, kind: str = "CS", resets: bool = False, refuses: int = 0, tolerance: str = ""
+) -> Path:
+    """Write the unit in FMI 1.0, 2.0 or 3.0; `kind` is "CS" or "ME".
+
+    `refuses` is a status of early inputs, `tolerance` the declared one.
+    """
     flags = (f"-DFMI={fmi}", f"-DRESETS={int(resets)}", f"-DREFUSES={refuses}")
     name = {"CS": "CoSimulation", "ME": "ModelExchange"}[kind]
     described = {1: _describe_1, 2: _describe_2, 3: _describe_3}[fmi](name)
+    if tolerance:
+        experiment = f'<DefaultExperiment tolerance="{tolerance}"/><ModelVariables>'
+        described = described.replace("<ModelVariables>", experiment)
     return compile_fmu(path, SOURCES / "initial.c", described, "initial", fmi, flags)
 
 

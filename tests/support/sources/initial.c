@@ -1,6 +1,6 @@
 /* A unit that shows what it sees in its initialization, for FMI 1.0, 2.0 and 3.0 (-DFMI=1, 2 or 3), Co-Simulation
    and Model Exchange. Its outputs are what the input u was when it entered the initialization, when it was set
-   within (-1: it was not), when it left, and what the parameter p was when it entered; y = p u, and h, whose
+   within (-1: it was not), when it left, what the parameter p was when it entered, and the tolerance told (-1: none); y = p u, and h, whose
    start value is given, sums up the steps times u in Co-Simulation. In FMI 1.0, which has no such mode, entering and leaving are one.
    -DRESETS=1     the setup of the experiment puts p to 1
    -DREFUSES=s    u set before the initialization returns status s, after which no call does anything but free
@@ -19,7 +19,7 @@
 #endif
 #define EXPORT __attribute__((visibility("default")))
 enum { ERROR = 3 };
-enum { U, P, ENTERED, WITHIN, LEFT, GAIN, Y, H, N = 10, N_ENTERED, B = 20, B_ENTERED, SIZE };
+enum { U, P, ENTERED, WITHIN, LEFT, GAIN, Y, H, DER_H, TOLD, N = 10, N_ENTERED, B = 20, B_ENTERED, SIZE };
 enum { BEFORE, IN, AFTER };
 typedef unsigned int Reference;
 
@@ -30,11 +30,12 @@ typedef struct {
 
 static Unit *make(void) {
     Unit *c = calloc(1, sizeof(Unit));
-    c->r[U] = 7, c->r[P] = 1, c->r[H] = 0.5, c->r[WITHIN] = -1;
+    c->r[U] = 7, c->r[P] = 1, c->r[H] = 0.5, c->r[WITHIN] = c->r[TOLD] = -1;
     return c;
 }
 
-static int set_up(Unit *c) {
+static int set_up(Unit *c, int defined, double tolerance) {
+    if (defined) c->r[TOLD] = tolerance;
     if (RESETS) c->r[P] = 1;
     return c->broken ? ERROR : 0;
 }
@@ -117,14 +118,14 @@ typedef struct {
 
 EXPORT void *F(InstantiateSlave)(const char *n, const char *g, const char *l, const char *m, double t, char v,
                                  char i, Callbacks k, char o) { return make(); }
-EXPORT int F(InitializeSlave)(void *c, double start, char known, double stop) { return set_up(c) | enter(c) | leave(c); }
+EXPORT int F(InitializeSlave)(void *c, double start, char known, double stop) { return set_up(c, 0, 0) | enter(c) | leave(c); }
 EXPORT int F(DoStep)(void *c, double t, double h, char n) { return step(c, h); }
 EXPORT int F(TerminateSlave)(void *c) { return 0; }
 EXPORT void F(FreeSlaveInstance)(void *c) { free(c); }
 #elif FMI == 2
 typedef struct { Bool again, ends, nominals, values, defined; double next; } Info;
 EXPORT void *fmi2Instantiate(const char *n, int k, const char *g, const char *r, void *f, Bool v, Bool l) { return make(); }
-EXPORT int fmi2SetupExperiment(void *c, Bool d, double t, double start, Bool s, double stop) { return set_up(c); }
+EXPORT int fmi2SetupExperiment(void *c, Bool d, double t, double start, Bool s, double stop) { return set_up(c, d, t); }
 EXPORT int fmi2EnterInitializationMode(void *c) { return enter(c); }
 EXPORT int fmi2DoStep(void *c, double t, double h, Bool n) { return step(c, h); }
 EXPORT int fmi2NewDiscreteStates(void *c, Info *info) { return memset(info, 0, sizeof *info), status(c); }
@@ -132,7 +133,7 @@ EXPORT int fmi2GetDerivatives(void *c, double *d, size_t n) { return d[0] = 0, s
 #else
 EXPORT void *fmi3InstantiateCoSimulation(const char *n, const char *t, const char *r, Bool v, Bool l, Bool a, Bool b, const Reference *q, size_t m, void *e, void *f, void *g) { return make(); }
 EXPORT void *fmi3InstantiateModelExchange(const char *n, const char *t, const char *r, Bool v, Bool l, void *e, void *f) { return make(); }
-EXPORT int fmi3EnterInitializationMode(void *c, Bool d, double t, double start, Bool s, double stop) { return set_up(c) | enter(c); }
+EXPORT int fmi3EnterInitializationMode(void *c, Bool d, double t, double start, Bool s, double stop) { return set_up(c, d, t) | enter(c); }
 EXPORT int fmi3DoStep(void *c, double t, double h, Bool s, Bool *event, Bool *ends, Bool *early, double *last) {
     *event = *ends = *early = 0, *last = t + h;
     return step(c, h);

@@ -1,0 +1,30 @@
+"""The relative tolerance that a unit gets: the system's, else the FMU's own, else that of our solver."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Literal
+
+from .fmu import Fmu
+
+Origin = Literal["system", "fmu", "default", "none"]
+"""Who says the tolerance: the system file, the FMU's DefaultExperiment, our solver, or nobody."""
+
+_OF_SOLVER = 1e-6
+
+
+def tolerance_of(fmu: Fmu, wanted: float | None) -> tuple[float | None, Origin]:
+    """Return the relative tolerance for an FMU and who says it; `wanted` is the system's, if it says one.
+
+    None where no unit gets one: a slave of FMI 1.0, and one in Co-Simulation whose FMU declares none.
+    """
+    if wanted is not None:
+        return wanted, "system"
+    solved = fmu.interface_type == "model_exchange"
+    if fmu.description.fmiVersion.startswith("1") and not solved:
+        return None, "none"
+    with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
+        declared = float(getattr(fmu.description.defaultExperiment, "tolerance", None))  # type: ignore[arg-type] # None is a TypeError
+        if 0.0 < declared < 1.0:
+            return declared, "fmu"
+    return (_OF_SOLVER, "default") if solved else (None, "none")
