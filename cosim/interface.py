@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from .errors import ConfigError, nearest
-from .units import UnitOfMeasure
+from .units.measure import UnitOfMeasure
 
 Value = bool | int | float | str
 InterfaceType = Literal["co_simulation", "model_exchange"]
@@ -24,6 +24,7 @@ class VariableInfo:
     `items` are the (value, name) pairs of an enumeration.
     `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
     `inverted`: the system's value is the FMU's with the other sign.
+    `difference`: it is one of two absolute quantities (FMI: relativeQuantity), so that no offset converts it.
     """
 
     name: str
@@ -40,6 +41,7 @@ class VariableInfo:
     depends_initially: tuple[str, ...] | None = ()
     declared: str = ""
     inverted: bool = False
+    difference: bool = False
 
     @property
     def declared_name(self) -> str:

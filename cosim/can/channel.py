@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
-from ..units import Affine
+from ..units.measure import Affine
 from .bus_settings import BusSettings
 from .database import Message, Signal
 from .quantization import SignalOperation, decode, operation, quantize, reference

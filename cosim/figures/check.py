@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from .. import units
 from ..errors import ConfigError, nearest
 from ..results import metrics
 from ..results.results import ResultVariable
@@ -12,6 +11,9 @@ from ..system.figure_spec import FigureSpec
 from ..system.scenario import Scenario
 from ..system.selection import figure_spec, metric_specs
 from ..system.system import System
+from ..units.conversion import conversion
+from ..units.definition import defined
+from ..units.measure import Affine
 
 
 def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:
@@ -33,15 +35,15 @@ def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> Re
     return variables[name]
 
 
-def panel_conversion(variable: ResultVariable, unit: str, place: str) -> units.Affine:
+def panel_conversion(variable: ResultVariable, unit: str, place: str) -> Affine:
     """Return the map from the variable's unit to the panel's. Without a declared unit nothing is converted.
 
     Raises ConfigError naming `place` where they measure different quantities.
     """
     if variable.unit in ("", unit):
-        return units.Affine()
+        return Affine()
     try:
-        return units.conversion(units.defined(variable.unit), units.defined(unit))
+        return conversion(defined(variable.unit), defined(unit))
     except ConfigError as error:
         signal = f"{place}: '{variable.name}' [{variable.unit}]"
         if not unit:

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from .. import units
 from ..errors import ConfigError
 from ..results.results import Results, ResultVariable
 from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
+from ..units.definition import defined
 from .check import panel_conversion
 
 # Quantities that the units of this field measure, for axes that nobody has named.
@@ -146,7 +146,7 @@ def _group(results: Results, variable: ResultVariable) -> object:
         decade = math.floor(math.log10(size)) if 0.0 < size < math.inf else 0
         return (variable.unit, decade if variable.unit == "" else 0)
     try:
-        unit = units.defined(variable.unit)
+        unit = defined(variable.unit)
     except ConfigError:
         return variable.unit
     return unit.exponents

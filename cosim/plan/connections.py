@@ -14,10 +14,11 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.system import Algorithm, Connection, Experiment, System
 from ..system.toml import data_file
-from ..units import Affine, UnitOfMeasure, conversion, defined
+from ..units.measure import Affine
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
+from .unit_maps import End, check_texts, unit_map, with_unit
 from .unit_plan import Route
 
 
@@ -99,7 +100,10 @@ def connect(
     """
     work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), every, ideal)
     for name, entry in system.file.buses.items():
-        work.databases[name] = load_dbc(data_file(entry.dbc, system.path, f"{system.path}: buses.{name}.dbc"))
+        database = load_dbc(data_file(entry.dbc, system.path, f"{system.path}: buses.{name}.dbc"))
+        work.databases[name] = database
+        texts = {signal.unit for message in database.messages.values() for signal in message.signals.values()}
+        work.network.warnings += check_texts(entry.units, texts, f"{system.path}: buses.{name}.units")
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)
@@ -148,10 +152,7 @@ def _direct(work: _Connector, source: tuple[str, str], sink: tuple[str, str], pl
     """Resolve a connection without a bus: a route within the step."""
     sender, receiver = _variable(work, source), _variable(work, sink)
     _check_types(source, sender, sink, receiver, place)
-    map_ = _unit_map(
-        work, (".".join(source), sender.unit, _defined_by(work, source)),
-        (".".join(sink), receiver.unit, _defined_by(work, sink)), place,
-    )  # fmt: skip # two triples side by side
+    map_ = _map(work, _end(work, source), _end(work, sink), place)
     slot = work.slots.valid[sink]
     work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
     work.network.routes[sink[0]].append(Route(work.slots.source(*source, work.every[source[0]]), slot, map_))
@@ -178,14 +179,14 @@ def _over_bus(
     if signal.name in senders:
         raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
     senders[signal.name] = connection.source
-    on_bus: _End = (connection.via or "", signal.unit, {})
-    sender = _variable(work, source)
-    to_bus = _unit_map(work, (connection.source, sender.unit, _defined_by(work, source)), on_bus, place)
+    sender = _end(work, source)
+    on_bus = End(connection.via or "", signal.unit, difference=sender.difference, bus=bus)
+    to_bus = _map(work, sender, on_bus, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
     ends = []
     for sink in sinks:
         receiver = _variable(work, sink)
-        to_receiver = _unit_map(work, on_bus, (".".join(sink), receiver.unit, _defined_by(work, sink)), place)
+        to_receiver = _map(work, on_bus, _end(work, sink), place)
         if receiver.type != "Real" and not (
             float(signal.scale).is_integer() and float(signal.offset).is_integer()
         ):
@@ -229,7 +230,7 @@ def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signa
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
     message = work.databases[bus].require(message_name, place)
-    return message, message.require(signal_name, place)
+    return message, with_unit(message.require(signal_name, place), work.system.file.buses[bus].units)
 
 
 def _message(
@@ -289,45 +290,15 @@ def _variable(work: _Connector, name: tuple[str, str]) -> VariableInfo:
     return work.interfaces[name[0]].variables[name[1]]
 
 
-def _defined_by(work: _Connector, name: tuple[str, str]) -> dict[str, UnitOfMeasure]:
-    return work.interfaces[name[0]].units_of_measure
+def _end(work: _Connector, name: tuple[str, str]) -> End:
+    """Return a variable as an end of a connection."""
+    v = _variable(work, name)
+    return End(".".join(name), v.unit, work.interfaces[name[0]].units_of_measure, v.difference)
 
 
-_End = tuple[str, str, Mapping[str, UnitOfMeasure]]
-"""Of one end of a connection: its name, its unit of measure and the definitions of its own FMU."""
-
-
-def _unit_map(work: _Connector, source: _End, target: _End, place: str) -> Affine:
-    """Return the map from the unit of `source` to that of `target`; the identity where one has none.
-
-    Each FMU's own definition comes first, then those of the others (a DBC defines none), then pint's. Raises
-    ConfigError, which starts with `place`, when they measure different quantities.
-    """
-    (source_name, source_unit, source_defs), (target_name, target_unit, target_defs) = source, target
-    if source_unit == target_unit and not (source_defs and target_defs):
-        return Affine()
+def _map(work: _Connector, source: End, target: End, place: str) -> Affine:
     others = [interface.units_of_measure for interface in work.interfaces.values()]
-    if not source_unit or not target_unit:
-        _note_missing_unit(work, source_name, source_unit, target_name, target_unit)
-        return Affine()
-    try:
-        return conversion(
-            defined(source_unit, source_defs, *others), defined(target_unit, target_defs, *others)
-        )
-    except ConfigError as error:
-        raise ConfigError(
-            f"{place}: {source_name} [{source_unit}] cannot feed {target_name} [{target_unit}]: {error}"
-        ) from error
-
-
-def _note_missing_unit(
-    work: _Connector, source_name: str, source_unit: str, target_name: str, target_unit: str
-) -> None:
-    """Add a warning of an end without a unit of measure, unless the other end measures nothing either."""
-    if {source_unit, target_unit} <= {"", "1"}:
-        return
-    bare, other = (source_name, target_unit) if not source_unit else (target_name, source_unit)
-    work.network.warnings.append(f"{bare} declares no unit of measure; it is taken as [{other}]")
+    return unit_map(source, target, others, place, work.network.warnings)
 
 
 def _check_types(

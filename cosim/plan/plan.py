@@ -23,7 +23,7 @@ from ..results.results import ResultVariable
 from ..system.scenario import Event
 from ..system.stimuli import TimeFunction, initial_value
 from ..system.system import Algorithm, Experiment
-from ..units import Affine
+from ..units.measure import Affine
 from .unit_plan import UnitPlan
 
 

@@ -16,12 +16,13 @@ from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
-from ..units import Affine, conversion, defined
+from ..units.measure import Affine
 from .connections import Network, connect
 from .events import scheduled
 from .plan import Drive, InputPlan, Plan
 from .slots import Slots, allot
 from .steps import steps_in
+from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
 
 _MOST_VALUES = 2**31
@@ -269,10 +270,9 @@ def _drives(
         map_ = Affine()
         if entry.unit is not None:
             known = interface.units_of_measure
-            try:
-                map_ = conversion(defined(entry.unit, known), defined(variable.unit, known))
-            except ConfigError as error:
-                raise ConfigError(f"{place}.unit: {error}") from error
+            given = End(f"the stimulus of {entry.to}", entry.unit, known, variable.difference)
+            target = End(entry.to, variable.unit, known, variable.difference)
+            map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
         slot = slots.valid[unit, name]
         network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), f"{place}.to")
         drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path), map_))

@@ -10,7 +10,7 @@ import dataclasses
 from typing import TYPE_CHECKING, Literal
 
 from ..interface import UnitInterface, VariableInfo
-from ..units import Affine
+from ..units.measure import Affine
 
 if TYPE_CHECKING:
     from ..interface import Value

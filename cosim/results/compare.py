@@ -18,9 +18,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .. import units
 from ..errors import ConfigError
 from ..row_store import Array
+from ..units.conversion import conversion
+from ..units.definition import defined
+from ..units.measure import Affine
 from .results import Results, ResultVariable
 
 _SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
@@ -208,13 +210,13 @@ def _without_values(name: str, unit: str, remark: str) -> VariableDifference:
     return VariableDifference(name, unit, math.nan, math.nan, math.nan, math.nan, equal=False, remark=remark)
 
 
-def _conversion(source: str, target: str) -> tuple[units.Affine, str]:
+def _conversion(source: str, target: str) -> tuple[Affine, str]:
     """Return the map between two names of units, and a remark where one side declares none."""
     if source == target:
-        return units.Affine(), ""
+        return Affine(), ""
     if not source or not target:
-        return units.Affine(), f"[{source or target}] on one side only: compared as numbers"
-    return units.conversion(units.defined(source), units.defined(target)), ""
+        return Affine(), f"[{source or target}] on one side only: compared as numbers"
+    return conversion(defined(source), defined(target)), ""
 
 
 def _differences(x: Array, y: Array) -> Array:

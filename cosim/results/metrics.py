@@ -30,11 +30,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from .. import units
 from ..errors import ConfigError, nearest
 from ..row_store import Array
 from ..system.metric_spec import MetricSpec, Reduction
-from ..units import BASE_UNITS, UnitOfMeasure
+from ..units.conversion import conversion
+from ..units.definition import defined
+from ..units.measure import BASE_UNITS, Affine, UnitOfMeasure
 from .recording import Recording
 from .variable import ResultVariable
 
@@ -131,24 +132,24 @@ class _NoValueError(ConfigError):
 
 def _unit(variable: ResultVariable) -> UnitOfMeasure:
     if variable.unit:
-        return units.defined(variable.unit)
+        return defined(variable.unit)
     if variable.type == "Real":
         raise _NoValueError(f"'{variable.name}' declares no unit of measure")
-    return units.defined("1")
+    return defined("1")
 
 
-def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> units.Affine:
+def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Affine:
     """Return the map from the reductions' numbers, in the signals' units, to the metric's unit."""
     if spec.per is None and spec.reduce in _VALUES and _same(spec.unit, variables[spec.signal].unit):
         _to_signal(spec, variables)  # raises where they measure different quantities
-        return units.Affine()  # nothing to convert, so the unit may be one that nobody defines
-    source, target = _outcome(spec, variables), units.defined(spec.unit)
+        return Affine()  # nothing to convert, so the unit may be one that nobody defines
+    source, target = _outcome(spec, variables), defined(spec.unit)
     if spec.per is not None:
         source = _quotient(source, _outcome(spec.per, variables))
     elif spec.minus is not None or spec.reduce == "range":
         # a difference of temperatures: 0 of it is 0 in every unit
         source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
-    convert = units.conversion(source, target)
+    convert = conversion(source, target)
     if convert.offset and spec.reduce == "rms":
         raise ConfigError(f"an rms in [{source.name}] cannot be given in [{target.name}]: their zeros differ")
     return convert
@@ -162,28 +163,28 @@ def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOf
     """Return the unit of measure of a reduction's number."""
     _to_signal(part, variables)  # raises where they measure different quantities
     if part.reduce in _SHARES or part.reduce == "changes":
-        return units.defined("1")
+        return defined("1")
     if part.reduce in _TIMES:
-        return units.defined("s")
+        return defined("s")
     unit = _unit(variables[part.signal])
     if part.reduce in ("integral", "integral_above"):
         if unit.offset:
             raise ConfigError(f"an integral of [{unit.name}] has no meaning: its zero is arbitrary")
-        return _combined(f"{unit.name}.s", unit, units.defined("s"), 1)
+        return _combined(f"{unit.name}.s", unit, defined("s"), 1)
     return unit
 
 
-def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[units.Affine, float]:
+def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tuple[Affine, float]:
     """Return the map from the unit of `minus` to the signal's, and the threshold (0: none) in the latter."""
     signal = variables[part.signal]
-    other, threshold = units.Affine(), part.threshold or 0.0
+    other, threshold = Affine(), part.threshold or 0.0
     if part.minus is not None and variables[part.minus].unit != signal.unit:
-        other = units.conversion(_unit(variables[part.minus]), _unit(signal))
+        other = conversion(_unit(variables[part.minus]), _unit(signal))
     if part.threshold_unit is not None and part.threshold_unit != signal.unit:
-        source, target = units.defined(part.threshold_unit), _unit(signal)
+        source, target = defined(part.threshold_unit), _unit(signal)
         if part.minus is not None:  # a threshold of a difference has no zero of its own
             source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
-        threshold = units.conversion(source, target)(threshold)
+        threshold = conversion(source, target)(threshold)
     return other, threshold
 
 
@@ -201,7 +202,6 @@ def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitO
         name,
         exponents=tuple(x + sign * y for x, y in pairs),
         factor=a.factor * b.factor**sign,
-        angle_known=a.angle_known and b.angle_known,
     )
 
 
@@ -244,7 +244,7 @@ Piece = tuple[Array, Array]
 """Times [s] and values of a signal, shapes (n,); it begins with the last row of the piece before."""
 
 
-def _pieces(results: Recording, part: Reduction, first: int, other: units.Affine) -> Iterator[Piece]:
+def _pieces(results: Recording, part: Reduction, first: int, other: Affine) -> Iterator[Piece]:
     """Yield the pieces of the reduced signal. Raises _NoValueError for a value that is not finite."""
     for time, values in results.pieces(part.signals, first, overlap=1):
         x = values[:, 0]

@@ -17,7 +17,7 @@ from ..system.metric_spec import MetricSpec
 from ..system.problems import spelled
 from ..system.scenario import Scenario
 from ..system.system import Connection, MapEntry, System, UnitEntry
-from ..units import defined
+from ..units.definition import defined
 
 _FROM: dict[str, tuple[str, ...]] = {
     "input": ("input",),

@@ -14,7 +14,8 @@ from typing import Literal
 from ..errors import ConfigError
 from ..interface import UnitInterface, VariableInfo
 from ..system.system import MapEntry, UnitEntry
-from ..units import conversion, defined
+from ..units.conversion import conversion
+from ..units.definition import defined
 from .name_likeness import likeness, unit_in
 from .requirements import ROLES, Requirement, Role
 

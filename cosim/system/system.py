@@ -179,6 +179,9 @@ class _BusFile(FileModel):
 class BusEntry(BusSettings, _BusFile):
     """A CAN bus: its database and its settings."""
 
+    units: dict[str, str] = Field(default={}, examples=[{"Unit_Volt": "V"}])
+    """Units of measure for texts of the DBC that are not known, or that say something else there."""
+
 
 class Connection(FiniteModel):
     """One output to one or more inputs, over a bus signal or directly; units of measure are converted."""

@@ -9,7 +9,7 @@ from .console import number, print_fields, print_table, print_title
 if TYPE_CHECKING:
     from ...cosim.plan.plan import MessagePlan, Plan
     from ...cosim.system.system import System
-    from ...cosim.units import Affine
+    from ...cosim.units.measure import Affine
     from ..prepare import Prepared
 
 

@@ -14,6 +14,7 @@ _CAPABILITIES = {
 }
 _OF_TYPES = {"name", "description", "quantity", "unit", "displayUnit", "relativeQuantity", "min", "max"}
 _OF_TYPES |= {"nominal", "unbounded", "value"}
+_EXPONENT = r"\s*[+-]?\d{1,3}\s*"
 _EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -38,7 +39,7 @@ def _mend_units(root: Any) -> list[str]:
     """Leave out the definition of a unit of measure whose factor is no number: any other would be a guess."""
     defects = []
     for base in root.findall("UnitDefinitions/Unit/BaseUnit"):
-        wrong = [n for n in _EXPONENTS if not _is_number(base.get(n, "0"), _WHOLE)]
+        wrong = [n for n in _EXPONENTS if not _is_number(base.get(n, "0"), _EXPONENT)]
         wrong += [n for n in ("factor", "offset") if not _is_number(base.get(n, "1"))]
         if wrong:
             unit = base.getparent()

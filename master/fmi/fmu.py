@@ -12,7 +12,7 @@ from typing import Any
 
 from ...cosim.errors import counted, nearest
 from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
-from ...cosim.units import BASE_UNITS, UnitOfMeasure
+from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
 from .types import ENUMERATION, INTEGER, REAL, FmiType, Kind, fmi_type
@@ -251,6 +251,7 @@ def _variable(
         depends=depends.get((v.alias or v).name, ()),
         depends_initially=initially.get((v.alias or v).name, ()),
         inverted=negated,
+        difference=bool(_inherited(v, "relativeQuantity")),
     )
 
 

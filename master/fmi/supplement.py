@@ -1,4 +1,5 @@
-"""The parts that FMPy's reader of descriptions leaves out: most of FMI 1.0, the limits of FMI 3.0's UInts."""
+"""The parts that FMPy's reader of descriptions leaves out: most of FMI 1.0, the limits of FMI 3.0's UInts,
+and which variables are differences (relativeQuantity)."""
 
 from __future__ import annotations
 
@@ -21,6 +22,7 @@ def supplement(description: Any, root: Any) -> None:
         _causalities(description)
     else:
         _limits(description, root)
+    _differences(description, root)
 
 
 def _capabilities(description: Any, root: Any) -> None:
@@ -51,6 +53,19 @@ def _limits(description: Any, root: Any) -> None:
 def _is_unsigned(root: Any, name: str) -> bool:
     kind = fmi_type(root.get("fmiVersion"), name)
     return kind is not None and kind.kind is INTEGER and kind.low == 0
+
+
+def _differences(description: Any, root: Any) -> None:
+    """Read relativeQuantity of variables: FMPy looks for it among the children of their elements."""
+    given = {v.get("name"): _own_difference(v) for v in root.find("ModelVariables")}
+    for variable in description.modelVariables:
+        if (own := given.get(variable.name)) is not None:
+            variable.relativeQuantity = own in ("true", "1")
+
+
+def _own_difference(v: Any) -> str | None:
+    """Return the attribute of a variable, which FMI 3.0 has on it and the others on its type's element."""
+    return next((e.get("relativeQuantity") for e in (v, *v) if e.get("relativeQuantity") is not None), None)
 
 
 def negated_aliases(root: Any) -> frozenset[str]:

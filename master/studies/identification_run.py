@@ -20,7 +20,9 @@ from ...cosim.errors import ConfigError, RunError, nearest
 from ...cosim.interface import VariableInfo
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
-from ...cosim.units import Affine, conversion, defined
+from ...cosim.units.conversion import conversion
+from ...cosim.units.definition import defined
+from ...cosim.units.measure import Affine
 from ..simulation import Simulation
 from .identification_target import UNIT
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan.plan import Plan
-from evcosim.cosim.units import UnitOfMeasure
+from evcosim.cosim.units.measure import UnitOfMeasure
 from support.mocks import MockUnit, plan_of, real
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 
 THROTTLE = Signal("Throttle", 0, 8, scale=0.4, minimum=0, maximum=100, unit="%", not_available=255)
 SPEED = Signal("Speed", 8, 8, minimum=0, maximum=254, unit="km/h", not_available=255)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ....cosim.can.channel import SignalRoute
 from ....cosim.can.quantization import SignalOperation
-from ....cosim.units import Affine
+from ....cosim.units.measure import Affine
 from ...fmi.fmi1 import Fmi1Unit
 from ...fmi.fmi2 import Fmi2Unit
 from ...fmi.fmi3 import Fmi3Unit

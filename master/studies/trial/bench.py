@@ -15,7 +15,9 @@ from ....cosim.row_store import Array
 from ....cosim.swap.mapping import present
 from ....cosim.system.scenario import Scenario, ScenarioFile, StimulusEntry
 from ....cosim.system.system import Isolation, System, SystemFile, UnitEntry
-from ....cosim.units import Affine, conversion, defined
+from ....cosim.units.conversion import conversion
+from ....cosim.units.definition import defined
+from ....cosim.units.measure import Affine
 from ...builtin import fmu_file
 from ...fmi.fmu import read_fmu
 from ...simulation import Simulation

@@ -11,7 +11,8 @@ from ....cosim.interface import VariableInfo
 from ....cosim.plan.plan import Plan
 from ....cosim.system.scenario import Scenario, ScenarioFile
 from ....cosim.system.system import System
-from ....cosim.units import Affine, defined
+from ....cosim.units.definition import defined
+from ....cosim.units.measure import Affine
 from ...prepare import prepare
 
 _USUAL = {

@@ -30,7 +30,7 @@ def test_settings_do_not_change_after_they_are_made():
 
 
 def test_a_bus_of_a_file_is_its_settings_and_a_database():
-    assert list(BusEntry.model_fields) == ["dbc", *BusSettings.model_fields]
+    assert list(BusEntry.model_fields) == ["dbc", *BusSettings.model_fields, "units"]
     assert isinstance(BusEntry(dbc="x.dbc"), BusSettings)
 
 

@@ -17,7 +17,7 @@ from evcosim.cosim.can.channel import MessageChannel, Saturation, SignalRoute
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.can.quantization import ChannelError, operation, reference
 from evcosim.cosim.errors import ConfigError, RunError
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 from support.channels import (
     FREE,
     POWER,

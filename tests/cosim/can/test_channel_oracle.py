@@ -27,7 +27,7 @@ from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.can.quantization import ChannelError
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 
 EV = Path(dbc.__file__).parents[1] / "data" / "can" / "ev.dbc"
 ROUNDINGS = ("nearest", "half_even", "truncate")

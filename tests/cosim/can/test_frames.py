@@ -20,7 +20,7 @@ from evcosim.cosim.can.frames import BusLog, frames, write_can_log
 from evcosim.cosim.can.send_steps import send_steps
 from evcosim.cosim.can.transmissions import RawLog
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 from support.databases import EV
 
 STEP = 0.01

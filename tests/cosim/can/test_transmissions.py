@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.can import transmissions
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Signal
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 from support.channels import POWER, THROTTLE, channel_of, memory_of, message
 
 

@@ -7,9 +7,9 @@ import pytest
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.system import BusEntry
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 from support.car import BUS, SENT, car, ecu, plan, unit
-from support.mocks import plan_of, real
+from support.mocks import MockUnit, plan_of, real
 
 
 def test_a_direct_connection_converts_units():
@@ -158,3 +158,60 @@ def test_every_input_has_one_route_or_a_stimulus():
     driven = [route.sink for u in made.units for route in u.routes] + [drive.sink for drive in made.drives]
     assert sorted(driven) == sorted(i.slot for i in made.inputs.values())
     assert set(made.inputs) == {"ecu.speed", "ecu.flag", "car.throttle", "car.grade"}
+
+
+DBC = """VERSION ""
+BS_:
+BU_: ECU
+BO_ 256 M: 8 ECU
+ SG_ S : 0|32@1- (0.01,0) [0|0] "{unit}" ECU
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 10000;
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_ "GenMsgCycleTime" BO_ 256 10;
+"""
+
+
+def over(folder, text, source, target, **bus):
+    """The maps from a source to a signal with this text as its unit, and from there to the target."""
+    (folder / "it.dbc").write_text(DBC.format(unit=text), encoding="utf-8")
+    units = [MockUnit("a", [source]), MockUnit("b", [target])]
+    sent = {"from": "a.y", "to": ["b.u"], "via": "can0.M.S"}
+    buses = {"can0": {"dbc": str(folder / "it.dbc"), **bus}}
+    made = plan_of(units, {"connect": [sent], "buses": buses})
+    (route,) = made.messages[0].routes
+    assert route.signal.unit == bus.get("units", {}).get(text, text)
+    return route.to_bus, route.sinks[0][1], made.warnings
+
+
+def test_a_text_of_the_dbc_is_read_as_the_system_file_says(tmp_path):
+    source, target = real("y", "output", unit="V"), real("u", "input", unit="mV")
+    with pytest.raises(ConfigError, match=r'\[buses.can0.units\]: "Spannung" = "V"'):
+        over(tmp_path, "Spannung", source, target)
+    assert over(tmp_path, "Spannung", source, target, units={"Spannung": "kV"}) == (
+        Affine(0.001), Affine(1_000_000.0), (),
+    )  # fmt: skip # one line a thing
+    _, _, warnings = over(tmp_path, "V", source, target, units={"Volt(s)": "V"})
+    assert warnings == ("mocks.toml: buses.can0.units: no signal has the unit of measure [Volt(s)]",)
+    with pytest.raises(ConfigError, match=r"mocks.toml: buses.can0.units: .V.: .*Volt-ish. is not known"):
+        over(tmp_path, "V", source, target, units={"V": "Volt-ish"})
+
+
+def test_a_difference_stays_one_over_the_bus(tmp_path):
+    """No DBC says whether a temperature is absolute: a signal is what its sender is."""
+    source, target = (
+        real(name, causality, unit="K", difference=True)
+        for name, causality in (("y", "output"), ("u", "input"))
+    )
+    assert over(tmp_path, "degC", source, target)[:2] == (Affine(), Affine())
+    with pytest.raises(ConfigError, match=r"can0.M.S \[degC\] cannot feed b.u \[K\]: .* relativeQuantity"):
+        over(tmp_path, "degC", source, real("u", "input", unit="K"))
+    absolute = over(tmp_path, "degC", real("y", "output", unit="K"), real("u", "input", unit="K"))
+    assert absolute[1] == Affine(1.0, 273.15)
+
+
+def test_an_unknown_unit_between_bare_numbers_is_a_warning(tmp_path):
+    to_bus, to_receiver, warnings = over(
+        tmp_path, "raw", real("y", "output", unit="1"), real("u", "input", unit="1")
+    )
+    assert to_bus.identity and to_receiver.identity
+    assert warnings == ("can0.M.S [raw]: this unit of measure is not known; it is taken as [1]",)

@@ -8,6 +8,8 @@ import pytest
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.system.scenario import scenario_names
 from evcosim.cosim.system.system import load_system, system_names
+from evcosim.cosim.units.conversion import between
+from evcosim.cosim.units.spellings import EXACT, WORDS
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.initialization import initialize
 from evcosim.master.simulation import Simulation
@@ -204,3 +206,46 @@ def test_units_written_in_python_and_their_errors():
             engine.advance(100)
         found.append((str(raised.value), engine.recorded().whole().tobytes()))
     assert found[0] == found[1]
+
+
+DBC = """VERSION ""
+BS_:
+BU_: ECU
+{messages}
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 10000;
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+"""
+MESSAGE = 'BO_ {i} M{i}: 8 ECU\n SG_ S : 0|64@1- (1e-06,0) [0|0] "{text}" ECU\n'
+
+
+def test_every_spelling_of_a_unit_is_the_same_number(tmp_path):
+    """From a variable in each spelling, directly and over a signal in it, to one in what it means."""
+    rows = [(spelling, m) for spelling, meaning, _ in (*WORDS, *EXACT) for m in meaning.split(" | ")]
+    rows = [row for row in rows if row[0] != "grad"]  # of which both meanings are angles: it is refused
+    messages = [MESSAGE.format(i=i, text=text) for i, (text, _) in enumerate(rows)]
+    (tmp_path / "it.dbc").write_text(DBC.format(messages="\n".join(messages)), encoding="utf-8")
+    n = range(len(rows))
+    connect = [{"from": f"a.y{i}", "to": [f"b.u{i}"]} for i in n]
+    connect += [{"from": f"a.z{i}", "to": [f"b.v{i}"], "via": f"can0.M{i}.S"} for i in n]
+    found = []
+    for compiled in (False, True):
+        sent = [real(f"y{i}", "output", unit=rows[i][0], start=1.0 + 0.37 * i) for i in n]
+        sent += [real(f"z{i}", "output", unit=rows[i][1], start=1.0 + 0.37 * i) for i in n]
+        received = [real(f"{name}{i}", "input", unit=rows[i][1]) for name in "uv" for i in n]
+        units = {"a": MockUnit("a", sent), "b": MockUnit("b", received)}
+        plan = plan_of(
+            [*units.values()], {"connect": connect, "buses": {"can0": {"dbc": str(tmp_path / "it.dbc")}}}
+        )
+        if compiled:
+            engine = CompiledEngine(plan, units)
+            initialize(units, plan)
+            engine.start()
+        else:
+            engine = started([*units.values()], plan)
+        engine.advance(2)
+        found.append(engine.recorded().whole())
+    assert found[0].tobytes() == found[1].tobytes()
+    last = dict(zip([c.name for c in plan.columns], found[0][-1], strict=True))
+    for i, (spelling, meaning) in enumerate(rows):
+        assert last[f"b.u{i}"] == pytest.approx(between(spelling, meaning)(1.0 + 0.37 * i), rel=1e-14)
+        assert last[f"b.v{i}"] == pytest.approx(1.0 + 0.37 * i, rel=1e-3, abs=2e-3)

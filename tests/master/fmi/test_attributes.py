@@ -35,6 +35,10 @@ DEFECTS = [
         "unit of measure 'km/h': s = '-1.5' is no number; its definition is ignored",
     ),
     (
+        ("<TypeDefinitions>", UNIT.format('<BaseUnit m="9999"/>')),
+        "unit of measure 'km/h': m = '9999' is no number; its definition is ignored",
+    ),
+    (
         ("<TypeDefinitions>", '<TypeDefinitions><SimpleType name="Nothing"/>'),
         "type 'Nothing' says nothing; it is left out",
     ),

@@ -167,3 +167,31 @@ def test_the_uri_of_the_resources_is_what_the_library_decodes() -> None:
 def test_a_capability_may_be_text(value: object, expected: bool) -> None:
     assert is_true(SimpleNamespace(canDo=value), "canDo") is expected
     assert not is_true(SimpleNamespace(), "canDo")
+
+
+@pytest.mark.parametrize(
+    ("change", "differences"),
+    [
+        ((), set()),
+        (('unit="km/h"', 'unit="km/h" relativeQuantity="true"'), {"u"}),
+        (('<Real unit="m/s"/>', '<Real unit="m/s" relativeQuantity="1"/>'), {"y"}),
+        (
+            ('<Real declaredType="Speed"/>', '<Real declaredType="Speed" relativeQuantity="false"/>'),
+            set(),
+        ),
+    ],
+)
+def test_which_variables_are_differences(
+    tmp_path: Path, change: tuple[str, str], differences: set[str]
+) -> None:
+    text = changed(change) if change else GOOD
+    interface = read_fmu(described(tmp_path, text)).interface
+    assert {v.name for v in interface.variables.values() if v.difference} == differences
+
+
+def test_a_variable_says_against_its_type_that_it_is_no_difference(tmp_path: Path) -> None:
+    text = changed(
+        ('<Real unit="m/s"/>', '<Real unit="m/s" relativeQuantity="true"/>'),
+        ('<Real declaredType="Speed"/>', '<Real declaredType="Speed" relativeQuantity="false"/>'),
+    )
+    assert not read_fmu(described(tmp_path, text)).interface.variables["y"].difference

@@ -10,7 +10,7 @@ import pytest
 
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.units import Affine
+from evcosim.cosim.units.measure import Affine
 from evcosim.master.studies.trial import probes
 from evcosim.master.studies.trial.levels import Level
 

@@ -1,0 +1,142 @@
+"""The map of values between two ends of a connection, by their units of measure."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Iterable, Mapping
+
+from ..can.database import Signal
+from ..errors import ConfigError
+from ..units.conversion import conversion
+from ..units.definition import defined
+from ..units.measure import Affine, OpenUnitError, UnitOfMeasure, UnknownUnitError
+from ..units.spellings import NO_UNIT
+
+Definitions = Mapping[str, UnitOfMeasure]
+
+
+@dataclasses.dataclass(frozen=True)
+class End:
+    """One end of a connection: a variable, a bus signal or a stimulus.
+
+    `definitions` are those of its own FMU; `difference` says that its values have no absolute zero; `bus` is
+    the bus that a signal belongs to.
+    """
+
+    name: str
+    unit: str
+    definitions: Definitions = dataclasses.field(default_factory=dict)
+    difference: bool = False
+    bus: str = ""
+
+    @property
+    def bare(self) -> bool:
+        """True without a unit of measure."""
+        return not self.unit.strip()
+
+    @property
+    def defines(self) -> bool:
+        """True where its own FMU defines its unit of measure."""
+        unit = self.definitions.get(self.unit)
+        return unit is not None and unit.exponents is not None
+
+    def __str__(self) -> str:
+        return f"{self.name} [{self.unit}]"
+
+
+def unit_map(
+    source: End, target: End, others: Iterable[Definitions], place: str, warnings: list[str]
+) -> Affine:
+    """Return the map from the unit of `source` to that of `target`; the identity where one has none.
+
+    Each FMU's own definition comes first, then the reading of the text, then the definitions of `others`.
+    Adds to `warnings` where numbers are taken over unconverted. Raises ConfigError, which starts with
+    `place`, when they measure different quantities, or it is open whether they do.
+    """
+    if source.bare or target.bare:
+        _note_missing_unit(source, target, warnings)
+        return Affine()
+    try:
+        if source.unit == target.unit and not (source.defines and target.defines):
+            return _of_one_text(source, target, others)
+        a, b = (defined(end.unit, end.definitions, *others) for end in (source, target))
+        map_ = conversion(a, b, (source.difference, target.difference))
+    except UnknownUnitError as error:
+        if _is_taken_as_one(source, target, others, warnings):
+            return Affine()
+        raise _refused(source, target, place, error) from error
+    except ConfigError as error:
+        raise _refused(source, target, place, error) from error
+    for end in (source, target):
+        if end.unit.strip() in NO_UNIT and end.unit != "1":
+            _note(warnings, f"{end} names no unit of measure; it is taken as [1]")
+    return map_
+
+
+def _note(warnings: list[str], text: str) -> None:
+    """Add a warning, unless it is there: a bus signal has several ends."""
+    if text not in warnings:
+        warnings.append(text)
+
+
+def _of_one_text(source: End, target: End, others: Iterable[Definitions]) -> Affine:
+    """Return the map between two ends of which one defines the text of both, or none."""
+    end = source if source.defines else target
+    try:
+        unit = defined(end.unit, end.definitions, *others)
+    except UnknownUnitError:
+        return Affine()
+    return conversion(unit, unit, (source.difference, target.difference))
+
+
+def _note_missing_unit(source: End, target: End, warnings: list[str]) -> None:
+    """Add a warning of an end without a unit of measure, unless the other end measures nothing either."""
+    bare, other = (source, target) if source.bare else (target, source)
+    if other.unit.strip() not in ("", "1"):
+        _note(warnings, f"{bare.name} declares no unit of measure; it is taken as [{other.unit}]")
+
+
+def _is_taken_as_one(source: End, target: End, others: Iterable[Definitions], warnings: list[str]) -> bool:
+    """Return True, with a warning, where one end has a text that is not known and the other the unit 1."""
+    for unknown, end in ((source, target), (target, source)):
+        try:
+            if not defined(end.unit, end.definitions, *others).bare:
+                continue
+        except UnknownUnitError:
+            continue
+        _note(warnings, f"{unknown}: this unit of measure is not known; it is taken as [{end.unit}]")
+        return True
+    return False
+
+
+def _refused(source: End, target: End, place: str, error: ConfigError) -> ConfigError:
+    """Return the error of two ends that do not convert, with the line to write where that would help."""
+    said = ""
+    end, other = (source, target) if source.bus or not target.bus else (target, source)
+    named = end.unit.strip() in NO_UNIT
+    if end.bus and (named or isinstance(error, UnknownUnitError | OpenUnitError)):
+        unit, known = (json.dumps(text, ensure_ascii=False) for text in (end.unit, other.unit))
+        said = f"; say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}"
+    elif isinstance(error, UnknownUnitError | OpenUnitError):
+        said = f"; say what {end.name} is in: `unit` in the unit's `map`"
+    return ConfigError(f"{place}: {source} cannot feed {target}: {error}{said}")
+
+
+def with_unit(signal: Signal, units: Mapping[str, str]) -> Signal:
+    """Return the signal in the unit of measure that the system file gives its text."""
+    unit = units.get(signal.unit)
+    return signal if unit is None else dataclasses.replace(signal, unit=unit)
+
+
+def check_texts(units: Mapping[str, str], texts: set[str], place: str) -> list[str]:
+    """Return a warning for each text of a bus' `units` that its database has not.
+
+    Raises ConfigError, which starts with `place`, for a unit of measure that is not known.
+    """
+    for text, unit in units.items():
+        try:
+            defined(unit)
+        except UnknownUnitError as error:
+            raise ConfigError(f"{place}: {json.dumps(text, ensure_ascii=False)}: {error}") from error
+    return [f"{place}: no signal has the unit of measure [{text}]" for text in units if text not in texts]

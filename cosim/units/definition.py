@@ -1,0 +1,200 @@
+"""The definition of a unit of measure by its text, or by an FMU's own description of it.
+
+An FMU's own definition comes first; a text without one is read by the table of everyday spellings, the
+symbols of the SI and, name by name, by pint, which takes 0.3 s to load.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import itertools
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+
+from .grammar import LONGEST, Powers, parse, plain
+from .measure import BASE_UNITS, Exponents, UnitOfMeasure, UnknownUnitError
+from .spellings import NO_UNIT, meanings
+from .symbols import Size, is_level, symbol
+
+_NONE: Exponents = (0,) * len(BASE_UNITS)
+_RAD = BASE_UNITS.index("rad")
+_A_MINUTE: Powers = (("min", Fraction(-1)),)
+_FITS = 1e-3  # relative: tools write a factor with as few as four digits
+
+
+def defined(
+    name: str, own: Mapping[str, UnitOfMeasure] | None = None, *others: Mapping[str, UnitOfMeasure]
+) -> UnitOfMeasure:
+    """Return the definition of a unit text.
+
+    It is that of `own`, the units that the text's FMU defines; else the reading of the text; else that of
+    `others`, the units that other FMUs define. Raises UnknownUnitError when nobody knows the text.
+    """
+    unit = (own or {}).get(name)
+    if unit is not None and unit.exponents is not None:
+        return as_named(unit)
+    found = by_text(name)
+    if found is not None:
+        return found
+    for source in others:
+        unit = source.get(name)
+        if unit is not None and unit.exponents is not None:
+            return unit
+    said = name if len(name) <= LONGEST else name[:LONGEST] + "..."
+    raise UnknownUnitError(f"unit of measure '{said}' is not known")
+
+
+@functools.lru_cache(maxsize=4096)
+def by_text(text: str) -> UnitOfMeasure | None:
+    """Return the unit that a text names, with its other readings; None where it names none."""
+    name = plain(text) if len(text) <= LONGEST else text
+    if name in NO_UNIT:
+        return UnitOfMeasure(text, _NONE)
+    if name.startswith("[") and name.endswith("]"):
+        name = name[1:-1].strip()
+    if is_level(name) and len(name) <= LONGEST:
+        return UnitOfMeasure(text, logarithmic=True)
+    found = {}
+    for meaning in meanings(name) or (name,):
+        for powers in parse(meaning):
+            for unit in _units(text, powers, strict=meaning != name):
+                found[dataclasses.replace(unit, cycles=False)] = unit
+    readings = list(found.values())
+    return dataclasses.replace(readings[0], also=tuple(readings[1:])) if readings else None
+
+
+def as_named(unit: UnitOfMeasure) -> UnitOfMeasure:
+    """Return an FMU's definition of a unit, with the angle that its name says and its exponents leave out.
+
+    Many tools define rad/s as 1/s, rpm as 1/s times 2 pi/60 or 1/60, and Hz as 1/s: where the factor is that
+    of the name, counting radians or cycles as 1, the name decides. A definition that is empty, as some tools
+    write it for every unit, is none.
+    """
+    named = by_text(unit.name)
+    if named is None or named.exponents is None or unit.exponents is None:
+        return unit
+    if not any(unit.exponents) and unit.factor == 1.0 and unit.offset == 0.0 and any(named.exponents):
+        return named
+    for reading in named.readings:
+        assert reading.exponents is not None
+        angle = reading.exponents[_RAD]
+        if unit.exponents == reading.exponents:
+            if _alike(unit.factor, reading.factor):
+                return dataclasses.replace(unit, cycles=reading.cycles)
+        elif (
+            _apart_from_angle(unit.exponents) == _apart_from_angle(reading.exponents)
+            and not unit.exponents[_RAD]
+        ):
+            counted = (reading.factor, reading.factor / (2.0 * math.pi) ** float(angle))
+            if any(_alike(unit.factor, factor) for factor in counted):
+                return dataclasses.replace(reading, name=unit.name, also=())
+    return unit
+
+
+def _apart_from_angle(exponents: Exponents) -> Exponents:
+    return exponents[:_RAD] + exponents[_RAD + 1 :]
+
+
+def _alike(a: float, b: float) -> bool:
+    return math.isclose(a, b, rel_tol=_FITS)
+
+
+def _units(text: str, powers: Powers, strict: bool) -> list[UnitOfMeasure]:
+    """Return the units that one reading of a text may be; `strict` admits symbols alone."""
+    if any(is_level(name) for name, _ in powers):
+        return [UnitOfMeasure(text, logarithmic=True)]
+    sizes = [_sizes(name, strict) for name, _ in powers]
+    if math.prod(len(each) for each in sizes) > 64:
+        return []
+    units = [_product(text, powers, chosen) for chosen in itertools.product(*sizes)]
+    return [unit for unit in units if unit is not None]
+
+
+def _product(text: str, powers: Powers, sizes: tuple[Size, ...]) -> UnitOfMeasure | None:
+    """Return the product of symbols with their exponents; None where no double holds its factor."""
+    exact, factor, offset = Fraction(1), 1.0, Fraction(0)
+    exponents: list[int | Fraction] = list(_NONE)
+    try:
+        for (_, power), (size, dimension, zero) in zip(powers, sizes, strict=True):
+            if power.denominator == 1:
+                exact *= size ** int(power)
+            else:
+                factor *= float(size) ** float(power)
+            for i, e in enumerate(dimension):
+                exponents[i] += power * e
+            if len(powers) == 1 and power == 1:  # an offset has a meaning only where the unit stands alone
+                offset = zero
+        factor *= float(exact)
+    except OverflowError:
+        return None
+    if not 0.0 < factor < math.inf:
+        return None
+    whole = tuple(int(e) if e == int(e) else e for e in exponents)
+    alone = powers[0][0].casefold() if len(powers) == 1 and powers[0][1] == 1 else ""
+    cycles = powers == _A_MINUTE or alone.endswith(("hz", "hertz"))
+    if powers == _A_MINUTE:  # a frequency, and not the reciprocal of a time
+        whole, factor = (0, 0, -1, 0, 0, 0, 0, 1), 2.0 * math.pi / 60.0
+    return UnitOfMeasure(text, whole, factor, float(offset), cycles)
+
+
+@functools.lru_cache(maxsize=4096)
+def _sizes(name: str, strict: bool) -> tuple[Size, ...]:
+    """Return what a name in a unit text may stand for."""
+    if strict:
+        known = symbol(name)
+        return () if known is None else (known,)
+    said = meanings(name)
+    if said:
+        units = [unit for meaning in said for powers in parse(meaning) for unit in _units(name, powers, True)]
+        return tuple(
+            (Fraction(u.factor), u.exponents, Fraction(u.offset)) for u in units if u.exponents is not None
+        )
+    known = symbol(name) or _by_pint(name)
+    return () if known is None else (known,)
+
+
+def _by_pint(name: str) -> Size | None:
+    """Return pint's definition of one name: factor, exponents and offset in SI base units.
+
+    None for a name that pint does not know, or measures in other base units than these; and for one that it
+    reads as a symbol with a prefix or a plural: "Grad" is no giga-radian, "Nms" no newton meters.
+    """
+    if not name.isidentifier():
+        return None
+    import pint  # 0.3 s, and only names that no table has need it
+
+    registry = _pint_registry()
+    try:
+        if not _is_written_out(name):
+            return None
+        made = registry.Unit(name)
+        zero, one, two = (registry.Quantity(x, made).to_base_units() for x in (0.0, 1.0, 2.0))
+    except (pint.PintError, ValueError, TypeError, AttributeError, ArithmeticError):
+        return None
+    symbols = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol"}
+    symbols |= {"candela": "cd", "radian": "rad"}
+    powers = {str(base): Fraction(power).limit_denominator(12) for base, power in one.unit_items()}
+    factor, offset = one.magnitude - zero.magnitude, zero.magnitude
+    affine = math.isclose(two.magnitude - one.magnitude, factor, rel_tol=1e-9)
+    if not powers.keys() <= symbols.keys() or not affine or not math.isfinite(factor + offset) or factor <= 0:
+        return None
+    by_symbol = {symbols[base]: power for base, power in powers.items()}
+    return Fraction(factor), tuple(by_symbol.get(base, 0) for base in BASE_UNITS), Fraction(offset)
+
+
+def _is_written_out(name: str) -> bool:
+    """Return False for a symbol with a prefix or a plural, as pint reads "Grad" and "Nms"."""
+    meant = _pint_registry().parse_unit_name(name)
+    without_plural = _pint_registry().parse_unit_name(name[:-1]) if name.endswith("s") else ()
+    if without_plural and not any(prefix + unit + "s" == name for prefix, unit, _ in without_plural):
+        return False
+    return any(not prefix or name.startswith(prefix) for prefix, _, _ in meant)
+
+
+@functools.cache
+def _pint_registry():  # type: ignore[no-untyped-def] # pint is imported lazily, so its types have no name here
+    import pint
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)

@@ -1,0 +1,109 @@
+"""The map between two ends of a connection: what is converted, what is warned of, what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from evcosim.cosim.can.database import Signal
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.plan.unit_maps import End, check_texts, unit_map, with_unit
+from evcosim.cosim.units.measure import Affine, UnitOfMeasure
+
+NONE, SPEED, RATE = (0,) * 8, (0, 1, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 0)
+
+
+def made(source, target, *others):
+    """The map between two ends and the warnings."""
+    warnings: list[str] = []
+    ends = [
+        end if isinstance(end, End) else End(name, end)
+        for name, end in zip("ab", (source, target), strict=True)
+    ]
+    return unit_map(*ends, others, "here", warnings), warnings
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "map_"),
+    [
+        ("km/h", "m/s", Affine(5 / 18)),
+        ("Hz", "rad/s", Affine(6.283185307179586)),
+        ("degC", "K", Affine(1.0, 273.15)),
+        ("RPM", "RPM", Affine()),
+        ("gibberish", "gibberish", Affine()),
+        ("", "", Affine()),
+        ("", "1", Affine()),
+    ],
+)
+def test_what_is_converted(source, target, map_):
+    assert made(source, target) == (map_, [])
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "warning"),
+    [
+        ("", "m/s", "a declares no unit of measure; it is taken as [m/s]"),
+        ("V", " ", "b declares no unit of measure; it is taken as [V]"),
+        ("gibberish", "", "b declares no unit of measure; it is taken as [gibberish]"),
+        ("count", "1", "a [count]: this unit of measure is not known; it is taken as [1]"),
+        ("1", "#", "b [#]: this unit of measure is not known; it is taken as [1]"),
+        ("-", "1", "a [-] names no unit of measure; it is taken as [1]"),
+    ],
+)
+def test_what_is_warned_of(source, target, warning):
+    assert made(source, target) == (Affine(), [warning])
+
+
+@pytest.mark.parametrize("text", ["#", "??", "€", "V(", "9**9**9**9", "count", "x" * 999])
+@pytest.mark.parametrize("turned", [False, True])
+def test_an_unknown_unit_is_refused_against_a_dimension(text, turned):
+    ends = [End("can0.M.S", text, bus="can0"), End("b.u", "V")]
+    with pytest.raises(ConfigError, match=r"^here: .* cannot feed .* is not known; say what it is") as error:
+        made(*(reversed(ends) if turned else ends))
+    assert f'[buses.can0.units]: "{text}" = "V"' in str(error.value)
+
+
+def test_other_refusals_and_their_ways_out():
+    for source, target, said in (
+        ("m/s", "K", r"a \[m/s\] cannot feed b \[K\]: .* measure different quantities$"),
+        ("tbd", "%", "is not known; say what a is in: `unit`"),
+        ("1/s", "rpm", "may count turns .* or radians .*; say what a is in"),
+        (End("c.M.S", "1/s", bus="c"), "rpm", r'\[buses.c.units\]: "1/s" = "rpm"$'),
+        (End("c.M.S", "-", bus="c"), "V", r'\[buses.c.units\]: "-" = "V"$'),
+        (End("c.M.S", "dB", bus="c"), "1", "is logarithmic, and converts to nothing but itself$"),
+    ):
+        with pytest.raises(ConfigError, match=said):
+            made(source, target)
+
+
+def test_one_text_is_one_unit_where_one_end_defines_it():
+    """A bus signal has no definition of its own: what the FMU calls km/h is the bus' km/h too."""
+    odd = {"km/h": UnitOfMeasure("km/h", SPEED, 1.0)}
+    assert made(End("a.v", "km/h", odd), End("c.M.S", "km/h", bus="c")) == (Affine(), [])
+    assert made(End("a.v", "km/h", odd), "m/s") == (Affine(), [])
+    with pytest.raises(ConfigError, match=r"define .* otherwise"):
+        made(End("a.v", "km/h", odd), End("b.v", "km/h", {"km/h": UnitOfMeasure("km/h", SPEED, 1 / 3.6)}))
+
+
+def test_the_definition_of_another_fmu_is_the_last_resort():
+    others = {"mine": UnitOfMeasure("mine", SPEED, 2.0), "km/h": UnitOfMeasure("km/h", SPEED, 1.0)}
+    assert made("mine", "m/s", others)[0] == Affine(2.0)
+    assert made("km/h", "m/s", others)[0] == Affine(5 / 18)
+
+
+def test_a_difference_keeps_its_zero():
+    celsius, kelvin = End("a.t", "degC", difference=True), End("b.t", "K", difference=True)
+    assert made(celsius, kelvin)[0] == Affine()
+    for absolute in ("K", "degC"):
+        with pytest.raises(ConfigError, match="relativeQuantity"):
+            made(celsius, absolute)
+
+
+def test_the_units_of_a_bus():
+    signal = Signal("S", 0, 8, unit="Unit_X")
+    assert with_unit(signal, {"Unit_X": "V"}).unit == "V"
+    assert with_unit(signal, {"other": "V"}) is signal
+    assert check_texts({"Unit_X": "V", "Unit_Y": "A"}, {"Unit_X"}, "here") == [
+        "here: no signal has the unit of measure [Unit_Y]"
+    ]
+    with pytest.raises(ConfigError, match=r"^here: .Unit_X.: unit of measure .Volt-ish. is not known"):
+        check_texts({"Unit_X": "Volt-ish"}, {"Unit_X"}, "here")

@@ -1,0 +1,45 @@
+"""The table of everyday spellings: each means one thing that the SI defines, and says where it is met."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from evcosim.cosim.units.definition import _units, by_text
+from evcosim.cosim.units.grammar import parse, plain
+from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, meanings
+from evcosim.cosim.units.symbols import symbol
+
+ROWS = [*WORDS, *EXACT]
+
+
+@pytest.mark.parametrize(("spelling", "meaning", "source"), ROWS)
+def test_a_spelling_means_what_the_table_says(spelling, meaning, source):
+    assert source.strip()
+    assert meanings(plain(spelling)) == tuple(part.strip() for part in meaning.split("|"))
+    for part in meanings(plain(spelling)):
+        ((*powers,),) = parse(part)
+        assert all(symbol(name) is not None for name, _ in powers)  # a meaning needs no table and no pint
+    unit = by_text(spelling)
+    assert unit is not None and len(unit.readings) == len(meaning.split("|"))
+    for reading, part in zip(unit.readings, meanings(plain(spelling)), strict=True):
+        meant = _units(spelling, parse(part)[0], strict=True)
+        assert [dataclasses.replace(reading, also=())] == meant
+
+
+@pytest.mark.parametrize("spelling", [spelling for spelling, _, _ in WORDS])
+def test_a_word_is_read_whatever_its_case(spelling):
+    for text in (spelling.upper(), spelling.lower(), spelling.title()):
+        if not any(text == exact for exact, _, _ in EXACT):
+            assert meanings(plain(text)) == meanings(plain(spelling)), text
+
+
+def test_no_spelling_stands_twice():
+    words = [plain(spelling).casefold() for spelling, _, _ in WORDS]
+    exact = [plain(spelling) for spelling, _, _ in EXACT]
+    assert len(set(words)) == len(words) and len(set(exact)) == len(exact)
+
+
+def test_texts_that_say_that_there_is_no_unit():
+    assert all(by_text(text).bare for text in NO_UNIT)
