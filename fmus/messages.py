@@ -27,7 +27,12 @@ def message(call: str, error: BaseException) -> str:
         text = "(its text cannot be shown: str() of it fails)"
     if not isinstance(error, Refused):
         text = f"{type(error).__name__}: {text}{_place(error)}"
-    line = f"{call}: {text}".replace("%", "%%").replace("\0", "\\0")
+    return told(f"{call}: {text}")
+
+
+def told(text: str) -> str:
+    """Return a text as the importer's log takes it: a printf format without arguments, UTF-8, no NUL."""
+    line = text.replace("%", "%%").replace("\0", "\\0")
     return line.encode("utf-8", "backslashreplace").decode("utf-8")
 
 

@@ -15,6 +15,8 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
   would reach the importer's logger while the exception is still set: an importer in Python loses it ("unknown
   error", measured), and any call of the logger may fail because of it.
 - a step whose result is NaN or infinite is no error here: the importer checks what it receives.
+A sentence of the model's `notice` is a message of status Warning (category `logStatusWarning`), once for each
+instance; the step returns OK.
 
 `native` repairs defects of pythonfmu's library, so that a failing FMU never kills its importer. Messages are
 printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments: "%" is doubled. Four
@@ -33,11 +35,11 @@ from typing import Any, ClassVar
 
 from ..models.base import Model, violations
 from .accessors import Accessors, misfit
-from .messages import Refused, SlaveError, message
+from .messages import Refused, SlaveError, message, told
 from .native import hold, leave_search_path, settle_at_exit
 from .snapshot import Snapshot, from_bytes, to_bytes
 
-_ERROR = 3  # fmi2Error
+_WARNING, _ERROR = 1, 3  # fmi2Status
 
 
 class ModelSlave:
@@ -54,6 +56,8 @@ class ModelSlave:
         "_given",
         "_inputs",
         "_listed",
+        "_notice",
+        "_noticed",
         "_outputs",
         "_parameters",
         "_real_inputs",
@@ -71,7 +75,10 @@ class ModelSlave:
 
     model: ClassVar[type[Model]]
     identity: ClassVar[str]
-    log_categories: ClassVar[dict[str, str]] = {"logStatusError": "Exceptions that the model raised"}
+    log_categories: ClassVar[dict[str, str]] = {
+        "logStatusWarning": "What a user must know of though nothing failed",
+        "logStatusError": "Exceptions that the model raised",
+    }
 
     _accessors: ClassVar[Accessors]
     _living: ClassVar[weakref.WeakSet[ModelSlave]]
@@ -92,6 +99,7 @@ class ModelSlave:
         settle_at_exit(self.resources, type(self).__name__)
         self._access = access = self._accessors
         self._step, self._outputs = self.model.step, self.model.outputs
+        self._notice, self._noticed = self.model.notice, set[str]()
         self._record, self._listed = access.record, access.listed
         self._timed, self._feeds_through = access.timed, access.feeds_through
         self._follows_inputs = access.follows_inputs
@@ -130,11 +138,17 @@ class ModelSlave:
             if u is None:
                 u = self._inputs = self._record(self._given, self._time)
             state = self._step(self._parameters, self._state, u, step_size)
+            notice = self._notice
+            said = "" if notice is None else notice(self._parameters, self._state, state, u)
             if self._timed and self._follows_inputs:
                 self._set_time(current_time + step_size)
                 u = None
             self._show(state, u)
             self._state = state
+            if said and said not in self._noticed:
+                self._noticed.add(said)
+                text = told(f"first at t = {current_time + step_size:.9g} s: {said}")
+                self.log(text, _WARNING, "logStatusWarning")
             return True
         except BaseException as error:
             self.log(message(f"fmi2DoStep at t = {current_time} s", error), _ERROR, "logStatusError")

@@ -12,7 +12,7 @@ from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
 from ..cosim.plan.plan import Plan
 from ..cosim.plan.resolve import participating, resolve
-from ..cosim.swap.mapping import present, without_absent
+from ..cosim.swap.mapping import present, without_absent, without_untaken
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.swap_file import swapped
 from ..cosim.system.run_options import RunOptions, check_options
@@ -64,9 +64,11 @@ def prepare(
     for unit, path in swaps.items():
         if unit in interfaces:
             _check_complete(read, driven, unit, interfaces[unit], path)
+    # optional connections that an FMU has no variable for
+    read, untaken = without_untaken(read, interfaces)
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
-    plan = dataclasses.replace(plan, warnings=(*left_out, *plan.warnings))
+    plan = dataclasses.replace(plan, warnings=(*left_out, *untaken, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)

@@ -79,7 +79,7 @@ class Simulation:
         self.log_frames = log_frames
         self.loop_seconds = 0.0
         self._units: dict[str, Unit] = {}
-        self._last_warnings: dict[str, int] = {}
+        self._last_warnings: dict[str, tuple[int, list[str]]] = {}
         self.isolation: dict[str, Isolation] = {}
         try:
             for unit in self.plan.units:
@@ -231,15 +231,18 @@ class Simulation:
         """A sentence for everything suspicious: notices of the engine, defects of FMUs, missing units of
         measure, warnings of units, outputs beyond their limits."""
         from_units = [
-            f"unit '{name}' gave {counted(n, 'warning')}" for name, n in self._unit_warnings().items() if n
+            f"unit '{name}' gave {counted(n, 'warning')}" + (f": {'; '.join(texts)}" if texts else "")
+            for name, (n, texts) in self._unit_warnings().items()
+            if n
         ]
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
         notices = [notice for notice in (self._notice, self._engine.notice) if notice]
         beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
         return [*notices, *defects, *self.plan.warnings, *self._notices, *from_units, *beyond]
 
-    def _unit_warnings(self) -> dict[str, int]:
-        return self._last_warnings | {name: unit.warnings for name, unit in self._units.items()}
+    def _unit_warnings(self) -> dict[str, tuple[int, list[str]]]:
+        now = {name: (unit.warnings, list(unit.warned)) for name, unit in self._units.items()}
+        return self._last_warnings | now
 
     # ---- results
 

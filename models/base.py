@@ -18,6 +18,8 @@ A variable is declared once, on one line:
 
     mass: float = var(200.0, "kg", "Vehicle and rider", min=1.0)
 
+A model may have a fourth function, `notice`, for what its user must know of though nothing failed.
+
 The record in which it stands gives its causality, the type of its start value its FMI type. Everything else
 that shows the variable (model description, tables, range checks) is generated from that line.
 """
@@ -185,6 +187,11 @@ class Model:
     initial: ClassVar[Callable[..., Any]]
     step: ClassVar[Callable[..., Any]]
     outputs: ClassVar[Callable[..., Any]]
+
+    notice: ClassVar[Callable[..., str] | None] = None
+    """`notice(p, x_k, x_{k+1}, u)` returns a sentence when a step met what its user must know of, else "".
+
+    Each sentence is a warning in the importer's log, once, with the time of the end of the step."""
 
     def __init_subclass__(cls) -> None:
         _check_declaration(cls)

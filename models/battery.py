@@ -3,11 +3,17 @@
 Source: chosen. Dardanelli et al. (IEEE CDC-ECC 2011) measure charge, current and voltage and give no model.
 
     U   = U_0 + U_1 xi                                  open-circuit voltage [V]                  (B1)
-    P_d = min(max(P, 0), U^2/(4 R_0))                   power that the terminals can deliver [W]  (B2)
+    A   = min(U^2/(4 R_0), (U - R_0 i_e) i_e)           largest power of the terminals [W]       (B2a)
+    P_d = min(max(P, 0), A)                             power delivered at the terminals [W]      (B2)
     i   = (U - sqrt(U^2 - 4 R_0 P_d))/(2 R_0)           current of P_d = (U - R_0 i) i [A]        (B3)
     xi' = -i/(3600 Q)                                   state of charge [1], Q in A.h             (B4)
     E'  = P_d/3600                                      energy delivered at the terminals [Wh]    (B5)
     L'  = R_0 i^2/3600                                  energy lost in the resistance [Wh]        (B6)
+
+i_e = 3600 Q xi/dt is the current that uses up the charge in a step as long as the last one; before the first
+step, and where i_e > U/(2 R_0), A is U^2/(4 R_0). At xi = 0 it is 0. So a load that keeps to A gets all that
+it takes, down to the last step. A depends on the state alone: a vehicle that is connected to it sees, in the
+step from t_k on, the A of the charge at t_k, and no loop arises.
 
 The energy drawn from the cells is E + L; a vehicle's consumption is counted with it. Current and voltage
 follow the power at the same instant (direct feedthrough). The code computes (B3) as i = 2 P_d/(U +
@@ -16,8 +22,10 @@ sqrt(...)), the same root without the difference of two near numbers.
 published: nothing.
 chosen: U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h.
 
-At the edges: a negative power draws nothing (no regeneration). A power above U^2/(4 R_0) counts as that. An
-empty battery (xi = 0) delivers nothing: i = 0, and E and L stay as they are.
+At the edges: a negative power draws nothing (no regeneration). A power above A counts as A. Where the charge
+does not last for a step, as for one longer than the last, the current flows for the part of it that it does:
+the energy that the charge gives up, U i, is E + L in every step. An empty battery (xi = 0) delivers nothing:
+i = 0, and E and L stay as they are. It says in the log that it is empty, or is asked for more than A.
 
 Step: explicit Euler, order 1 in dt, with the current of the start of the step held over it. In 10 ms at full
 power xi falls by 1e-5, which changes the current by 2e-6 of itself.
@@ -29,6 +37,8 @@ from math import sqrt
 
 from .base import Model, record, var
 from .constants import HOUR
+
+EMPTY = 1e-12  # of the charge that a step uses up: what is less than that is rounding
 
 
 class Battery(Model):
@@ -57,6 +67,7 @@ class Battery(Model):
         state_of_charge: float = var(1.0, "1", "State of charge", min=0.0, max=1.0)
         energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0)
         loss: float = var(0.0, "Wh", "Energy lost in the internal resistance", min=0.0)
+        step_size: float = var(0.0, "s", "Length of the last step, 0 before the first", min=0.0)
 
     @record
     class Outputs:
@@ -67,34 +78,66 @@ class Battery(Model):
         voltage: float = var(54.0, "V", "Voltage at the terminals", min=0.0, nominal=50.0, depends=("power",))
         energy: float = var(0.0, "Wh", "Energy delivered at the terminals", min=0.0, nominal=100.0)
         energy_drawn: float = var(0.0, "Wh", "Energy drawn from the cells", min=0.0, nominal=100.0)
+        available_power: float = var(
+            12150.0, "W", "Largest power that the terminals can deliver", min=0.0, nominal=10000.0
+        )
 
     @staticmethod
     def initial(p: Battery.Parameters, u: Battery.Inputs) -> Battery.State:
         """Return a battery charged to `initial_state_of_charge` that has delivered nothing."""
-        return Battery.State(p.initial_state_of_charge, 0.0, 0.0)
+        return Battery.State(p.initial_state_of_charge, 0.0, 0.0, 0.0)
 
     @staticmethod
     def step(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs, dt: float) -> Battery.State:
         """Return the state after `dt` [s] of the held power."""
         _, i, power = _draw(p, x, u)
-        xi = max(0.0, x.state_of_charge - dt * i / (HOUR * p.capacity))  # (B4)
-        energy = x.energy + dt * power / HOUR  # (B5)
-        return Battery.State(xi, energy, x.loss + dt * p.resistance * i * i / HOUR)  # (B6)
+        capacity = HOUR * p.capacity
+        xi, flows = x.state_of_charge - dt * i / capacity, dt  # (B4)
+        if xi <= EMPTY * x.state_of_charge:  # empty at the end of the step, or before it
+            xi, flows = 0.0, min(dt, capacity * x.state_of_charge / i) if i > 0.0 else 0.0
+        energy = x.energy + flows * power / HOUR  # (B5)
+        return Battery.State(xi, energy, x.loss + flows * p.resistance * i * i / HOUR, dt)  # (B6)
 
     @staticmethod
     def outputs(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> Battery.Outputs:
         """Return current and voltage at the power of this instant."""
         ocv, i, _ = _draw(p, x, u)
         voltage = ocv - p.resistance * i
-        return Battery.Outputs(x.state_of_charge, i, voltage, x.energy, x.energy + x.loss)
+        available = available_power(p, x)
+        return Battery.Outputs(x.state_of_charge, i, voltage, x.energy, x.energy + x.loss, available)
+
+    @staticmethod
+    def notice(p: Battery.Parameters, before: Battery.State, after: Battery.State, u: Battery.Inputs) -> str:
+        """Return a sentence when the battery is empty, or is asked for more than it can deliver."""
+        if after.state_of_charge <= 0.0:
+            return "the battery is empty: it delivers nothing any more"
+        if u.power > available_power(p, before):
+            return "the battery is asked for more power than it can deliver: it delivers the largest"
+        return ""
+
+
+def available_power(p: Battery.Parameters, x: Battery.State) -> float:
+    """Return the largest power [W] that the terminals can deliver in a step as long as the last one."""
+    if x.state_of_charge <= 0.0:
+        return 0.0
+    ocv = _open_circuit_voltage(p, x)
+    if x.step_size > 0.0:
+        i = HOUR * p.capacity * x.state_of_charge / x.step_size
+        if 2.0 * p.resistance * i < ocv:
+            return (ocv - p.resistance * i) * i  # (B2a)
+    return ocv * ocv / (4.0 * p.resistance)
+
+
+def _open_circuit_voltage(p: Battery.Parameters, x: Battery.State) -> float:
+    return p.empty_voltage + p.voltage_rise * x.state_of_charge  # (B1)
 
 
 def _draw(p: Battery.Parameters, x: Battery.State, u: Battery.Inputs) -> tuple[float, float, float]:
     """Return open-circuit voltage [V], current [A] and delivered power [W]."""
-    ocv = p.empty_voltage + p.voltage_rise * x.state_of_charge  # (B1)
+    ocv = _open_circuit_voltage(p, x)
     if u.power <= 0.0 or x.state_of_charge <= 0.0:
         return ocv, 0.0, 0.0
-    power = min(u.power, ocv * ocv / (4.0 * p.resistance))  # (B2)
+    power = min(u.power, available_power(p, x))  # (B2)
     # At the limit of (B2) the radicand is zero up to rounding, which must not make it negative.
     root = sqrt(max(0.0, ocv * ocv - 4.0 * p.resistance * power))
     return ocv, 2.0 * power / (ocv + root), power  # (B3)

@@ -76,14 +76,17 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         if v.type in _NUMERIC and v.causality in ("input", "output", "local")
     }
     recorded = set()
+    out = [pattern[1:] for pattern in patterns if pattern.startswith("!")]
     for pattern in patterns:
+        if pattern.startswith("!"):
+            continue  # it may fit nothing, as where an FMU that was put in has no such variable
         # a pattern means inputs and outputs; a local variable is recorded where it is named in full
         fits = {n for n, c in shown.items() if n == pattern or (c != "local" and fnmatchcase(n, pattern))}
         if not fits and pattern != "*":
             why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
             raise ConfigError(f"{place}: record: '{pattern}' {why}")
         recorded |= fits
-    return recorded
+    return {name for name in recorded if not any(name == p or fnmatchcase(name, p) for p in out)}
 
 
 def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:

@@ -2,7 +2,8 @@
 
 `present` renames the variables of an interface as a unit's `map` says; connections, stimuli, figures and
 results then work with the names of the system, and convert units of measure as they always do.
-`without_absent` takes out of a system and its scenario what needs variables that a unit declares `absent`.
+`without_absent` takes out of a system and its scenario what needs variables that a unit declares `absent`,
+`without_untaken` the connections that are `optional` and that an FMU has no variable for.
 """
 
 from __future__ import annotations
@@ -134,6 +135,31 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
     )
     sentences = tuple(f"left out, since it is absent: {text}" for text in dict.fromkeys(left_out))
     return dataclasses.replace(system, file=changed), dataclasses.replace(scenario, file=driven), sentences
+
+
+def without_untaken(
+    system: System, interfaces: Mapping[str, UnitInterface]
+) -> tuple[System, tuple[str, ...]]:
+    """Return the system without the ends of `optional` connections that its FMUs do not have, and a sentence
+    for each. `interfaces` are those of the units that take part."""
+    kept, said = [], []
+    for connection in system.file.connect:
+        ends = (connection.source, *connection.to)
+        lost = {name for name in ends if connection.optional and not _there(name, interfaces)}
+        losses: list[str] = []
+        left = _connection(connection, lost, losses) if lost else connection
+        if left is not None:
+            kept.append(left)
+        said += [f"left out, since the FMU has no {', '.join(sorted(lost))}: {text}" for text in losses]
+    if not said:
+        return system, ()
+    return dataclasses.replace(system, file=system.file.model_copy(update={"connect": kept})), tuple(said)
+
+
+def _there(name: str, interfaces: Mapping[str, UnitInterface]) -> bool:
+    """Return False for a variable that the FMU of a unit that takes part does not have."""
+    unit, _, variable = name.partition(".")
+    return unit not in interfaces or variable in interfaces[unit].variables
 
 
 def _connection(connection: Connection, absent: set[str], left_out: list[str]) -> Connection | None:

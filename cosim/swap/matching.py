@@ -95,6 +95,9 @@ def _of_role(
             found.append(Match(need.name, role, "", "fits", "absent, as the mapping says", need.needed))
         elif need.name in mapped:
             found.append(_as_mapped(need, mapped[need.name], offer))
+        elif need.optional and need.name not in chosen:
+            reason = "optional: the FMU has no variable of this name"
+            found.append(Match(need.name, role, "", "fits", reason, need.needed))
         else:
             found.append(_judged(need, chosen.get(need.name), candidates, offer))
     return found
@@ -131,7 +134,8 @@ def _assigned(
     all needs together. A need that no variable can be for is left out."""
     by_name = {v.name: v for v in candidates}
     same = {n.name: by_name[n.name] for n in needs if _score(n, by_name.get(n.name, _NOTHING), offer) == 2.0}
-    needs = [need for need in needs if need.name not in same]
+    # what may be missing is taken by its own name only: a guess would take another need's variable
+    needs = [need for need in needs if need.name not in same and not need.optional]
     candidates = [v for v in candidates if v.name not in same]
     if not needs or not candidates:
         return same

@@ -21,6 +21,7 @@ ROLES: tuple[Role, ...] = ("input", "output", "parameter")
 class Requirement:
     """A variable that the system needs: its `role` at the unit, and who gives, takes or sets it (`needed`).
 
+    `optional`: only connections need it that say so, and it may be missing.
     `variable` is as the unit that is there now declares it: unit of measure, type, range, description.
     """
 
@@ -28,6 +29,7 @@ class Requirement:
     role: Role
     needed: tuple[str, ...]
     variable: VariableInfo
+    optional: bool = False
 
 
 def requirements(
@@ -40,8 +42,15 @@ def requirements(
     found: dict[tuple[Role, str], list[str]] = {}
     for role, name, needed in _uses(system, scenario, unit):
         found.setdefault((role, name), []).append(needed)
+    needed_anyway = {(role, name) for role, name, _ in _uses(_without_optional(system), scenario, unit)}
     return tuple(
-        Requirement(name, role, tuple(dict.fromkeys(found[role, name])), present.variables[name])
+        Requirement(
+            name,
+            role,
+            tuple(dict.fromkeys(found[role, name])),
+            present.variables[name],
+            (role, name) not in needed_anyway,
+        )
         for wanted in ROLES
         for role, name in found
         if role == wanted and name in present.variables
@@ -57,7 +66,7 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
     """
     own, out = f"{unit}.", set(scenario.file.leave_out)
     used: list[tuple[str, str]] = []
-    for c in system.file.connect:
+    for c in _without_optional(system).file.connect:
         takers = [to for to in c.to if _unit(to) not in out]
         if _unit(c.source) not in out and (takers or c.via):
             used += _ends(c, takers)
@@ -71,6 +80,12 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
         if name.startswith(own) and name.removeprefix(own) not in offer.variables:
             found.setdefault(name.removeprefix(own), []).append(needed)
     return [f"'{name}' ({'; '.join(dict.fromkeys(needed))})" for name, needed in found.items()]
+
+
+def _without_optional(system: System) -> System:
+    """Return the system with those connections only that cannot be left out."""
+    needed = [c for c in system.file.connect if not c.optional]
+    return dataclasses.replace(system, file=system.file.model_copy(update={"connect": needed}))
 
 
 def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:

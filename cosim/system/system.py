@@ -199,6 +199,10 @@ class Connection(FiniteModel):
     """Value at the receivers before the first message, in their own unit; without it their start values.
     It needs `via`."""
 
+    optional: bool = False
+    """Leave it out, with a warning, where an FMU in the place of a unit does not have the variable: the
+    receivers keep their start values."""
+
     model_config = ConfigDict(json_schema_extra={"dependentRequired": {"initial": ["via"]}})
 
     @model_validator(mode="after")
@@ -250,7 +254,7 @@ class SystemFile(FileModel):
 
     record: list[str] = ["*"]
     """Patterns of variables that are recorded, as `vehicle.*`; `*` stands for all inputs and outputs, a local
-    variable is named in full."""
+    variable is named in full. A pattern that begins with `!` leaves out what it fits."""
 
     figure: FigureSpec | None = None
     """The figure of a run; without it evcosim chooses one."""

@@ -165,6 +165,10 @@ class Instance:
     def warnings(self) -> int:
         return self.log.warnings
 
+    @property
+    def warned(self) -> list[str]:
+        return self.log.warned
+
     # ---- before the steps
 
     def enter_initialization(

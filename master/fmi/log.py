@@ -18,6 +18,8 @@ from fmpy.fmi2 import fmi2CallbackAllocateMemoryTYPE as AllocateMemory
 from fmpy.fmi2 import fmi2CallbackFreeMemoryTYPE as FreeMemory
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
 
+from ..unit import WARNED
+
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 _KEPT = 100
 _RECENT = 20
@@ -38,6 +40,7 @@ class UnitLog:
         self.id = next(_ids)
         self.messages: collections.deque[str] = collections.deque(maxlen=_KEPT)
         self.warnings = 0
+        self.warned: list[str] = []
         self._keys = [self.id]
         _queues[self.id] = self
 
@@ -83,7 +86,10 @@ class UnitLog:
         self.messages.append(f"[{word}] {text[:_LONGEST]}")
         if UnitLog.listener is not None:
             UnitLog.listener(status, text[:_LONGEST])
-        self.warnings += status == 1
+        if status == 1:
+            self.warnings += 1
+            if len(self.warned) < WARNED and text[:_LONGEST] not in self.warned:
+                self.warned.append(text[:_LONGEST])
 
     def last(self, count: int = 3) -> str:
         """Return the last messages, one in a line; "" when there is none.

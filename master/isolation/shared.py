@@ -18,19 +18,20 @@ import tempfile
 import numpy as np
 
 from ...cosim.plan.unit_plan import SlotGroup, UnitPlan
-from ..unit import floats
+from ..unit import WARNED, floats
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
 REQUEST, KIND, TIME, STEP_SIZE, COUNT, MASTER_SLEEPS, SPIN = range(7)
 # the child's side
-ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES = range(16, 21)
+ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES, _WARNED = range(16, 22)
 
 CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
 """Kinds of requests: the call in a frame; steps; steps after the outputs that feed through; outputs alone."""
 
 _RING, _KEPT, _TEXT = 32, 20, 2048  # first slot, messages, bytes of one
 _RECORD = 2 + _TEXT // 8  # status, length, text
-_VALUES = -(-(_RING + _KEPT * _RECORD) // 16) * 16
+_WARNED_AT = _RING + _KEPT * _RECORD  # the first warnings that differ, which the ring does not keep
+_VALUES = -(-(_WARNED_AT + WARNED * _RECORD) // 16) * 16
 
 
 def create(count: int) -> int:
@@ -64,23 +65,46 @@ class Shared:
     def hear(self, status: int, text: str) -> None:
         """Keep a log message; the child calls it."""
         number = _count(self.slots[_MESSAGES])
-        place = _RING + number % _KEPT * _RECORD
         content = text.encode("utf-8", "replace")[:_TEXT]
-        self.slots[place], self.slots[place + 1] = status, len(content)
-        self._memory[8 * (place + 2) : 8 * (place + 2) + len(content)] = content
+        self._write(_RING + number % _KEPT * _RECORD, status, content)
         self.slots[_MESSAGES] = number + 1
-        self.slots[WARNINGS] += status == 1  # the exact number comes with the answer, if one comes
+        if status == 1:
+            self.slots[WARNINGS] += 1  # the exact number comes with the answer, if one comes
+            self._warn(content)
+
+    def _warn(self, content: bytes) -> None:
+        """Keep a warning, if it is one of the first that differ."""
+        number = min(_count(self.slots[_WARNED]), WARNED)
+        if number < WARNED and all(content != self._read(place)[1] for place in _places(number)):
+            self._write(_WARNED_AT + number * _RECORD, 1, content)
+            self.slots[_WARNED] = number + 1
+
+    def warned(self) -> list[str]:
+        """Return the texts of the first warnings that differ, at most three."""
+        number = min(_count(self.slots[_WARNED]), WARNED)
+        return [self._read(place)[1].decode("utf-8", "replace") for place in _places(number)]
 
     def heard(self) -> list[tuple[int, str]]:
         """Return the last log messages, at most 20, as (status, text)."""
         number = _count(self.slots[_MESSAGES])
         found = []
         for i in range(max(0, number - _KEPT), number):
-            place = _RING + i % _KEPT * _RECORD
-            length = min(_count(self.slots[place + 1]), _TEXT)
-            content = self._memory[8 * (place + 2) : 8 * (place + 2) + length]
-            found.append((_count(self.slots[place]), content.decode("utf-8", "replace")))
+            status, content = self._read(_RING + i % _KEPT * _RECORD)
+            found.append((status, content.decode("utf-8", "replace")))
         return found
+
+    def _write(self, place: int, status: int, content: bytes) -> None:
+        self.slots[place], self.slots[place + 1] = status, len(content)
+        self._memory[8 * (place + 2) : 8 * (place + 2) + len(content)] = content
+
+    def _read(self, place: int) -> tuple[int, bytes]:
+        length = min(_count(self.slots[place + 1]), _TEXT)
+        return _count(self.slots[place]), self._memory[8 * (place + 2) : 8 * (place + 2) + length]
+
+
+def _places(number: int) -> list[int]:
+    """Return the slots of the first `number` warnings."""
+    return [_WARNED_AT + i * _RECORD for i in range(number)]
 
 
 def _count(number: float) -> int:

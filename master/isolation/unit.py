@@ -70,6 +70,10 @@ class IsolatedUnit:
     def warnings(self) -> int:
         return self._shared.warnings()
 
+    @property
+    def warned(self) -> list[str]:
+        return [_printable(text) for text in self._shared.warned()]
+
     # ---- requests
 
     def _call(self, name: str, *arguments: Any) -> Any:

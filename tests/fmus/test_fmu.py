@@ -314,3 +314,19 @@ def test_bytes_of_a_state_cannot_make_the_fmu_act(mixed, load, module, name):
     with pytest.raises(FMICallException, match="fatal"):
         unit.fmu.deSerializeFMUstate(evil)
     assert f"a state of this FMU does not contain {module}.{name}" in unit.log[-1][2]
+
+
+def test_a_notice_is_a_warning_in_the_log_once_for_each_sentence(toy, load):
+    unit = load(toy("Noticing").path)
+    unit.log.clear()
+    unit.initialize()
+    unit.run([{}] * 10)
+    assert unit.log == [
+        (1, "logStatusWarning", "first at t = 0.02 s: 100 % of the limit"),
+        (1, "logStatusWarning", "first at t = 0.05 s: 200 % of the limit"),
+    ]
+    silent = load(toy("Noticing").path)
+    silent.log.clear()
+    silent.initialize()
+    silent.run([{"silent": True}] * 10)
+    assert silent.log == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
@@ -12,6 +13,7 @@ from evcosim.models.battery import Battery
 
 P = Battery.Parameters()
 charges = st.floats(0.001, 1.0)
+EMPTY_NOTICE = "the battery is empty: it delivers nothing any more"
 
 
 def ocv(charge: float) -> float:
@@ -50,7 +52,7 @@ def test_charge_never_rises_and_never_leaves_its_range(charge: float, power: flo
     after = Battery.step(P, x, Battery.Inputs(power), 1.0)
     assert 0.0 <= after.state_of_charge <= charge
     if power <= 0.0:
-        assert after == x
+        assert dataclasses.replace(after, step_size=x.step_size) == x
 
 
 def discharge(x: Battery.State, power: float, seconds: float, steps: int) -> Battery.State:
@@ -88,4 +90,39 @@ def test_an_empty_battery_delivers_nothing() -> None:
     assert x.state_of_charge == 0.0
     y = Battery.outputs(P, x, Battery.Inputs(5000.0))
     assert (y.current, y.voltage) == (0.0, P.empty_voltage)
-    assert Battery.step(P, x, Battery.Inputs(5000.0), 1.0) == x
+    assert Battery.step(P, x, Battery.Inputs(5000.0), 0.1) == x
+    assert y.available_power == 0.0
+
+
+@given(charges, st.floats(0.0, 20000.0), st.sampled_from([0.01, 1.0, 30.0]))
+def test_the_cells_give_up_what_is_delivered_and_lost(charge: float, power: float, dt: float) -> None:
+    """In each step, also the one in which the charge does not last, however long it is."""
+    x = Battery.State(charge)
+    for _ in range(40):
+        after = Battery.step(P, x, Battery.Inputs(power), dt)
+        given_up = ocv(x.state_of_charge) * P.capacity * (x.state_of_charge - after.state_of_charge)
+        taken = after.energy + after.loss - x.energy - x.loss
+        assert taken == pytest.approx(given_up, rel=1e-9, abs=1e-9 * charge * ocv(1.0) * P.capacity * 1e-3)
+        x = after
+
+
+@given(st.floats(1e-6, 0.01), st.floats(100.0, 20000.0), st.sampled_from([0.01, 0.1, 1.0]))
+def test_who_keeps_to_the_available_power_gets_all_that_it_takes(
+    charge: float, wanted: float, dt: float
+) -> None:
+    x, taken = Battery.step(P, Battery.State(charge), Battery.Inputs(0.0), dt), 0.0
+    while x.state_of_charge > 0.0:
+        power = min(wanted, Battery.outputs(P, x, Battery.Inputs(0.0)).available_power)
+        before, x = x, Battery.step(P, x, Battery.Inputs(power), dt)
+        taken += power * dt / 3600.0
+        assert Battery.notice(P, before, x, Battery.Inputs(power)) in ("", EMPTY_NOTICE)
+    assert x.energy == pytest.approx(taken, rel=1e-9)
+    assert Battery.notice(P, x, x, Battery.Inputs(0.0)) == EMPTY_NOTICE
+
+
+def test_more_than_it_can_deliver_is_noticed() -> None:
+    x = Battery.State(1.0)
+    limit = Battery.outputs(P, x, Battery.Inputs(0.0)).available_power
+    assert limit == ocv(1.0) ** 2 / (4.0 * P.resistance)
+    beyond = Battery.Inputs(limit * 1.001)
+    assert "asked for more power" in Battery.notice(P, x, Battery.step(P, x, beyond, 0.01), beyond)

@@ -212,3 +212,47 @@ def test_the_drive_limits_the_speed() -> None:
     assert 49.5 < 3.6 * x.speed < 50.5
     downhill = drive(Scooter.State(60.0 / 3.6, 0.0, 0.0), Scooter.Inputs(100.0), 0.2)
     assert downhill.drive_force == 0.0
+
+
+def limited(watts: float, throttle: float = 100.0) -> Scooter.Inputs:
+    return Scooter.Inputs(throttle=throttle, available_power=watts)
+
+
+@given(
+    st.floats(0.0, 6000.0), st.floats(0.0, 15.0), st.floats(0.0, 850.0), st.sampled_from([0.001, 0.01, 0.1])
+)
+def test_the_power_never_exceeds_what_is_available(watts: float, v: float, force: float, dt: float) -> None:
+    x = Scooter.State(v, force, 0.0)
+    for _ in range(20):
+        x = Scooter.step(P, x, limited(watts), dt)
+        assert Scooter.outputs(P, x, limited(watts)).power <= watts
+        assert x.drive_force * x.speed <= P.drive_efficiency * max(0.0, watts - 40.0) * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("watts", [0.0, 20.0, 40.0, -5.0])
+def test_without_power_for_the_drive_the_vehicle_coasts(watts: float) -> None:
+    x, coasting = Scooter.State(8.0, 300.0, 0.0), Scooter.State(8.0, 0.0, 0.0)
+    for _ in range(200):
+        x = Scooter.step(P, x, limited(watts), DT)
+        coasting = Scooter.step(P, coasting, Scooter.Inputs(0.0), DT)
+        assert (x.speed, x.drive_force, x.distance) == (coasting.speed, 0.0, coasting.distance)
+    assert Scooter.outputs(P, x, limited(watts)).power == max(0.0, watts)
+
+
+@given(st.floats(0.0, 15.0), st.floats(0.0, 100.0))
+def test_a_limit_that_is_not_reached_changes_nothing(v: float, throttle: float) -> None:
+    x = free = Scooter.State(v, 0.0, 0.0)
+    for _ in range(20):
+        x, free = (
+            Scooter.step(P, x, limited(1e5, throttle), DT),
+            Scooter.step(P, free, Scooter.Inputs(throttle), DT),
+        )
+    assert (x.speed, x.drive_force, x.distance) == (free.speed, free.drive_force, free.distance)
+
+
+def test_a_limit_is_noticed_where_it_takes_force_away() -> None:
+    x = Scooter.State(5.0, 0.0, 0.0)
+    for watts, noticed in ((1e6, False), (1000.0, True), (0.0, True)):
+        after = Scooter.step(P, x, limited(watts), DT)
+        assert bool(Scooter.notice(P, x, after, limited(watts))) == noticed
+        assert not Scooter.notice(P, x, Scooter.step(P, x, limited(watts, 0.0), DT), limited(watts, 0.0))

@@ -51,6 +51,7 @@ class MockUnit:
         self.steps: list[tuple[float, float]] = []
         self.log: list[str] = []
         self.warnings = 0
+        self.warned: list[str] = []
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         self.memory, self.groups = memory, plan.groups

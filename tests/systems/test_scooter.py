@@ -5,10 +5,13 @@ Each limit is the paper's (published) or the design's (chosen); docs/systems/sco
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from evcosim import simulate
+from evcosim.cosim.system.system import load_system
 from evcosim.master.reproduce.scooter_numbers import (
     CONSTANT_SPEEDS,
     KMH,
@@ -131,3 +134,44 @@ def test_bounds_save_energy_and_cost_speed():
     bounded, free = energy_and_speed(stop_and_go(True)), energy_and_speed(stop_and_go(False))
     assert bounded == pytest.approx((43.0, 24.1), rel=0.02)
     assert free == pytest.approx((73.7, 39.7), rel=0.005)
+
+
+def on_a_battery(charge: float, **options):
+    """Fig. 8 with a battery charged so far, all variables recorded."""
+    system = load_system("scooter")
+    system = dataclasses.replace(system, file=system.file.model_copy(update={"record": ["*"]}))
+    parameters = {"battery.initial_state_of_charge": charge, **options.pop("parameters", {})}
+    return simulate(system, "fig8", parameters=parameters, **options)
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_an_empty_battery_does_not_drive_and_the_run_says_so(engine):
+    results = on_a_battery(0.0, engine=engine)
+    assert not results["vehicle.distance"].any() and not results["battery.energy_drawn"].any()
+    assert not results["vehicle.power"].any()
+    said = results.manifest["warnings"]
+    assert any(w.startswith("unit 'battery'") and "at t = 0.01 s: the battery is empty" in w for w in said)
+    assert any(w.startswith("unit 'vehicle'") and "the drive gets what is left" in w for w in said)
+
+
+def test_a_battery_that_empties_delivers_all_that_the_vehicle_takes():
+    results = on_a_battery(0.0003)
+    soc, power = results["battery.state_of_charge"], results["vehicle.power"]
+    assert soc[-1] == 0.0 and not results["vehicle.drive_force"][soc == 0.0].any()
+    ocv = 46.0 + 8.0 * soc
+    cells = np.cumsum(ocv[:-1] * 40.0 * (soc[:-1] - soc[1:]))
+    assert results["battery.energy_drawn"][1:] == pytest.approx(cells, abs=1e-9)
+    assert results["battery.energy"][1:] == pytest.approx(np.cumsum(power[1:]) * 0.01 / 3600.0, abs=1e-9)
+    assert 0.0 < results["vehicle.distance"][-1] < 100.0
+
+
+def test_a_weak_battery_limits_the_drive_to_its_largest_power():
+    weak = {"battery.resistance": 0.6, "ecu.enabled": False}
+    results = on_a_battery(1.0, parameters=weak)
+    available = results["battery.available_power"]
+    assert (results["vehicle.power"][1:] <= available[:-1]).all()
+    assert results["vehicle.power"].max() == pytest.approx(54.0**2 / 2.4, rel=2e-3)
+    assert any("the drive gets what is left" in w for w in results.manifest["warnings"])
+    apart = on_a_battery(1.0, parameters=weak, isolation="process")
+    assert apart.data.tobytes() == results.data.tobytes()
+    assert apart.manifest["warnings"] == results.manifest["warnings"]

@@ -19,6 +19,13 @@ def test_what_is_recorded():
     assert [c.name for c in plan([], record=["*.speed"]).columns] == ["ecu.speed", "car.speed"]
 
 
+def test_a_pattern_with_an_exclamation_mark_leaves_out_wherever_it_stands():
+    for record in (["car.*", "!*.grade"], ["!car.grade", "car.*"], ["car.*", "!*.grade", "!car.nothing"]):
+        names = [c.name for c in plan([], record=record).columns]
+        assert names == ["car.throttle", "car.speed", "car.force", "car.gear"]
+    assert not plan([], record=["car.*", "!*"]).columns
+
+
 def test_no_two_values_share_a_slot():
     slots, _ = allot(INTERFACES, ["*"], set(), "here")
     taken = [*slots.valid.values(), *slots.latest.values()]

@@ -8,7 +8,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.swap.mapping import present, without_absent
+from evcosim.cosim.swap.mapping import present, without_absent, without_untaken
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile, UnitEntry
 
@@ -161,6 +161,29 @@ def test_nothing_of_what_is_left_names_what_is_absent() -> None:
 def test_leaving_out_twice_is_leaving_out_once() -> None:
     system, scenario, _ = left()
     assert without_absent(system, scenario) == (system, scenario, ())
+
+
+def test_an_optional_connection_is_left_out_where_an_fmu_has_no_variable_for_it() -> None:
+    connect = [
+        {"from": "w.b", "to": ["u.pedal", "u.extra"], "optional": True},
+        {"from": "w.gone", "to": ["u.pedal"], "optional": True},
+        {"from": "w.gone", "to": ["u.extra"]},
+        {"from": "out.x", "to": ["u.pedal"], "optional": True},
+    ]
+    file = {"name": "s", "units": {n: {"fmu": "F"} for n in ("u", "w", "out")}, "connect": connect}
+    system = System(Path("s.toml"), SystemFile.model_validate(file))
+    w = UnitInterface("W.fmu", {"b": VariableInfo("b", causality="output")})
+    left, said = without_untaken(system, {"u": FMU, "w": w})  # out takes no part
+    assert [(c.source, c.to) for c in left.file.connect] == [
+        ("w.b", ["u.pedal"]),
+        ("w.gone", ["u.extra"]),  # what is needed is refused later, by name
+        ("out.x", ["u.pedal"]),
+    ]
+    assert said == (
+        "left out, since the FMU has no u.extra: w.b -> u.extra",
+        "left out, since the FMU has no w.gone: w.gone -> u.pedal; a receiver keeps its start value",
+    )
+    assert without_untaken(left, {"u": FMU}) == (left, ())
 
 
 def test_with_nothing_absent_all_stays() -> None:

@@ -171,3 +171,12 @@ def test_what_is_missing_or_to_choose_does_not_fit(verdict: Verdict) -> None:
     good = verdict in ("fits", "fits after conversion", "unused")
     assert fits([Match("a", "input", "x", verdict, "")]) is good
     assert fits([Match("b", "input", "y", "fits", ""), Match("a", "input", "x", verdict, "")]) is good
+
+
+def test_what_is_optional_is_taken_by_its_own_name_or_not_at_all() -> None:
+    """A power that is delivered is no limit, however alike the names are."""
+    without = found("scooter.vehicle", PLAIN + " | input available_pwr W")
+    assert (without["available_power"].variable, without["available_power"].verdict) == ("", "fits")
+    assert "optional" in without["available_power"].reason
+    own = found("scooter.vehicle", PLAIN + " | input available_power kW")["available_power"]
+    assert (own.variable, own.verdict) == ("available_power", "fits after conversion")

@@ -47,6 +47,14 @@ def test_only_so_much_is_kept(log: UnitLog) -> None:
     assert len(log.messages) == 100
     assert all(len(message) < 2100 for message in log.messages)
     assert log.warnings == 500
+    assert [text[:2] for text in log.warned] == ["0 ", "1 ", "2 "]
+    assert all(len(text) < 2100 for text in log.warned)
+
+
+def test_the_texts_of_warnings_that_differ_are_kept_once(log: UnitLog) -> None:
+    for status, text in ((1, "first"), (0, "no warning"), (1, "first"), (1, "second"), (3, "error")):
+        log.add(status, text)
+    assert (log.warnings, log.warned) == (3, ["first", "second"])
 
 
 def test_a_message_reaches_the_unit_of_its_environment() -> None:

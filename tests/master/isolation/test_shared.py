@@ -69,6 +69,17 @@ def test_the_last_twenty_messages_are_kept_and_warnings_counted(memory: tuple[Sh
     assert (status, text[:7], len(text.encode())) == (1, "Grüße x", 2048)
 
 
+def test_the_first_warnings_that_differ_are_kept(memory: tuple[Shared, Shared]) -> None:
+    master, child = memory
+    for i in range(200):
+        child.hear(1, f"warning {i // 50}")
+        child.hear(0, "chatter")
+    assert master.warned() == ["warning 0", "warning 1", "warning 2"]
+    assert master.warnings() == 200
+    child.slots[shared._WARNED] = 2.0**60
+    assert master.warned() == []
+
+
 @pytest.mark.parametrize("claim", [math.nan, math.inf, -1.0, 2.0**60])
 def test_a_count_that_is_none_is_taken_as_0(memory: tuple[Shared, Shared], claim: float) -> None:
     master, child = memory
