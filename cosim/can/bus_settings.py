@@ -7,7 +7,6 @@ it for all buses, BusVariation has it too.
 from __future__ import annotations
 
 import dataclasses
-import math
 from numbers import Integral
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -23,12 +22,12 @@ Resolution = float | Literal["ideal"]
 def checked_resolution(value: Any) -> Resolution:
     """Return the factor by which signals are coarser than their DBC says, or "ideal". Raises ValueError."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if value != "ideal" and not (number and 1.0 <= value < math.inf):
-        raise ValueError('a resolution is a factor from 1 on, or "ideal"')
+    if value != "ideal" and not (number and 1.0 <= value <= 1e9):
+        raise ValueError('a resolution is a factor from 1 to 1e9, or "ideal"')
     return "ideal" if value == "ideal" else float(value)
 
 
-_RESOLUTION_SCHEMA = {"anyOf": [{"type": "number", "minimum": 1}, {"const": "ideal"}]}
+_RESOLUTION_SCHEMA = {"anyOf": [{"type": "number", "minimum": 1, "maximum": 1e9}, {"const": "ideal"}]}
 
 
 class BusSettings(BaseModel):
@@ -36,7 +35,7 @@ class BusSettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    bitrate: int = Field(default=500_000, gt=0)
+    bitrate: int = Field(default=500_000, gt=0, le=10**9)
     """Bits a second."""
 
     rounding: Rounding = "nearest"
@@ -47,7 +46,7 @@ class BusSettings(BaseModel):
     """A value out of range is sent as the nearest limit (saturate), by its low bits as C code without a range
     check does (wrap), or is an error (error)."""
 
-    delay: float = Field(default=0.0, ge=0.0, allow_inf_nan=False)
+    delay: float = Field(default=0.0, ge=0.0, le=3600.0)
     """Time from sampling to the receivers' mailboxes in s: a multiple of the communication step."""
 
     resolution: Annotated[
@@ -55,7 +54,7 @@ class BusSettings(BaseModel):
     ] = 1.0
     """Factor from 1 on by which signals are coarser than the DBC says, or "ideal": not quantized at all."""
 
-    cycle: int = Field(default=1, ge=1)
+    cycle: int = Field(default=1, ge=1, le=10**6)
     """Factor by which messages are sent less often than the DBC says."""
 
 

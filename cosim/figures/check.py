@@ -43,8 +43,7 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> Affine:
     if variable.unit in ("", unit):
         return Affine()
     try:
-        kinds = (variable.difference, variable.difference)
-        return conversion(defined(variable.unit), defined(unit), kinds)
+        return conversion(defined(variable.unit), defined(unit))
     except ConfigError as error:
         signal = f"{place}: '{variable.name}' [{variable.unit}]"
         if not unit:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
-from ..system.problems import shown
+from ..system.problems import brief
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
@@ -114,7 +115,6 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
         variability=v.variability,
         description=v.description,
         items=v.items,
-        difference=v.difference,
     )
 
 
@@ -223,18 +223,18 @@ def checked(value: Any, variable: VariableInfo, place: str) -> Value:
     value = value.item() if isinstance(value, np.generic) else value
     if variable.type == "String":
         if not isinstance(value, str):
-            raise ConfigError(f"{place}: {variable.name} is a String, not {shown(value)}")
+            raise ConfigError(f"{place}: {variable.name} is a String, not {brief(value)}")
         return value
     if variable.type == "Enumeration" and isinstance(value, str):
         return _item(value, variable, place)
     if variable.type == "Boolean":
         if value not in (True, False):
-            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {shown(value)}")
+            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {brief(value)}")
         return bool(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not -math.inf < value < math.inf:
-        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {shown(value)}")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
+        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {brief(value)}")
     if variable.type != "Real" and value != int(value):
-        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {shown(value)}")
+        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {brief(value)}")
     if variable.min is not None and value < variable.min:
         raise ConfigError(
             f"{place}: {value}{unit} is below the minimum {variable.min}{unit} of {variable.name}"
@@ -251,7 +251,7 @@ def _item(name: str, variable: VariableInfo, place: str) -> int:
     values = {text: number for number, text in variable.items}
     if name not in values:
         raise ConfigError(
-            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {shown(list(values))}"
+            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {brief(list(values))}"
         )
     return values[name]
 

@@ -43,9 +43,8 @@ def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]
 
 def _described(variable: ResultVariable) -> dict[str, Any]:
     about = dataclasses.asdict(variable)
-    for name in ("items", "difference"):
-        if not about[name]:
-            del about[name]
+    if not variable.items:
+        del about["items"]
     return about
 
 

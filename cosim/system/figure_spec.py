@@ -7,10 +7,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .toml import FileModel, OrText, Pair, text_as
+from .toml import FileModel, FiniteModel, OrText, Pair, text_as
+
+_FARTHEST, _FINEST = 1e100, 1e-9  # ends of an axis, and its length as a share of them
 
 
-class SignalSpec(FileModel):
+class SignalSpec(FiniteModel):
     """One line of a panel: a variable and how it is drawn. The variable's name alone stands for a table."""
 
     name: str = Field(examples=["vehicle.speed"])
@@ -29,7 +31,7 @@ class SignalSpec(FileModel):
     """Draw each value held until the next; without it so are inputs and sampled outputs."""
 
 
-class PanelSpec(FileModel):
+class PanelSpec(FiniteModel):
     """One panel of the figure, with an axis of its own."""
 
     label: str = ""
@@ -46,8 +48,13 @@ class PanelSpec(FileModel):
 
     @model_validator(mode="after")
     def _limits_rise(self) -> PanelSpec:
-        if self.limits is not None and not self.limits[0] < self.limits[1]:
+        if self.limits is None:
+            return self
+        low, high = self.limits
+        if not low < high:
             raise ValueError("limits: the first must be below the second")
+        if max(-low, high) > _FARTHEST or high - low < max(_FINEST * max(-low, high), 1.0 / _FARTHEST):
+            raise ValueError(f"limits: no axis can be drawn from {low:g} to {high:g}")
         return self
 
 

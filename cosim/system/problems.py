@@ -47,14 +47,14 @@ def _sentence(problem: Any, data: Any, model: type[BaseModel]) -> str:
     if kind == "missing":
         return f"{path}: this {'value' if isinstance(place[-1], int) else 'key'} is needed{chosen}"
     if kind == "float_type" and isinstance(value, int) and not isinstance(value, bool):
-        return f"{path}: a number may be {sys.float_info.max:.3g} at most, not {_cut(value)}"
+        return f"{path}: a number may be {sys.float_info.max:.3g} at most, not {brief(value)}"
     rule = _NEEDED.get(kind) or problem["msg"].removeprefix("Value error, ")
     if kind in ("too_short", "too_long"):
         return f"{path}: {rule.replace('Dictionary', 'Table')}"  # which says how many there are
     if kind == "value_error" and isinstance(value, Mapping):
         return f"{path}: {rule}"  # a rule between keys, which names them itself
     near = _nearest(value, problem["ctx"]["expected"]) if kind == "literal_error" else ""
-    return f"{path}: {rule}, not {_cut(value)}{near}"
+    return f"{path}: {rule}, not {brief(value)}{near}"
 
 
 def _about_a_tag(problem: Any, place: Place) -> str:
@@ -65,7 +65,7 @@ def _about_a_tag(problem: Any, place: Place) -> str:
         tags = problem["ctx"]["expected_tags"]
         known = " or ".join(tags.rsplit(", ", 1))
         near = _nearest(table[key], tags)
-        return f"{path}: Input should be {known}, not {_cut(table[key])}{near}"
+        return f"{path}: Input should be {known}, not {brief(table[key])}{near}"
     typo = next((name for name in table if nearest(name, [key])), None)
     if typo is not None:
         return f"{spelled([*place, typo])}: unknown key{nearest(typo, [key])}"
@@ -133,7 +133,7 @@ def shown(value: Any) -> str:
             return repr(value)
 
 
-def _cut(value: Any) -> str:
+def brief(value: Any) -> str:
     """Return a value as a file writes it, cut where it is long."""
     text = shown(value)
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."

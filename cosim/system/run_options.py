@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from numbers import Real
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any, TypedDict, get_args
 from ..can.bus_settings import BusVariation
 from ..errors import ConfigError, nearest
 from ..interface import Value
-from .system import Algorithm, EngineName, Isolation
+from .system import LATEST, Algorithm, EngineName, Isolation
 
 
 class RunOptions(TypedDict, total=False):
@@ -69,7 +70,13 @@ def _one_of(kind: Any) -> tuple[Callable[[Any], bool], str]:
 
 
 def _is_time(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        seconds = float(value)
+    except OverflowError:  # an integer beyond all doubles
+        return False
+    return abs(seconds) <= LATEST or not math.isfinite(seconds)  # which is refused with its place
 
 
 _FLAG = (lambda value: isinstance(value, bool), "must be True or False")
@@ -81,7 +88,7 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "ideal": _FLAG,
     "bus": (lambda value: isinstance(value, BusVariation), "must be a BusVariation"),
     "algorithm": _one_of(Algorithm),
-    "stop_time": (_is_time, "must be a number of seconds"),
+    "stop_time": (_is_time, f"must be a number of seconds, up to {LATEST:g}"),
     "isolation": _one_of(Isolation),
     "engine": _one_of(EngineName),
     "strict": _FLAG,

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, model_validator
 from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
-from .system import Algorithm, System, VariableName
+from .system import LATEST, SHORTEST, Algorithm, System, VariableName
 from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, Pair, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
@@ -124,7 +124,7 @@ class StimulusEntry(FiniteModel):
 class _EventRecord(FiniteModel):
     """Keys of all events."""
 
-    time: float = Field(ge=0.0)
+    time: float = Field(ge=0.0, le=LATEST)
     """Time in s; it happens at the first communication point at or after it."""
 
     @property
@@ -180,10 +180,10 @@ place that a new action must be added to."""
 class ScenarioExperiment(FiniteModel):
     """Keys of the system's `[experiment]` that take another value in this scenario."""
 
-    stop_time: float | None = None
+    stop_time: float | None = Field(default=None, ge=-LATEST, le=LATEST)
     """Time at which the run ends, in s; without it the system's."""
 
-    step_size: float | None = Field(default=None, gt=0.0)
+    step_size: float | None = Field(default=None, ge=SHORTEST, le=LATEST)
     """Communication step in s; without it the system's."""
 
     algorithm: Algorithm | None = None

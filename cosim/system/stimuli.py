@@ -43,8 +43,9 @@ def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> TimeFunct
 
 def _sine(sine: Sine) -> TimeFunction:
     def values(t: NDArray[np.float64]) -> NDArray[np.float64]:
-        swing = sine.amplitude * np.sin(2.0 * math.pi * (t - sine.delay) / sine.period + sine.phase)
-        return sine.mean + np.where(t >= sine.delay, swing, 0.0)
+        with np.errstate(over="ignore", invalid="ignore"):  # the engine refuses what is not finite
+            swing = sine.amplitude * np.sin(2.0 * math.pi * (t - sine.delay) / sine.period + sine.phase)
+            return sine.mean + np.where(t >= sine.delay, swing, 0.0)
 
     return values
 
@@ -59,7 +60,8 @@ def _ramp(ramp: Ramp, place: str) -> TimeFunction:
         low, high = sorted((ramp.start, ramp.end))
 
     def values(t: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.clip(ramp.start + ramp.slope * np.maximum(t - ramp.delay, 0.0), low, high)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.clip(ramp.start + ramp.slope * np.maximum(t - ramp.delay, 0.0), low, high)
 
     return values
 

@@ -31,6 +31,13 @@ Isolation = Literal["process", "none"]
 EngineName = Literal["compiled", "python"]
 
 
+LATEST = 1e12
+"""The greatest time [s] of a run, 32,000 years: with the step below, a run's steps can be counted."""
+SHORTEST = 1e-12
+"""The shortest communication step [s]."""
+_LONGEST_WAIT = 1e6  # s
+
+
 def _identifier(name: str) -> str:
     if not name.isidentifier():
         raise ValueError("a name is made of letters, digits and '_'")
@@ -62,13 +69,13 @@ SignalName = Annotated[
 class Experiment(FiniteModel):
     """The communication points of a run, and the order in which units step."""
 
-    start_time: float = 0.0
+    start_time: float = Field(default=0.0, ge=-LATEST, le=LATEST)
     """Time of the first communication point in s."""
 
-    stop_time: float = 10.0
+    stop_time: float = Field(default=10.0, ge=-LATEST, le=LATEST)
     """Time at which the run ends, in s: a whole number of steps after `start_time`."""
 
-    step_size: float = Field(default=0.01, gt=0.0)
+    step_size: float = Field(default=0.01, ge=SHORTEST, le=LATEST)
     """Communication step in s: how often values go from unit to unit."""
 
     algorithm: Algorithm = "gauss_seidel"
@@ -130,26 +137,26 @@ class UnitEntry(FileModel):
     start: dict[str, FileValue] = {}
     """Start values of inputs by name; an input that nothing drives keeps its own."""
 
-    period: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
+    period: float | None = Field(default=None, gt=0.0, le=LATEST)
     """Time in s from one step of the unit to the next, a multiple of `step_size`; without it that itself."""
 
-    substeps: int = Field(default=1, ge=1)
+    substeps: int = Field(default=1, ge=1, le=1_000_000)
     """FMU steps into which a period is divided, with the inputs held."""
 
     isolation: Isolation | None = None
     """Run it in a process of its own (process) or in the master's (none); without it FMUs that evcosim did
     not build have a process of their own."""
 
-    step_timeout: float = Field(default=30.0, gt=0.0, allow_inf_nan=False)
+    step_timeout: float = Field(default=30.0, ge=1e-3, le=_LONGEST_WAIT)
     """Longest time in s that its process may take for an answer in the run."""
 
-    load_timeout: float = Field(default=60.0, gt=0.0, allow_inf_nan=False)
+    load_timeout: float = Field(default=60.0, ge=1e-3, le=_LONGEST_WAIT)
     """Longest time in s for an answer before the run: loading, instantiating, initializing."""
 
-    memory_limit: float = Field(default=8e9, gt=0.0)
+    memory_limit: float = Field(default=8e9, ge=256e6)
     """Address space of its process in bytes; inf for no limit."""
 
-    file_limit: float = Field(default=256e6, gt=0.0)
+    file_limit: float = Field(default=256e6, ge=1.0)
     """Size in bytes of each file that its process writes; inf for no limit."""
 
     interface: InterfaceType | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -67,6 +68,8 @@ class FiniteModel(FileModel):
 def _plain(value: Any) -> Any:
     if not isinstance(value, Value):
         raise ValueError("a value is a number, true, false or a text")
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        raise ValueError(f"a number may be {sys.float_info.max:.3g} at most")
     return value
 
 

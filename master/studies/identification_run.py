@@ -100,8 +100,7 @@ class IdentificationRun:
         owner = self.output.partition(".")[0]
         known = next(u for u in self.simulation.plan.units if u.name == owner).interface.units_of_measure
         try:
-            kinds = (shown.difference, shown.difference)
-            return conversion(defined(shown.unit, known), defined(unit, known), kinds)
+            return conversion(defined(shown.unit, known), defined(unit, known))
         except ConfigError as error:
             raise ConfigError(f"{self.spec.output} in unit {unit}: {error}") from error
 

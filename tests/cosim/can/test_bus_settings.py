@@ -36,7 +36,7 @@ def test_a_bus_of_a_file_is_its_settings_and_a_database():
 
 def test_a_schema_says_what_a_resolution_is():
     (factor, word) = TypeAdapter(BusSettings).json_schema()["properties"]["resolution"]["anyOf"]
-    assert (factor, word) == ({"type": "number", "minimum": 1}, {"const": "ideal"})
+    assert (factor, word) == ({"type": "number", "minimum": 1, "maximum": 1e9}, {"const": "ideal"})
 
 
 # ---- variations
@@ -70,7 +70,7 @@ def test_two_variations_are_one_after_the_other():
         ({"delay_steps": 0.5}, "delay_steps = 0.5"),
         ({"cycle": 0}, "cycle = 0: it is a whole number from 1 on"),
         ({"cycle": True}, "cycle = True"),
-        ({"resolution": 0.5}, 'resolution = 0.5: a resolution is a factor from 1 on, or "ideal"'),
+        ({"resolution": 0.5}, 'resolution = 0.5: a resolution is a factor from 1 to 1e9, or "ideal"'),
         ({"resolution": float("inf")}, "resolution = inf"),
         ({"resolution": "idael"}, "resolution = 'idael'"),
     ],

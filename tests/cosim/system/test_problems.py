@@ -51,7 +51,7 @@ BROKEN = [
     ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nvia = 'can0.M'\n", "connect 1.via: a signal is written bus.message.signal, not 'can0.M'"),
     ("system", HEAD + "[[connect]]\nfrom = 'a.b'\ninitial = 1\n", "connect 1: 'initial' is what is there before the first message: it needs a 'via'"),
     ("system", HEAD + "[buses.can0]\ndbc = 'x'\ncycle = 0\n", "buses.can0.cycle: Input should be greater than or equal to 1, not 0"),
-    ("system", HEAD + "[buses.can0]\ndbc = 'x'\nresolution = 'fine'\n", "buses.can0.resolution: a resolution is a factor from 1 on, or \"ideal\", not 'fine'"),
+    ("system", HEAD + "[buses.can0]\ndbc = 'x'\nresolution = 'fine'\n", "buses.can0.resolution: a resolution is a factor from 1 to 1e9, or \"ideal\", not 'fine'"),
     ("system", HEAD + "[experiment]\nstep_size = '10 ms'\n", "experiment.step_size: Input should be a valid number, not '10 ms'"),
     ("system", HEAD + "[experiment]\nstep_size = '0.5'\nstop_time = true\nstart_time = [1]\n", "experiment.start_time: Input should be a valid number, not [1]\nexperiment.stop_time: Input should be a valid number, not true\nexperiment.step_size: Input should be a valid number, not '0.5'"),
     ("system", HEAD + "strict = 'no'\n", "units.a.strict: Input should be a valid boolean, not 'no'"),

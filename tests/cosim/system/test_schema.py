@@ -249,14 +249,14 @@ def test_an_editor_completes_the_keys_of_an_event_before_its_action() -> None:
 @pytest.mark.parametrize(
     ("table", "key", "text"),
     [
-        ("Experiment", "step_size", "number > 0"),
+        ("Experiment", "step_size", "number >= 1e-12 and <= 1e+12"),
         ("Experiment", "algorithm", '"gauss_seidel" or "jacobi"'),
-        ("UnitEntry", "substeps", "whole number >= 1"),
+        ("UnitEntry", "substeps", "whole number >= 1 and <= 1e+06"),
         ("UnitEntry", "tolerance", "number > 0 and < 1"),
         ("UnitEntry", "strict", "true or false"),
         ("UnitEntry", "absent", "list of texts"),
         ("UnitEntry", "map", "table"),
-        ("BusEntry", "resolution", 'number >= 1 or "ideal"'),
+        ("BusEntry", "resolution", 'number >= 1 and <= 1e+09 or "ideal"'),
         ("Connection", "to", "list of unit.variable"),
         ("PanelSpec", "limits", "[number, number]"),
         ("MetricSpec", "value", "number or text or true or false"),

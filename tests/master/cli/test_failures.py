@@ -77,7 +77,7 @@ def test_wrong_arguments(evcosim, arguments, texts):
     ("old", "new", "texts"),
     [
         ("step_size =", "step_sise =", ["scooter.toml: experiment.step_sise", "(did you mean 'step_size'?)"]),
-        ("step_size = 0.01", "step_size = 0", ["scooter.toml: experiment.step_size", "greater than 0"]),
+        ("step_size = 0.01", "step_size = 0", ["experiment.step_size", "greater than or equal to 0.00"]),
         ('name = "scooter"', 'name = "scooter', ["scooter.toml: is not valid TOML", "line"]),
         (
             'fmu = "Scooter"',

@@ -1,0 +1,240 @@
+"""A number at the edge of what there is, at any key of any file, makes a run or a message, never a crash."""
+
+from __future__ import annotations
+
+import math
+import os
+import tomllib
+import traceback
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic import BaseModel
+
+from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.swap.swap_file import SwapFile
+from evcosim.cosim.system.scenario import ScenarioFile, load_scenario
+from evcosim.cosim.system.system import SystemFile, load_system
+from evcosim.master.simulation import Simulation
+from support.forked import forked
+from support.numeric_keys import Place, numeric_places, with_value
+
+HOSTILE = [1e308, -1e308, 5e-324, math.inf, math.nan, 0, -1, 1e-10, 2**63, -(2**63) - 1, 10**400, 10**5000]
+WRONG = [True, "0.5", [1]]
+SYSTEM = """
+name = "bench"
+record = ["*"]
+[experiment]
+start_time = 0.0
+stop_time = 0.03
+step_size = 0.01
+loop_tolerance = 1e-9
+[units.ecu]
+fmu = "BoundController"
+parameters = { gain = 0.05 }
+start = { speed_bound = 30.0 }
+[units.vehicle]
+fmu = "Scooter"
+period = 0.01
+[buses.can0]
+dbc = "can/ev.dbc"
+[[connect]]
+from = "vehicle.speed"
+to = ["ecu.speed_measured"]
+via = "can0.EMD_Status.EMD_VehicleSpeed"
+initial = 0.0
+[[connect]]
+from = "ecu.throttle"
+to = ["vehicle.throttle"]
+via = "can0.VCU_Request.VCU_ThrottleRequest"
+[[figure.panels]]
+signals = [{ name = "vehicle.speed", weight = 1.0 }]
+unit = "km/h"
+limits = [0.0, 30.0]
+[[metrics]]
+name = "above"
+signal = "vehicle.speed"
+reduce = "share_above"
+threshold = 1.0
+threshold_unit = "km/h"
+after = 0.0
+per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
+[[metrics]]
+name = "equal"
+signal = "ecu.state"
+reduce = "share_equal"
+value = 1
+per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
+[budget]
+metric = "above"
+limit = 1.0
+"""
+SCENARIO = """
+[experiment]
+stop_time = 0.03
+step_size = 0.01
+[parameters.ecu]
+gain = 0.05
+[start.ecu]
+speed_bound = 20.0
+[[stimulus]]
+to = "ecu.throttle_request"
+constant = 1.0
+[[stimulus]]
+to = "vehicle.road_grade"
+table = [[0.0, 0.0], [0.02, 0.1]]
+[[stimulus]]
+to = "ecu.speed_bound"
+sine = { amplitude = 1.0, period = 1.0, mean = 20.0, phase = 0.0, delay = 0.0 }
+[[stimulus]]
+to = "ecu.acceleration_bound"
+ramp = { slope = 1.0, start = 0.0, end = 2.0, delay = 0.0 }
+[[event]]
+action = "override"
+time = 0.01
+variable = "ecu.throttle_request"
+value = 1.0
+[[figure.panels]]
+signals = [{ name = "vehicle.speed", weight = 1.0 }]
+unit = "km/h"
+limits = [0.0, 30.0]
+[[metrics]]
+name = "above"
+signal = "vehicle.speed"
+reduce = "share_above"
+threshold = 1.0
+after = 0.0
+per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
+[[metrics]]
+name = "equal"
+signal = "ecu.state"
+reduce = "share_equal"
+value = 1
+per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
+[identification]
+input = "ecu.throttle_request"
+output = "vehicle.speed"
+amplitude = 1.0
+at = [1.0]
+at_input = [1.0]
+sweep = [0.1, 0.6]
+duration = 100.0
+repeats = 1
+band = [0.1, 0.5]
+"""
+SWAP = """
+fmu = "Scooter"
+period = 0.01
+[parameters]
+mass = 200.0
+[start]
+brake_force = 0.0
+"""
+"""Documents with a table for every numeric key; a key that is not in them is added to its table."""
+
+KINDS: dict[str, tuple[type[BaseModel], str]] = {
+    "system": (SystemFile, SYSTEM),
+    "scenario": (ScenarioFile, SCENARIO),
+    "swap": (SwapFile, SWAP),
+}
+PLACES = [(kind, place) for kind, (model, _) in KINDS.items() for place in numeric_places(model)]
+
+
+def toml(value: Any) -> str:
+    """Return a value as an inline part of a TOML text."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case float():
+            return repr(value)
+        case int():
+            return hex(value) if value > 10**4000 else str(value)  # Python writes no longer one in decimals
+        case str():
+            return '"' + "".join(f"\\u{ord(c):04x}" for c in value) + '"'
+        case list():
+            return f"[{', '.join(map(toml, value))}]"
+        case _:
+            return f"{{{', '.join(f'{toml(key)} = {toml(inner)}' for key, inner in value.items())}}}"
+
+
+def _limited(document: Any, place: Any) -> Any:
+    """Return the document with a process for the unit whose limit stands at a place: else it has none."""
+    if str(place[-1]).endswith(("_limit", "_timeout")):
+        (document["units"]["ecu"] if "units" in document else document)["isolation"] = "process"
+    return document
+
+
+def written(folder: Path, kind: str, document: Any) -> dict[str, Path]:
+    """Write the three files, one of them with this document, and return their paths."""
+    paths = {}
+    for name, (_, text) in KINDS.items():
+        paths[name] = folder / f"{name}.toml"
+        own = document if name == kind else tomllib.loads(text)
+        paths[name].write_text("\n".join(f"{toml(key)} = {toml(value)}" for key, value in own.items()))
+    return paths
+
+
+def outcome(paths: dict[str, Path], kind: str, place: Place = ()) -> str:
+    """Run, evaluate and draw what a place is of, and return what was said, or "done"."""
+    swaps = {"vehicle": paths["swap"]} if kind == "swap" else {}
+    scenario = paths["scenario"] if kind == "scenario" else None
+    try:
+        if place[:1] in (("identification",), ("budget",)):  # which no run reads
+            load_scenario(load_system(str(paths["system"])), str(paths["scenario"]))
+            return "done"
+        with Simulation(paths["system"], scenario, swaps=swaps, engine="python") as simulation:
+            simulation.run()
+        results = simulation.results
+        results.metrics()
+        if "figure" in place:
+            results.plot(paths["system"].with_name("figure.png"))
+    except ConfigError as error:
+        return f"refused: {error}"
+    except RunError as error:
+        return f"ended: {error}"
+    except Exception:  # to name the value beside it
+        return traceback.format_exc()
+    return "done"
+
+
+def test_the_files_run_as_they_are(tmp_path):
+    for kind, (_, text) in KINDS.items():
+        assert outcome(written(tmp_path, kind, tomllib.loads(text)), kind) == "done"
+
+
+def test_the_keys_that_everybody_writes_are_found():
+    found = {(kind, *place) for kind, place in PLACES}
+    assert {
+        ("system", "experiment", "step_size"),
+        ("system", "units", "*", "parameters", "*"),
+        ("system", "buses", "*", "delay"),
+        ("system", "connect", 0, "initial"),
+        ("scenario", "stimulus", 0, "table", 0, 1),
+        ("scenario", "event", 0, "value"),
+        ("scenario", "parameters", "*", "*"),
+        ("swap", "memory_limit"),
+    } <= found
+    assert len(found) > 70
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="each key is tried in a child of this process")
+@pytest.mark.parametrize(
+    ("kind", "place"), PLACES, ids=lambda v: v if isinstance(v, str) else ".".join(map(str, v))
+)
+def test_a_hostile_number_is_used_or_refused(kind, place, tmp_path):
+    values, text = [*HOSTILE, *WRONG], KINDS[kind][1]
+
+    def tried() -> list[str]:
+        documents = [_limited(with_value(tomllib.loads(text), place, value), place) for value in values]
+        return [outcome(written(tmp_path, kind, document), kind, place) for document in documents]
+
+    found = forked(tried, limit=60.0)
+    assert not found.crash, found.crash
+    names = [part for part in place if isinstance(part, str) and part != "*"]
+    for value, said in zip(values, found.value, strict=True):
+        shown = value if isinstance(value, str) else toml(value)[:40]
+        assert said.startswith(("done", "refused", "ended")), f"{shown}: {said}"
+        named = any(name in said for name in (*names[-2:], shown))
+        assert not said.startswith("refused") or named, f"{shown}: {said}"
+        assert len(said) < 2000, f"{shown}: {said}"
