@@ -43,7 +43,8 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> Affine:
     if variable.unit in ("", unit):
         return Affine()
     try:
-        return conversion(defined(variable.unit), defined(unit))
+        kinds = (variable.difference, variable.difference)
+        return conversion(defined(variable.unit), defined(unit), kinds)
     except ConfigError as error:
         signal = f"{place}: '{variable.name}' [{variable.unit}]"
         if not unit:

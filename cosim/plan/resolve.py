@@ -115,6 +115,7 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
         variability=v.variability,
         description=v.description,
         items=v.items,
+        difference=v.difference,
     )
 
 

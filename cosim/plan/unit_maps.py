@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from ..can.database import Signal
 from ..errors import ConfigError
 from ..units.conversion import conversion
-from ..units.definition import defined
+from ..units.definition import contradiction, defined
 from ..units.measure import Affine, OpenUnitError, UnitOfMeasure, UnknownUnitError
 from ..units.spellings import NO_UNIT
 
@@ -69,6 +69,8 @@ def unit_map(
     except ConfigError as error:
         raise _refused(source, target, place, error) from error
     for end in (source, target):
+        if end.defines and (said := contradiction(end.definitions[end.unit])):
+            _note(warnings, f"{end.name}: its FMU's definition is taken: {said}")
         if end.unit.strip() in NO_UNIT and end.unit != "1":
             _note(warnings, f"{end} names no unit of measure; it is taken as [1]")
     return map_

@@ -136,7 +136,7 @@ def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
     """
     grid = _Grid.of(a, b)
     variable, other = a.variable(name), b.variable(name)
-    convert, _ = _conversion(other.unit, variable.unit)
+    convert, _ = _conversion(other, variable)
     values = grid.values_of(b, variable if variable.held else other)
     return grid.time, convert.scale * values + convert.offset - a.column(name)[grid.rows]
 
@@ -189,7 +189,7 @@ def _compared(
     other = b.variable(variable.name)
     unit = variable.unit or other.unit
     try:
-        convert, remark = _conversion(other.unit, variable.unit)
+        convert, remark = _conversion(other, variable)
     except ConfigError as error:
         return _without_values(variable.name, unit, str(error))
     x = a.column(variable.name)[grid.rows]
@@ -210,13 +210,15 @@ def _without_values(name: str, unit: str, remark: str) -> VariableDifference:
     return VariableDifference(name, unit, math.nan, math.nan, math.nan, math.nan, equal=False, remark=remark)
 
 
-def _conversion(source: str, target: str) -> tuple[Affine, str]:
-    """Return the map between two names of units, and a remark where one side declares none."""
+def _conversion(other: ResultVariable, variable: ResultVariable) -> tuple[Affine, str]:
+    """Return the map between the units of two variables, and a remark where one side declares none."""
+    source, target = other.unit, variable.unit
     if source == target:
         return Affine(), ""
     if not source or not target:
         return Affine(), f"[{source or target}] on one side only: compared as numbers"
-    return conversion(defined(source), defined(target)), ""
+    difference = other.difference or variable.difference  # of a bare table nobody knows
+    return conversion(defined(source), defined(target), (difference, difference)), ""
 
 
 def _differences(x: Array, y: Array) -> Array:

@@ -43,8 +43,9 @@ def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]
 
 def _described(variable: ResultVariable) -> dict[str, Any]:
     about = dataclasses.asdict(variable)
-    if not variable.items:
-        del about["items"]
+    for name in ("items", "difference"):
+        if not about[name]:
+            del about[name]
     return about
 
 

@@ -146,7 +146,7 @@ def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Affine:
     source, target = _outcome(spec, variables), defined(spec.unit)
     if spec.per is not None:
         source = _quotient(source, _outcome(spec.per, variables))
-    elif spec.minus is not None or spec.reduce == "range":
+    elif spec.minus is not None or spec.reduce == "range" or variables[spec.signal].difference:
         # a difference of temperatures: 0 of it is 0 in every unit
         source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
     convert = conversion(source, target)
@@ -168,7 +168,7 @@ def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOf
         return defined("s")
     unit = _unit(variables[part.signal])
     if part.reduce in ("integral", "integral_above"):
-        if unit.offset:
+        if unit.offset and not variables[part.signal].difference:
             raise ConfigError(f"an integral of [{unit.name}] has no meaning: its zero is arbitrary")
         return _combined(f"{unit.name}.s", unit, defined("s"), 1)
     return unit
@@ -179,10 +179,11 @@ def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tupl
     signal = variables[part.signal]
     other, threshold = Affine(), part.threshold or 0.0
     if part.minus is not None and variables[part.minus].unit != signal.unit:
-        other = conversion(_unit(variables[part.minus]), _unit(signal))
+        minus = variables[part.minus]
+        other = conversion(_unit(minus), _unit(signal), (minus.difference, signal.difference))
     if part.threshold_unit is not None and part.threshold_unit != signal.unit:
         source, target = defined(part.threshold_unit), _unit(signal)
-        if part.minus is not None:  # a threshold of a difference has no zero of its own
+        if part.minus is not None or signal.difference:  # a threshold of a difference has no zero of its own
             source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
         threshold = conversion(source, target)(threshold)
     return other, threshold
@@ -196,6 +197,9 @@ def _quotient(a: UnitOfMeasure, b: UnitOfMeasure) -> UnitOfMeasure:
 
 def _combined(name: str, a: UnitOfMeasure, b: UnitOfMeasure, sign: int) -> UnitOfMeasure:
     """Return the unit a * b (sign 1) or a / b (sign -1)."""
+    for unit in (a, b):
+        if unit.logarithmic:
+            raise ConfigError(f"[{unit.name}] is logarithmic: it has no integral and no quotient")
     nothing = (0,) * len(BASE_UNITS)
     pairs = zip(a.exponents or nothing, b.exponents or nothing, strict=True)
     return UnitOfMeasure(

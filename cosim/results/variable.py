@@ -10,7 +10,8 @@ class ResultVariable:
     """A column of results: its name `unit.variable` and what its FMU declares of it.
 
     `type` is Real, Integer, Boolean or Enumeration; `unit` a name of a unit of measure ("" for none);
-    `items` the (value, name) pairs of an enumeration.
+    `items` the (value, name) pairs of an enumeration; `difference` says that it is a difference of absolute
+    quantities, as of two temperatures.
     """
 
     name: str
@@ -20,6 +21,7 @@ class ResultVariable:
     variability: str = "continuous"
     description: str = ""
     items: tuple[tuple[int, str], ...] = ()
+    difference: bool = False
 
     @property
     def held(self) -> bool:

@@ -172,7 +172,8 @@ def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple
     if not wanted:
         return "your choice", f"is in [{unit}]; the system declares no unit of measure", ""
     try:
-        map_ = conversion(defined(unit, offer.units_of_measure), defined(wanted))
+        kinds = (v.difference, need.variable.difference)
+        map_ = conversion(defined(unit, offer.units_of_measure), defined(wanted), kinds)
     except ConfigError:
         said = "" if v.unit else "its name says "
         return "missing", f"{said}[{unit}], no unit for what the system has in [{wanted}]", ""

@@ -78,23 +78,29 @@ def as_named(unit: UnitOfMeasure) -> UnitOfMeasure:
     if not any(unit.exponents) and unit.factor == 1.0 and unit.offset == 0.0 and any(named.exponents):
         return named
     for reading in named.readings:
-        assert reading.exponents is not None
-        angle = reading.exponents[_RAD]
-        if unit.exponents == reading.exponents:
-            if _alike(unit.factor, reading.factor):
-                return dataclasses.replace(unit, cycles=reading.cycles)
-        elif (
-            _apart_from_angle(unit.exponents) == _apart_from_angle(reading.exponents)
-            and not unit.exponents[_RAD]
-        ):
-            counted = (reading.factor, reading.factor / (2.0 * math.pi) ** float(angle))
-            if any(_alike(unit.factor, factor) for factor in counted):
+        if unit.exponents == reading.exponents and _alike(unit.factor, reading.factor):
+            return dataclasses.replace(unit, cycles=reading.cycles)
+        if unit.exponents == _without_angle(reading.exponents) != reading.exponents:
+            in_cycles = reading.factor / (2.0 * math.pi) ** float((reading.exponents or _NONE)[_RAD])
+            if _alike(unit.factor, reading.factor) or _alike(unit.factor, in_cycles):
                 return dataclasses.replace(reading, name=unit.name, also=())
     return unit
 
 
-def _apart_from_angle(exponents: Exponents) -> Exponents:
-    return exponents[:_RAD] + exponents[_RAD + 1 :]
+def contradiction(unit: UnitOfMeasure) -> str:
+    """Return what an FMU's definition says against the name of its unit; "" where they agree.
+
+    The definition holds; but "km/h" with the factor of m/s is more often a slip than meant.
+    """
+    named = by_text(unit.name)
+    if named is None or named.exponents is None or unit.exponents is None or as_named(unit) is not unit:
+        return ""
+    own, usual = (f"{u.factor:.6g} [{u.dimension}]" for u in (unit, named))
+    return f"[{unit.name}] is defined as {own}, and usually is {usual}"
+
+
+def _without_angle(exponents: Exponents | None) -> Exponents | None:
+    return None if exponents is None else (*exponents[:_RAD], 0, *exponents[_RAD + 1 :])
 
 
 def _alike(a: float, b: float) -> bool:

@@ -100,7 +100,8 @@ class IdentificationRun:
         owner = self.output.partition(".")[0]
         known = next(u for u in self.simulation.plan.units if u.name == owner).interface.units_of_measure
         try:
-            return conversion(defined(shown.unit, known), defined(unit, known))
+            kinds = (shown.difference, shown.difference)
+            return conversion(defined(shown.unit, known), defined(unit, known), kinds)
         except ConfigError as error:
             raise ConfigError(f"{self.spec.output} in unit {unit}: {error}") from error
 

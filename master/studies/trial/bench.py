@@ -11,12 +11,11 @@ import numpy as np
 
 from ....cosim.errors import RunError
 from ....cosim.interface import UnitInterface, Value
+from ....cosim.plan.unit_maps import End, unit_map
 from ....cosim.row_store import Array
 from ....cosim.swap.mapping import present
 from ....cosim.system.scenario import Scenario, ScenarioFile, StimulusEntry
 from ....cosim.system.system import Isolation, System, SystemFile, UnitEntry
-from ....cosim.units.conversion import conversion
-from ....cosim.units.definition import defined
 from ....cosim.units.measure import Affine
 from ...builtin import fmu_file
 from ...fmi.fmu import read_fmu
@@ -152,10 +151,11 @@ class Bench:
 
 def _between(source: UnitInterface, target: UnitInterface, name: str) -> Affine:
     """Return the map between the units of measure of a variable in two interfaces; 1 if either has none."""
-    before, after = source.variables[name].unit, target.variables[name].unit
-    if not before or not after:
-        return Affine()
-    return conversion(defined(before, source.units_of_measure), defined(after, target.units_of_measure))
+    ends = []
+    for interface in (source, target):
+        v = interface.variables[name]
+        ends.append(End(name, v.unit, interface.units_of_measure, v.difference))
+    return unit_map(ends[0], ends[1], (), interface.place, [])
 
 
 def _of(values: Mapping[str, Value], known: Mapping[str, object]) -> dict[str, Value]:

@@ -1,5 +1,6 @@
 """A figure that cannot be drawn is refused before it is."""
 
+import dataclasses
 from functools import partial
 
 import pytest
@@ -48,6 +49,9 @@ def test_the_unit_of_a_panel_is_that_of_its_lines() -> None:
     assert convert(10.0) == pytest.approx(36.0)
     for unit in ("", "km/h"):
         assert panel_conversion(ResultVariable("a.v", unit), "km/h", "here").identity
+    kelvin = ResultVariable("a.t", "K")
+    assert panel_conversion(kelvin, "degC", "here")(273.15) == pytest.approx(0.0)
+    assert panel_conversion(dataclasses.replace(kelvin, difference=True), "degC", "here").identity
 
 
 @pytest.mark.parametrize("name", system_names())

@@ -79,7 +79,10 @@ def test_one_text_is_one_unit_where_one_end_defines_it():
     """A bus signal has no definition of its own: what the FMU calls km/h is the bus' km/h too."""
     odd = {"km/h": UnitOfMeasure("km/h", SPEED, 1.0)}
     assert made(End("a.v", "km/h", odd), End("c.M.S", "km/h", bus="c")) == (Affine(), [])
-    assert made(End("a.v", "km/h", odd), "m/s") == (Affine(), [])
+    map_, (warning,) = made(End("a.v", "km/h", odd), "m/s")
+    assert map_ == Affine()
+    said = "[km/h] is defined as 1 [m.s-1], and usually is 0.277778 [m.s-1]"
+    assert warning == f"a.v: its FMU's definition is taken: {said}"
     with pytest.raises(ConfigError, match=r"define .* otherwise"):
         made(End("a.v", "km/h", odd), End("b.v", "km/h", {"km/h": UnitOfMeasure("km/h", SPEED, 1 / 3.6)}))
 

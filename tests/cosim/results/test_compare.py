@@ -150,3 +150,12 @@ def test_a_difference_is_signed_and_in_the_unit_of_the_first() -> None:
     assert difference(a, a, SPEED.name)[1] == pytest.approx(np.zeros(3), abs=0.0)
     largest = compare(a, b).rows[0].difference
     assert largest == pytest.approx(np.max(np.abs(values)))
+
+
+def test_a_difference_of_temperatures_has_no_zero_to_convert() -> None:
+    kelvin = ResultVariable("cell.warming", "K", difference=True)
+    for said in (True, False):  # a bare table does not say it
+        celsius = ResultVariable("cell.warming", "degC", difference=said)
+        assert compare(one([5.0], kelvin), one([5.0], celsius)).equal
+    absolute = [ResultVariable("cell.temperature", unit) for unit in ("K", "degC")]
+    assert compare(one([278.15], absolute[0]), one([5.0], absolute[1])).equal

@@ -275,3 +275,21 @@ def test_a_metric_does_not_depend_on_the_pieces_that_a_run_is_read_in(rows, monk
         assert [m.reason for m in pieces] == [m.reason for m in whole]
         values = [m.value for m in whole]
         assert [m.value for m in pieces] == pytest.approx(values, rel=1e-12, abs=1e-12, nan_ok=True)
+
+
+def test_a_difference_of_temperatures_has_no_zero_to_convert() -> None:
+    t = np.linspace(0.0, 10.0, 11)
+    warming = Results(t, t[:, None], (ResultVariable("cell.warming", "K", difference=True),))
+    for reduce, value in (("final", 10.0), ("rms", math.sqrt(33.5)), ("mean", 5.0)):
+        spec = {"signal": "cell.warming", "unit": "degC", "reduce": reduce}
+        assert metric(warming, **spec).value == pytest.approx(value, rel=1e-2)
+    above = {"reduce": "time_above", "threshold": 5.0, "threshold_unit": "degC", "unit": "s"}
+    assert metric(warming, signal="cell.warming", **above).value == pytest.approx(5.0, abs=1.0)
+
+
+def test_a_level_has_no_integral() -> None:
+    t = np.linspace(0.0, 10.0, 11)
+    noise = Results(t, t[:, None], (ResultVariable("motor.noise", "dB"),))
+    assert metric(noise, signal="motor.noise", unit="dB", reduce="max").value == 10.0
+    with pytest.raises(ConfigError, match=r"\[dB\] is logarithmic: it has no integral"):
+        metric(noise, signal="motor.noise", unit="s", reduce="integral")

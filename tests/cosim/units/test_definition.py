@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.units.definition import by_text, defined
+from evcosim.cosim.units.definition import by_text, contradiction, defined
 from evcosim.cosim.units.measure import UnitOfMeasure, UnknownUnitError
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
@@ -118,6 +118,16 @@ def test_an_empty_definition_is_none():
     assert defined("kV", {"kV": empty}) == by_text("kV")
     one = UnitOfMeasure("p.u.", (0,) * 8)
     assert defined("p.u.", {"p.u.": one}) is one
+
+
+@pytest.mark.parametrize("name", ["km/h", "rpm", "Hz", "degC", "V", "C", "1/min"])
+def test_a_definition_against_its_name_is_said(name):
+    usual = by_text(name)
+    for u in (usual, dataclasses.replace(usual, factor=usual.factor * (1 + 1e-4))):
+        assert contradiction(u) == ""
+    odd = dataclasses.replace(usual, factor=usual.factor * 2.0)
+    assert contradiction(odd).startswith(f"[{name}] is defined as {odd.factor:.6g} [")
+    assert contradiction(dataclasses.replace(odd, name="of mine")) == ""
 
 
 def test_everyday_units_need_no_pint():
