@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from .errors import ConfigError, nearest
-from .units.measure import UnitOfMeasure
+from .units.measure import Affine, UnitOfMeasure
 
 Value = bool | int | float | str
 InterfaceType = Literal["co_simulation", "model_exchange"]
@@ -24,6 +24,7 @@ class VariableInfo:
     `items` are the (value, name) pairs of an enumeration.
     `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
     `inverted`: the system's value is the FMU's with the other sign.
+    `scaling` is the map of a value on its way between the two, beside the sign.
     `difference`: it is one of two absolute quantities (FMI: relativeQuantity), so that no offset converts it.
     """
 
@@ -42,11 +43,26 @@ class VariableInfo:
     declared: str = ""
     inverted: bool = False
     difference: bool = False
+    scaling: Affine = Affine()  # noqa: RUF009 - Affine is frozen, so a shared default is safe
 
     @property
     def declared_name(self) -> str:
         """The name that the FMU itself declares."""
         return self.declared or self.name
+
+    @property
+    def to_fmu(self) -> Affine:
+        """The map from the system's value to the FMU's."""
+        sign = -1.0 if self.inverted else 1.0
+        map_ = self.scaling if self.causality in ("input", "parameter") else self.scaling.inverse()
+        return Affine(sign) if self.scaling.identity else Affine(sign * map_.scale, sign * map_.offset)
+
+    @property
+    def from_fmu(self) -> Affine:
+        """The map from the FMU's value to the system's."""
+        sign = -1.0 if self.inverted else 1.0
+        map_ = self.scaling.inverse() if self.causality in ("input", "parameter") else self.scaling
+        return Affine(sign) if self.scaling.identity else Affine(sign * map_.scale, map_.offset)
 
 
 @dataclasses.dataclass(frozen=True)

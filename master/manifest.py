@@ -41,6 +41,7 @@ def manifest(
         "ideal": plan.ideal,
         "order": [unit.name for unit in plan.units],
         "units": {unit.name: _unit(unit, prepared, isolation[unit.name]) for unit in plan.units},
+        "connections": _scaled(system),
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
         "steps": engine.k,
         "saturations": saturations(engine),
@@ -65,6 +66,15 @@ def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str,
         "isolation": isolation,
         "map": prepared.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
     }
+
+
+def _scaled(system: System) -> list[dict[str, Any]]:
+    """Return the connections with a factor, an offset or `convert`, as the file has them."""
+    return [
+        connection.model_dump(by_alias=True, exclude_defaults=True)
+        for connection in system.file.connect
+        if connection.written
+    ]
 
 
 def saturations(engine: Engine) -> dict[str, dict[str, float]]:

@@ -12,13 +12,14 @@ from ..can.resolution import with_resolution
 from ..can.send_steps import send_steps
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
+from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, Experiment, System
 from ..system.toml import data_file
 from ..units.measure import Affine
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
-from .unit_maps import End, check_texts, unit_map, with_unit
+from .unit_maps import Definitions, End, check_texts, converts, scaled_map, with_unit
 from .unit_plan import Route
 
 
@@ -141,18 +142,69 @@ def _connect(work: _Connector, connection: Connection) -> None:
         raise ConfigError(f"{place}: a connection needs a receiver in 'to' or a signal in 'via'")
     # the signal is looked up with `ideal` too, so that a system file is right or wrong in both
     message, signal = _find_signal(work, connection.via, place) if connection.via else (None, None)
+    _check_scalable(work, connection, source, sinks, place)
     if message is None or signal is None or work.ideal:
         for sink in sinks:
-            _direct(work, source, sink, place)
+            if signal is None or not connection.written:
+                map_ = _map(work, _end(work, source), _end(work, sink), connection, place)
+            else:  # the factor stands at one of the two ends of the bus
+                to_bus, (from_bus,) = _bus_maps(work, connection, source, [sink], signal, place)
+                map_ = to_bus.then(from_bus)
+            _direct(work, source, sink, map_, place)
         return
     _over_bus(work, connection, source, sinks, message, signal, place)
 
 
-def _direct(work: _Connector, source: tuple[str, str], sink: tuple[str, str], place: str) -> None:
+def _check_scalable(
+    work: _Connector,
+    connection: Connection,
+    source: tuple[str, str],
+    sinks: Sequence[tuple[str, str]],
+    place: str,
+) -> None:
+    """Raise ConfigError for a factor where a value is no number, or the receiver's number no Real."""
+    if connection.linear.identity:
+        return
+    for name in (source, *sinks):
+        kind = _variable(work, name).type
+        if kind == "String" or (name != source and kind != "Real"):
+            raise ConfigError(
+                f"{place}: {connection.in_words}: {'.'.join(name)} is of type {kind}; a number can be "
+                "scaled, and goes into a Real"
+            )
+
+
+def _bus_maps(
+    work: _Connector,
+    connection: Connection,
+    source: tuple[str, str],
+    sinks: Sequence[tuple[str, str]],
+    signal: Signal,
+    place: str,
+) -> tuple[Affine, list[Affine]]:
+    """Return the map from the sender to the bus signal, and those from there to the receivers.
+
+    A factor stands where the quantity changes: at the sender if its unit does not convert to the signal's, or
+    there is no receiver; else at the receivers.
+    """
+    sender = _end(work, source)
+    bus = str(connection.via).split(".")[0]
+    on_bus = End(connection.via or "", signal.unit, difference=sender.difference, bus=bus)
+    before, after = Scaling(), Scaling()
+    if not sinks or not converts(sender, on_bus, _definitions(work)):
+        before = connection
+    else:
+        after = connection
+    to_bus = _map(work, sender, on_bus, before, place)
+    return to_bus, [_map(work, on_bus, _end(work, sink), after, place) for sink in sinks]
+
+
+def _direct(
+    work: _Connector, source: tuple[str, str], sink: tuple[str, str], map_: Affine, place: str
+) -> None:
     """Resolve a connection without a bus: a route within the step."""
     sender, receiver = _variable(work, source), _variable(work, sink)
     _check_types(source, sender, sink, receiver, place)
-    map_ = _map(work, _end(work, source), _end(work, sink), place)
     slot = work.slots.valid[sink]
     work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
     work.network.routes[sink[0]].append(Route(work.slots.source(*source, work.every[source[0]]), slot, map_))
@@ -179,14 +231,11 @@ def _over_bus(
     if signal.name in senders:
         raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
     senders[signal.name] = connection.source
-    sender = _end(work, source)
-    on_bus = End(connection.via or "", signal.unit, difference=sender.difference, bus=bus)
-    to_bus = _map(work, sender, on_bus, place)
+    to_bus, to_receivers = _bus_maps(work, connection, source, sinks, signal, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
     ends = []
-    for sink in sinks:
+    for sink, to_receiver in zip(sinks, to_receivers, strict=True):
         receiver = _variable(work, sink)
-        to_receiver = _map(work, on_bus, _end(work, sink), place)
         if receiver.type != "Real" and not (
             float(signal.scale).is_integer() and float(signal.offset).is_integer()
         ):
@@ -296,9 +345,12 @@ def _end(work: _Connector, name: tuple[str, str]) -> End:
     return End(".".join(name), v.unit, work.interfaces[name[0]].units_of_measure, v.difference)
 
 
-def _map(work: _Connector, source: End, target: End, place: str) -> Affine:
-    others = [interface.units_of_measure for interface in work.interfaces.values()]
-    return unit_map(source, target, others, place, work.network.warnings)
+def _map(work: _Connector, source: End, target: End, scaling: Scaling, place: str) -> Affine:
+    return scaled_map(source, target, scaling, _definitions(work), place, work.network.warnings)
+
+
+def _definitions(work: _Connector) -> list[Definitions]:
+    return [interface.units_of_measure for interface in work.interfaces.values()]
 
 
 def _check_types(

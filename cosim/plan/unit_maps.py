@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from collections.abc import Iterable, Mapping
 
 from ..can.database import Signal
 from ..errors import ConfigError
+from ..system.scaling import Scaling
 from ..units.conversion import conversion
 from ..units.definition import contradiction, defined
-from ..units.measure import Affine, OpenUnitError, UnitOfMeasure, UnknownUnitError
+from ..units.measure import Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure, UnknownUnitError
 from ..units.spellings import NO_UNIT
 
 Definitions = Mapping[str, UnitOfMeasure]
@@ -80,6 +82,64 @@ def _note(warnings: list[str], text: str) -> None:
     """Add a warning, unless it is there: a bus signal has several ends."""
     if text not in warnings:
         warnings.append(text)
+
+
+def scaled_map(
+    source: End,
+    target: End,
+    scaling: Scaling,
+    others: Iterable[Definitions],
+    place: str,
+    warnings: list[str],
+) -> Affine:
+    """Return the map between two ends with the factor and offset that a file writes for it.
+
+    They stand between two different quantities; where the units of measure convert, or say nothing, only with
+    `convert`, so that no factor hides a missing unit. Raises ConfigError, which starts with `place`,
+    otherwise.
+    """
+    if scaling.convert is False:
+        return scaling.linear
+    if scaling.convert or not scaling.written:
+        bare = source if source.bare else target
+        if scaling.convert and bare.bare:
+            raise ConfigError(
+                f"{place}: convert = true: {bare.name} declares no unit of measure, so that nothing is "
+                "converted; convert = false takes factor and offset in place of a conversion"
+            )
+        map_ = unit_map(source, target, others, place, warnings).then(scaling.linear)
+        if not (map_.scale and math.isfinite(map_.scale) and math.isfinite(map_.offset)):
+            raise ConfigError(f"{place}: {scaling.in_words}: no number holds it with the unit conversion")
+        return map_
+    if not _are_different(source, target, others):
+        raise ConfigError(
+            f"{place}: {scaling.in_words}: {source} and {target} are not known to measure different "
+            "quantities; say `convert = true` (after the unit conversion) or `false` (in its place) beside it"
+        )
+    return scaling.linear
+
+
+def converts(source: End, target: End, others: Iterable[Definitions]) -> bool:
+    """Return True where the units of measure of two ends convert by themselves, or one has none."""
+    try:
+        unit_map(source, target, others, "", [])
+    except ConfigError:
+        return False
+    return True
+
+
+def _are_different(source: End, target: End, others: Iterable[Definitions]) -> bool:
+    """Return True where both units are known and measure different quantities."""
+    if source.bare or target.bare:
+        return False
+    try:
+        a, b = (defined(end.unit, end.definitions, *others) for end in (source, target))
+        conversion(a, b)
+    except DifferentQuantityError:
+        return True
+    except ConfigError:
+        pass
+    return False
 
 
 def _of_one_text(source: End, target: End, others: Iterable[Definitions]) -> Affine:

@@ -9,10 +9,12 @@ results then work with the names of the system, and convert units of measure as 
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable, Mapping
 
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
+from ..plan.unit_maps import End, scaled_map
 from ..system.figure_spec import FigureSpec
 from ..system.metric_spec import MetricSpec
 from ..system.problems import spelled
@@ -68,6 +70,8 @@ def _mapped(
         raise ConfigError(f"{place}: {mapped.variable} is of causality {variable.causality}, not {allowed}")
     if mapped.unit is not None:
         _check_unit(mapped.unit, interface, place)
+    if not mapped.linear.identity and variable.type != "Real":
+        raise ConfigError(f"{place}: {mapped.variable} is of type {variable.type}: only a Real can be scaled")
     if mapped.invert and variable.type not in ("Real", "Integer"):
         raise ConfigError(f"{place}: {mapped.variable} is a {variable.type}: it has no sign to invert")
     known = dataclasses.replace(
@@ -77,7 +81,29 @@ def _mapped(
         causality=causality,
         unit=variable.unit if mapped.unit is None else mapped.unit,
     )
+    if mapped.written:
+        return _scaled(known, variable, mapped, interface, place)
     return _inverted(known) if mapped.invert else known
+
+
+def _scaled(
+    known: VariableInfo, variable: VariableInfo, mapped: MapEntry, interface: UnitInterface, place: str
+) -> VariableInfo:
+    """Return the variable as the system knows it, with the map between it and the FMU's own.
+
+    Range and start are the FMU's, mapped. Raises ConfigError as `scaled_map` does.
+    """
+    ours = End(f"the system's {known.name}", known.unit, interface.units_of_measure, variable.difference)
+    own = End(variable.name, variable.unit, interface.units_of_measure, variable.difference)
+    ends = (ours, own) if known.causality in ("input", "parameter") else (own, ours)
+    changed = dataclasses.replace(known, scaling=scaled_map(*ends, mapped, (), place, []))
+    if not math.isfinite(changed.scaling.inverse().scale):
+        raise ConfigError(f"{place}: {mapped.in_words}: no number holds the way back")
+    back = dataclasses.replace(changed, inverted=False).from_fmu  # range and start have the FMU's own sign
+    low, high = (None if x is None else back(x) for x in (known.min, known.max))
+    low, high = (low, high) if back.scale > 0.0 else (high, low)
+    start = back(known.start) if isinstance(known.start, int | float) else known.start
+    return dataclasses.replace(changed, start=start, min=low, max=high)
 
 
 def _check_unit(unit: str, interface: UnitInterface, place: str) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 from ..errors import ConfigError
 from ..interface import UnitInterface, VariableInfo
@@ -39,7 +39,7 @@ class Match:
     `need` is "" for a variable that nothing needs, `variable` "" for a need without one. `needed` says who
     gives, takes or sets it in the system. `candidates` are the variables that could be chosen, best first.
     `unit` is the unit of measure that stands in for one that the FMU does not declare ("": its own counts);
-    `invert` is true where an existing mapping turns the sign.
+    `invert` is true where an existing mapping turns the sign, and `factor`, `offset` and `convert` are its.
     """
 
     need: str
@@ -51,6 +51,9 @@ class Match:
     candidates: tuple[str, ...] = ()
     unit: str = ""
     invert: bool = False
+    factor: float | None = None
+    offset: float | None = None
+    convert: bool | None = None
 
     @property
     def others(self) -> list[str]:
@@ -107,7 +110,7 @@ def _mapped_only(mapped: Mapping[str, MapEntry], role: Role, needed: set[str]) -
     """Return a match for each name that is mapped and that the system in this scenario does not need."""
     reason = "as mapped; nothing needs it in this scenario"
     return [
-        Match(name, role, entry.variable, "unused", reason, unit=entry.unit or "", invert=entry.invert)
+        Match(name, role, entry.variable, "unused", reason, **_as_written(entry))
         for name, entry in mapped.items()
         if name not in needed
     ]
@@ -116,15 +119,21 @@ def _mapped_only(mapped: Mapping[str, MapEntry], role: Role, needed: set[str]) -
 def _as_mapped(need: Requirement, entry: MapEntry, offer: UnitInterface) -> Match:
     """Return the match that a mapping declares, judged by type and unit of measure alone."""
     found = offer.variables.get(entry.variable)
-    unit, invert = entry.unit or "", entry.invert
     if found is None:
         verdict: Verdict = "missing"
         reason = offer.unusable.get(entry.variable, "the FMU has no variable of this name")
     else:
         known = found if entry.unit is None else dataclasses.replace(found, unit=entry.unit)
         verdict, said, _ = _converts(need, known, offer)
-        reason = f"as mapped{', inverted' if invert else ''}: {said}"
-    return Match(need.name, need.role, entry.variable, verdict, reason, need.needed, unit=unit, invert=invert)
+        words = [*(["inverted"] if entry.invert else []), *([entry.in_words] if entry.written else [])]
+        reason = f"{', '.join(['as mapped', *words])}: {said}"
+    return Match(need.name, need.role, entry.variable, verdict, reason, need.needed, **_as_written(entry))
+
+
+def _as_written(entry: MapEntry) -> dict[str, Any]:
+    """Return the fields of a match that repeat what a mapping says."""
+    given = entry.model_dump(include={"unit", "invert", "factor", "offset", "convert"})
+    return given | {"unit": entry.unit or ""}
 
 
 def _assigned(

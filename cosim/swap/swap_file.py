@@ -69,8 +69,14 @@ def entry_of(fmu: str, matches: Sequence[Match], entry: UnitEntry | None = None)
     tables: dict[str, dict[str, MapEntry]] = {}
     for match in matches:
         if match.need and match.variable and match.verdict != "missing":
-            mapped = MapEntry(variable=match.variable, unit=match.unit or None, invert=match.invert)
-            tables.setdefault(f"{match.role}s", {})[match.need] = mapped
+            tables.setdefault(f"{match.role}s", {})[match.need] = MapEntry(
+                variable=match.variable,
+                unit=match.unit or None,
+                invert=match.invert,
+                factor=match.factor,
+                offset=match.offset,
+                convert=match.convert,
+            )
     return (entry or UnitEntry(fmu=fmu)).model_copy(
         update={"fmu": fmu, "map": MapTables.model_validate(tables), "absent": _absent(matches)}
     )
@@ -171,15 +177,27 @@ def _map_table(matches: Sequence[Match], role: Role, proposal: Proposal) -> Tabl
 
 def _mapped(match: Match, proposed: str | None) -> Item:
     """Return the FMU's variable of a match with the reasons; `proposed` is the reason to turn its sign."""
-    invert = match.invert != (proposed is not None)
+    turned = proposed is not None
+    scaled = any(x is not None for x in (match.factor, match.offset, match.convert))
+    invert = not scaled and match.invert != turned
     assumed = match.unit and not match.reason.startswith("as mapped")
     reasons = [match.reason + (": assumed" if assumed else "")]
     reasons += [f"others: {', '.join(match.others)}"] if match.others else []
-    reasons += [f"proposed: invert = {str(invert).lower()}, since {proposed}"] if proposed else []
+    new = "the other sign" if scaled else f"invert = {str(invert).lower()}"
+    reasons += [f"proposed: {new}, since {proposed}"] if turned else []
     values: dict[str, object] = {"variable": match.variable}
     values |= {"unit": match.unit} if match.unit else {}
     values |= {"invert": True} if invert else {}
+    values |= _scaling(match, -1.0 if turned else 1.0) if scaled else {}
     return _commented(match.variable if len(values) == 1 else _inline(values), "; ".join(reasons))
+
+
+def _scaling(match: Match, sign: float) -> dict[str, object]:
+    """Return the keys of a match's scaling, with `sign` to both numbers."""
+    numbers = {"factor": 1.0 if match.factor is None else match.factor, "offset": match.offset or 0.0}
+    given: dict[str, object] = {name: sign * x for name, x in numbers.items()} if sign < 0.0 else {}
+    as_it_is = {"factor": match.factor, "offset": match.offset, "convert": match.convert}
+    return {name: x for name, x in {**as_it_is, **given}.items() if x is not None}
 
 
 def _inline(values: Mapping[str, object]) -> InlineTable:

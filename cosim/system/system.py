@@ -13,6 +13,7 @@ from ..can.bus_settings import BusSettings
 from ..interface import InterfaceType
 from .figure_spec import FigureSpec
 from .metric_spec import MetricSpec
+from .scaling import Scaling
 from .toml import (
     DATA,
     FileModel,
@@ -91,17 +92,28 @@ class Experiment(FiniteModel):
     """Relative tolerance at which that iteration ends."""
 
 
-class MapEntry(FileModel):
-    """The FMU's variable behind a name of the system. The variable's name alone stands for a table."""
+class _MapNames(FileModel):
+    """The keys of a mapped variable that are no scaling; a base of its own, so that they come first."""
 
     variable: str
     """The FMU's own name of the variable."""
 
     unit: str | None = None
-    """Unit of measure, where the FMU declares none or a wrong one; without it as the FMU declares."""
+    """Unit of measure, where the FMU declares none or a wrong one; without it as the FMU declares. With
+    `factor`, `offset` or `convert`, that of the system's value."""
 
     invert: bool = False
     """Take the value with the other sign."""
+
+
+class MapEntry(Scaling, _MapNames):
+    """The FMU's variable behind a name of the system. The variable's name alone stands for a table."""
+
+    @model_validator(mode="after")
+    def _one_sign(self) -> MapEntry:
+        if self.invert and self.written:
+            raise ValueError("'invert' beside a factor: write a negative factor")
+        return self
 
 
 Mapped = Annotated[MapEntry, text_as("variable"), OrText()]
@@ -190,8 +202,8 @@ class BusEntry(BusSettings, _BusFile):
     """Units of measure for texts of the DBC that are not known, or that say something else there."""
 
 
-class Connection(FiniteModel):
-    """One output to one or more inputs, over a bus signal or directly; units of measure are converted."""
+class _Ends(FiniteModel):
+    """The keys of a connection that are no scaling; a base of its own, so that they come first."""
 
     source: VariableName = Field(alias="from", examples=["vehicle.speed"])
     """The output (or local variable) whose value is sent."""
@@ -213,10 +225,14 @@ class Connection(FiniteModel):
     model_config = ConfigDict(json_schema_extra={"dependentRequired": {"initial": ["via"]}})
 
     @model_validator(mode="after")
-    def _initial_over_a_bus(self) -> Connection:
+    def _initial_over_a_bus(self) -> _Ends:
         if self.initial is not None and self.via is None:
             raise ValueError("'initial' is what is there before the first message: it needs a 'via'")
         return self
+
+
+class Connection(Scaling, _Ends):
+    """One output to one or more inputs, over a bus signal or directly; units of measure are converted."""
 
 
 class BudgetEntry(FileModel):

@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from ..errors import ConfigError
 from .definition import defined
-from .measure import BASE_UNITS, Affine, OpenUnitError, UnitOfMeasure
+from .measure import BASE_UNITS, Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure
 
 _RATE = tuple(-1 if base == "s" else 0 for base in BASE_UNITS)
 _TURNING = tuple({"s": -1, "rad": 1}.get(base, 0) for base in BASE_UNITS)
@@ -35,7 +35,7 @@ def conversion(
         return _of_one_name(source, target, relative)
     for unit in (source, target):
         if unit.logarithmic:
-            raise ConfigError(f"[{unit.name}] is logarithmic, and converts to nothing but itself")
+            raise DifferentQuantityError(f"[{unit.name}] is logarithmic, and converts to nothing but itself")
     found: dict[Affine, tuple[UnitOfMeasure, UnitOfMeasure]] = {}
     for a in source.readings:
         for b in target.readings:
@@ -147,7 +147,7 @@ def _no_conversion(source: UnitOfMeasure, target: UnitOfMeasure) -> ConfigError:
     if source.exponents and target.exponents and source.exponents[:-1] == target.exponents[:-1]:
         apart = "differ by an angle, which may count radians or turns"
         return OpenUnitError(f"[{source.name}] and [{target.name}] {apart}")
-    return ConfigError(f"[{source.name}] and [{target.name}] measure different quantities")
+    return DifferentQuantityError(f"[{source.name}] and [{target.name}] measure different quantities")
 
 
 def between(source: str, target: str) -> Affine:

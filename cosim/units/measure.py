@@ -22,6 +22,10 @@ class UnknownUnitError(ConfigError):
     """A text that names no unit of measure."""
 
 
+class DifferentQuantityError(ConfigError):
+    """Two units that measure different quantities."""
+
+
 class OpenUnitError(ConfigError):
     """Two units between which several conversions could be meant."""
 

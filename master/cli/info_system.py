@@ -30,7 +30,7 @@ def described(name: str) -> dict[str, Any]:
         "algorithm": plan.algorithm,
         "units": [
             {"name": u.name, "fmu": u.fmu, "period": u.every * plan.experiment.step_size,
-             "substeps": u.substeps, "parameters": u.parameters}
+             "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name)}
             for u in plan.units
         ],
         "connections": _connections(system, plan),
@@ -49,6 +49,12 @@ def _whole(name: str) -> Prepared:
     return prepare(name, Scenario("", None, ScenarioFile()), runnable=False)
 
 
+def _scaled(system: System, unit: str) -> dict[str, str]:
+    """Return the mapped variables that a factor stands at, each with the keys of its entry."""
+    tables = system.file.units[unit].map.by_causality.values()
+    return {name: entry.in_words for table in tables for name, entry in table.items() if entry.written}
+
+
 def _connections(system: System, plan: Plan) -> list[dict[str, str]]:
     """Return an entry for each connection and receiver, in the order of the file."""
     units = {f"{u.name}.{v.name}": v.unit for u in plan.units for v in u.interface.variables.values()}
@@ -58,6 +64,7 @@ def _connections(system: System, plan: Plan) -> list[dict[str, str]]:
     for connection in system.file.connect:
         source, via = connection.source, connection.via
         base = {"from": source, "from_unit": units[source], "via": via or "", "bus_unit": "", "to_bus": ""}
+        base |= {"written": connection.in_words}
         if via is not None:
             route = over_bus[via]
             base |= {"bus_unit": route.signal.unit, "to_bus": in_words(route.to_bus)}
@@ -104,6 +111,8 @@ def show(about: dict[str, Any]) -> None:
     fields = [("system", about["name"]), ("title", about["title"]), ("source", about["source"])]
     fields += [("file", about["file"]), ("experiment", steps)]
     fields += [("warning", text) for text in about["warnings"]]
+    for unit in about["units"]:
+        fields += [("scaled", f"{unit['name']}.{name}: {words}") for name, words in unit["scaled"].items()]
     print_fields([(name, value) for name, value in fields if value])
     print_title("Units, in the order in which they step")
     print_table(("name", "FMU", "every [s]", "parameters"), [_unit_row(u) for u in about["units"]])
@@ -138,7 +147,8 @@ def _connection_row(c: dict[str, str]) -> tuple[str, ...]:
             (c["to"], c["to_unit"], c["to_receiver"]),
         )
     )
-    return (source, sink or "(on the bus only)", bus)
+    written = f" ({c['written']})" if c["written"] else ""
+    return (source, (sink or "(on the bus only)") + written, bus)
 
 
 def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:

@@ -26,6 +26,11 @@ Place = tuple[int, VariableInfo]
 """A slot of the memory, and the variable whose value it holds."""
 
 
+def _as_it_is(v: VariableInfo) -> bool:
+    """Return True where the unit's own value is that of the system."""
+    return not v.inverted and v.scaling.identity
+
+
 class Binding:
     """Makes the transfers of an instance. `memory`, shape (size,), outlives them all."""
 
@@ -50,17 +55,22 @@ class Binding:
     def _transfer(self, name: str, kind: FmiType, places: list[Place]) -> Transfer:
         n, first = len(places), places[0][0]
         references = (ctypes.c_uint * n)(*(self._instance.reference(v.name) for _, v in places))
-        in_order = all(slot == first + i and not v.inverted for i, (slot, v) in enumerate(places))
+        in_order = all(slot == first + i and _as_it_is(v) for i, (slot, v) in enumerate(places))
         in_place = kind.c_type is ctypes.c_double and in_order
         buffer = kind.c_type * n
-        items = [Item(i, slot, -1.0 if v.inverted else 1.0, v) for i, (slot, v) in enumerate(places)]
+        gets = "Get" in name
+        maps = [v.from_fmu if gets else v.to_fmu for _, v in places]
+        items = [
+            Item(i, slot, map_.scale, map_.offset or -0.0, v)
+            for i, ((slot, v), map_) in enumerate(zip(places, maps, strict=True))
+        ]
         return Transfer(
             function=name,
             pointer=self._instance.function(name),
             references=references,
             values=buffer.from_buffer(self._memory[first : first + n].data) if in_place else buffer(),
             type=kind,
-            gets="Get" in name,
+            gets=gets,
             items=() if in_place else tuple(items),
         )
 

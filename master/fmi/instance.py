@@ -278,6 +278,8 @@ class Instance:
         value = kind.kind.from_c(buffer[0])
         if isinstance(value, bool | str):
             return value
+        if not variable.scaling.identity:
+            return variable.from_fmu(value)
         return -value if variable.inverted else value
 
     def set(self, name: str, value: Value) -> None:
@@ -289,6 +291,8 @@ class Instance:
             buffer = (kind.c_type * 1)(bool(value))
         else:
             number = -value if variable.inverted else value
+            if not variable.scaling.identity:
+                number = variable.to_fmu(value)
             if not kind.low <= number <= kind.high:
                 self._refuse(variable, number, "Set")
             buffer = (kind.c_type * 1)(number)

@@ -19,11 +19,15 @@ Refusal = Callable[[int, Any], NoReturn]
 
 
 class Item(NamedTuple):
-    """A variable's place in the buffer, its slot in the memory, and the sign between the two."""
+    """A variable's place in the buffer, its slot in the memory, and the map to where a value goes.
+
+    `offset` is -0.0 where there is none, since adding 0.0 would turn -0.0 into 0.0.
+    """
 
     place: int
     slot: int
-    sign: float
+    scale: float
+    offset: float
     variable: VariableInfo
 
 
@@ -81,8 +85,8 @@ def _setting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: 
     number = float if transfer.type.kind is REAL else int
 
     def set_values() -> None:
-        for place, slot, sign, _ in items:
-            value = sign * memory[slot]
+        for place, slot, scale, offset, _ in items:
+            value = scale * memory[slot] + offset
             if not low <= value <= high:
                 refuse(place, value)
             values[place] = number(value)
@@ -109,16 +113,16 @@ def _getting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: 
 
     def get_values() -> None:
         call()
-        for place, slot, sign, _ in items:
-            memory[slot] = sign * values[place]
+        for place, slot, scale, offset, _ in items:
+            memory[slot] = scale * values[place] + offset
 
     def get_wide_values() -> None:
         call()
-        for place, slot, sign, _ in items:
+        for place, slot, scale, offset, _ in items:
             value = values[place]
             if not -LARGEST_WHOLE <= value <= LARGEST_WHOLE:
                 refuse(place, value)
-            memory[slot] = sign * value
+            memory[slot] = scale * value + offset
 
     return get_wide_values if transfer.type.wide else get_values
 

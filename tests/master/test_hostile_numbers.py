@@ -34,6 +34,12 @@ loop_tolerance = 1e-9
 fmu = "BoundController"
 parameters = { gain = 0.05 }
 start = { speed_bound = 30.0 }
+[units.ecu.map.inputs]
+speed_measured = { variable = "speed_measured", factor = 1.0, offset = 0.0, convert = true }
+[units.ecu.map.outputs]
+throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
+[units.ecu.map.parameters]
+gain = { variable = "gain", factor = 1.0, offset = 0.0, convert = true }
 [units.vehicle]
 fmu = "Scooter"
 period = 0.01
@@ -130,6 +136,12 @@ period = 0.01
 mass = 200.0
 [start]
 brake_force = 0.0
+[map.inputs]
+throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
+[map.outputs]
+speed = { variable = "speed", factor = 1.0, offset = 0.0, convert = true }
+[map.parameters]
+mass = { variable = "mass", factor = 1.0, offset = 0.0, convert = true }
 """
 """Documents with a table for every numeric key; a key that is not in them is added to its table."""
 

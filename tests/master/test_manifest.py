@@ -72,3 +72,16 @@ def test_signals_that_were_saturated_have_a_count_and_the_first_time():
     sender = SimpleNamespace(plan=plan, channel=SimpleNamespace(saturations=counts))
     engine = SimpleNamespace(senders=[sender], time_at=lambda k: 1.0 + 0.5 * k)
     assert saturations(engine) == {"can0.Status.Speed": {"count": 3, "first_time": 26.0}}
+
+
+def test_connections_with_a_factor_and_no_others(manifest, tmp_path):
+    assert manifest["connections"] == []
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        'name = "mine"\n[experiment]\nstop_time = 0.1\n[units.a]\nfmu = "Rider"\n[units.b]\nfmu = "Battery"\n'
+        '[[connect]]\nfrom = "a.brake_force"\nto = ["b.power"]\nfactor = 2.5\n'
+    )
+    with Simulation(path) as simulation:
+        assert simulation.manifest()["connections"] == [
+            {"from": "a.brake_force", "to": ["b.power"], "factor": 2.5}
+        ]

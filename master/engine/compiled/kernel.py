@@ -53,7 +53,7 @@ def fill(t, m, c, kind):
     for j in range(word(c, L.COUNT)):
         value = number(m, word(item, L.SLOT))
         if kind not in BOOLEAN_CODES:
-            value = number(item, L.SIGN) * value
+            value = number(item, L.FACTOR) * value + number(item, L.ADDEND)
             if not number(item, L.LOW) <= value <= number(item, L.HIGH):
                 return j
         at += put_value(at, kind, value)
@@ -73,7 +73,7 @@ def take(t, m, c, kind):
         if wide and (abs(value) > WIDEST or (abs(value) == WIDEST and abs(peek(at, np.int64)) > whole)):
             return j
         at += size
-        put_number(m, word(item, L.SLOT), number(item, L.SIGN) * value)
+        put_number(m, word(item, L.SLOT), number(item, L.FACTOR) * value + number(item, L.ADDEND))
         item += 8 * L.ITEM
     return -1
 

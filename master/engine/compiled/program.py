@@ -226,7 +226,8 @@ class Program:
             if result == L.BAD_STATUS:
                 instance.judge_transfer(transfer, detail)
             item = transfer.items[detail]
-            value = transfer.values[detail] if transfer.gets else item.sign * self._engine.view[item.slot]
+            sent = item.scale * self._engine.view[item.slot] + item.offset
+            value = transfer.values[detail] if transfer.gets else sent
             instance.refuse(transfer, detail, value)
 
         self.call_rechecks.append(recheck)
@@ -244,7 +245,8 @@ class Program:
         )
         low, high = transfer.type.doubles
         self._rows["items"] += [
-            {L.SLOT: item.slot, L.SIGN: item.sign, L.LOW: low, L.HIGH: high} for item in transfer.items
+            {L.SLOT: item.slot, L.FACTOR: item.scale, L.ADDEND: item.offset, L.LOW: low, L.HIGH: high}
+            for item in transfer.items
         ]
         self.called.append(instance)
 

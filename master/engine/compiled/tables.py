@@ -51,9 +51,9 @@ is the code of an FMI type in `fmi.types`."""
 IN_PLACE = 0  # no format: the values are a part of the memory
 GETS = 100  # added to the format where values are read
 
-SIGN, LOW, HIGH = range(1, 4)
-ITEM = 4
-"""Columns of ITEMS, after SLOT: the factor of a value, and the range that fits into the buffer."""
+FACTOR, ADDEND, LOW, HIGH = range(1, 5)
+ITEM = 5
+"""Columns of ITEMS, after SLOT: the map of a value, and the range that fits into the buffer."""
 
 STEPS, STEP_SIZE, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 10)
 UNIT = 10

@@ -215,3 +215,61 @@ def test_an_unknown_unit_between_bare_numbers_is_a_warning(tmp_path):
     )
     assert to_bus.identity and to_receiver.identity
     assert warnings == ("can0.M.S [raw]: this unit of measure is not known; it is taken as [1]",)
+
+
+def scaled(folder, source, signal, target, ideal=False, to=("b.u",), **keys):
+    """The maps of a connection with a factor: to the bus and from it, or with `ideal` both in one."""
+    (folder / "it.dbc").write_text(DBC.format(unit=signal), encoding="utf-8")
+    units = [
+        MockUnit("a", [real("y", "output", unit=source)]),
+        MockUnit("b", [real("u", "input", unit=target)]),
+    ]
+    sent = {"from": "a.y", "to": list(to), "via": "can0.M.S", **keys}
+    buses = {"can0": {"dbc": str(folder / "it.dbc")}}
+    made = plan_of(units, {"connect": [sent], "buses": buses}, ideal=ideal)
+    if ideal:
+        return made.links[0].map
+    (route,) = made.messages[0].routes
+    return (route.to_bus, *(map_ for _, map_ in route.sinks))
+
+
+@pytest.mark.parametrize(
+    ("ends", "keys", "maps"),
+    [
+        (("%", "%", "N.m"), {"factor": 0.45}, (Affine(), Affine(0.45))),
+        (("1", "%", "N.m"), {"factor": 0.45, "offset": 1.0}, (Affine(100.0), Affine(0.45, 1.0))),
+        (("%", "N.m", "N.m"), {"factor": 0.45}, (Affine(0.45), Affine())),
+        (("%", "kN.m", "N.m"), {"factor": 0.5}, (Affine(0.5), Affine(1000.0))),
+        (("km/h", "m/s", "m/s"), {"factor": 2.0, "convert": True}, (Affine(5 / 18), Affine(2.0))),
+        (("km/h", "m/s", "km/h"), {"factor": 2.0, "convert": False}, (Affine(5 / 18), Affine(2.0))),
+        (("count", "V", "mV"), {"factor": 0.1, "convert": False}, (Affine(0.1), Affine(1000.0))),
+    ],
+)
+def test_a_factor_stands_where_the_quantity_changes(tmp_path, ends, keys, maps):
+    to_bus, from_bus = scaled(tmp_path, *ends, **keys)
+    assert (to_bus, from_bus) == maps
+    ideal = scaled(tmp_path, *ends, ideal=True, **keys)
+    assert ideal(7.0) == pytest.approx(from_bus(to_bus(7.0)))  # a bus changes no quantity
+
+
+def test_a_factor_of_what_is_only_sent(tmp_path):
+    assert scaled(tmp_path, "%", "N.m", "", to=(), factor=0.45) == (Affine(0.45),)
+
+
+def test_a_factor_hides_no_unit_of_measure(tmp_path):
+    for ideal in (False, True):
+        for ends in (("km/h", "m/s", "m/s"), ("", "m/s", "m/s"), ("m/s", "m/s", "")):
+            with pytest.raises(ConfigError, match=r"a.y -> b.u: factor = 3.6: .*say `convert = true`"):
+                scaled(tmp_path, *ends, ideal=ideal, factor=3.6)
+
+
+def test_a_factor_is_for_numbers():
+    number = {"from": "car.gear", "to": ["ecu.flag"], "factor": 2.0, "convert": False}
+    with pytest.raises(ConfigError, match=r"factor = 2, convert = false: ecu.flag is of type Boolean"):
+        plan([number])
+    units = [
+        MockUnit("a", [VariableInfo("y", "Boolean", "output", "discrete")]),
+        MockUnit("b", [real("u", "input")]),
+    ]
+    made = plan_of(units, {"connect": [{"from": "a.y", "to": ["b.u"], "factor": 100.0, "convert": False}]})
+    assert made.links[0].map == Affine(100.0)

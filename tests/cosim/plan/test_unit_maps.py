@@ -6,7 +6,8 @@ import pytest
 
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.plan.unit_maps import End, check_texts, unit_map, with_unit
+from evcosim.cosim.plan.unit_maps import End, check_texts, converts, scaled_map, unit_map, with_unit
+from evcosim.cosim.system.scaling import Scaling
 from evcosim.cosim.units.measure import Affine, UnitOfMeasure
 
 NONE, SPEED, RATE = (0,) * 8, (0, 1, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 0)
@@ -110,3 +111,47 @@ def test_the_units_of_a_bus():
     ]
     with pytest.raises(ConfigError, match=r"^here: .Unit_X.: unit of measure .Volt-ish. is not known"):
         check_texts({"Unit_X": "Volt-ish"}, {"Unit_X"}, "here")
+
+
+def scaled(source, target, **keys):
+    """The map between two ends with a factor."""
+    ends = (source if isinstance(source, End) else End("a", source), End("b", target))
+    return scaled_map(*ends, Scaling(**keys), (), "here", [])
+
+
+def test_a_factor_stands_between_two_different_quantities():
+    assert scaled("%", "N.m", factor=0.45, offset=-1.0) == Affine(0.45, -1.0)
+    assert scaled("dB", "1", factor=0.1) == Affine(0.1)
+    assert scaled("km/h", "m/s") == Affine(5 / 18)
+
+
+@pytest.mark.parametrize(
+    ("source", "target"),
+    [("km/h", "m/s"), ("", "m/s"), ("m/s", ""), ("", ""), ("count", "m/s"), ("1/s", "rad/s"), ("m/s", "m/s")],
+)
+def test_else_it_says_how_it_is_meant(source, target):
+    for keys in ({"factor": 3.6}, {"offset": 1.0}):
+        with pytest.raises(ConfigError, match=r"^here: .*say `convert = true` .* or `false`"):
+            scaled(source, target, **keys)
+    assert scaled(source, target, factor=3.6, offset=1.0, convert=False) == Affine(3.6, 1.0)
+
+
+def test_a_factor_after_the_conversion():
+    assert scaled("km/h", "m/s", factor=3.6, offset=1.0, convert=True) == Affine(pytest.approx(1.0), 1.0)
+    assert scaled("degC", "K", factor=2.0, offset=1.0, convert=True) == Affine(2.0, 547.3)
+    for source, target, said in (
+        ("", "m/s", "a declares no unit of measure, so that nothing is converted"),
+        ("m/s", "", "b declares no unit of measure"),
+        ("N", "m/s", "different quantities"),
+        ("1/s", "rad/s", "may count turns"),
+    ):
+        with pytest.raises(ConfigError, match=said):
+            scaled(source, target, factor=2.0, convert=True)
+    with pytest.raises(ConfigError, match="no number holds it"):
+        scaled("km", "mm", factor=1e308, convert=True)
+
+
+def test_what_converts():
+    assert converts(End("a", "km/h"), End("b", "m/s"), ())
+    assert converts(End("a", ""), End("b", "m/s"), ())
+    assert not converts(End("a", "N"), End("b", "m/s"), ())

@@ -11,6 +11,7 @@ from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.swap.mapping import present, without_absent, without_untaken
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile, UnitEntry
+from evcosim.cosim.units.measure import Affine
 
 FMU = UnitInterface(
     "V.fmu",
@@ -192,3 +193,44 @@ def test_with_nothing_absent_all_stays() -> None:
     assert system.file == SystemFile.model_validate(SYSTEM | {"units": units})
     assert scenario.file == ScenarioFile.model_validate(DRIVEN)
     assert said == ()
+
+
+def test_a_factor_is_between_the_systems_quantity_and_the_fmus() -> None:
+    torque = {"variable": "pedal", "unit": "N.m", "factor": -0.5, "offset": 10.0}
+    known = shown(inputs={"torque": torque}).variables["torque"]
+    assert (known.unit, known.scaling) == ("N.m", Affine(-0.5, 10.0))
+    assert (known.min, known.start, known.max) == (-180.0, 10.0, 20.0)  # 100, 5, 0 %
+    assert known.to_fmu == Affine(-0.5, 10.0)
+    speed = shown(outputs={"frequency": {"variable": "v", "unit": "Hz", "factor": 2.0}}).variables[
+        "frequency"
+    ]
+    assert (speed.unit, speed.from_fmu, speed.to_fmu) == ("Hz", Affine(2.0), Affine(0.5))
+
+
+def test_a_unit_of_measure_beside_a_factor_is_the_systems() -> None:
+    for convert, scale in ((True, 36.0), (False, 10.0)):
+        entry = {"variable": "v", "unit": "km/h", "factor": 10.0, "convert": convert}
+        speed = shown(outputs={"speed": entry}).variables["speed"]
+        assert (speed.unit, speed.scaling) == ("km/h", Affine(scale))
+    mass = shown(parameters={"mass": {"variable": "m_total", "unit": "t", "convert": True}}).variables["mass"]
+    assert (mass.start, mass.to_fmu(0.3), mass.from_fmu(300.0)) == (0.2, 300.0, pytest.approx(0.3))
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"outputs": {"speed": {"variable": "v", "unit": "km/h", "factor": 3.6}}}, "say `convert = true`"),
+        ({"outputs": {"speed": {"variable": "v", "factor": 3.6}}}, "say `convert = true`"),
+        (
+            {"inputs": {"on": {"variable": "mode", "factor": 2.0}}},
+            "of type Boolean: only a Real can be scaled",
+        ),
+        (
+            {"outputs": {"f": {"variable": "v", "unit": "N", "factor": 5e-324}}},
+            "no number holds the way back",
+        ),
+    ],
+)
+def test_what_cannot_be_scaled_is_named_with_its_key(tables: dict[str, object], said: str) -> None:
+    with pytest.raises(ConfigError, match=rf"^s.toml: units.u.map\.\w+\.\w+: .*{said}"):
+        shown(**tables)

@@ -191,3 +191,15 @@ def test_a_swap_that_does_not_belong_there_is_refused(
 ) -> None:
     with pytest.raises(ConfigError, match=said):
         swapped(load_system("scooter"), {unit: swap(tmp_path, text)})
+
+
+def test_a_factor_is_kept_and_turned_by_a_proposal(tmp_path: Path) -> None:
+    match = dataclasses.replace(MATCHES[0], unit="%", factor=0.45, offset=2.0, convert=False)
+    path = tmp_path / "swap.toml"
+    for proposal, sign in ((Proposal(), 1.0), (Proposal(invert={("inputs", "throttle"): "it falls"}), -1.0)):
+        write(path, "V.fmu", "scooter.vehicle", [match], None, proposal)
+        entry = read_toml(path, SwapFile).map.inputs["throttle"]
+        assert (entry.factor, entry.offset, entry.convert) == (sign * 0.45, sign * 2.0, False)
+        assert (entry.unit, entry.invert) == ("%", False)
+    assert "proposed: the other sign, since it falls" in path.read_text(encoding="utf-8")
+    assert entry_of("V.fmu", [match]).map.inputs["throttle"].factor == 0.45

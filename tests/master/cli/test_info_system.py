@@ -121,3 +121,17 @@ def test_info_of_a_system(evcosim, tmp_path):
         "x 3.6",
         "",
     )
+
+
+def test_a_factor_is_shown_as_it_is_written(evcosim, tmp_path: Path) -> None:
+    system = tmp_path / "mine.toml"
+    system.write_text(
+        'name = "mine"\n[units.a]\nfmu = "Rider"\n[units.b]\nfmu = "Battery"\n'
+        '[units.b.map.inputs]\nload = { variable = "power", unit = "A", factor = 48.0 }\n'
+        '[[connect]]\nfrom = "a.brake_force"\nto = ["b.load"]\nfactor = 0.5\noffset = -1\n'
+    )
+    shown = connections(evcosim, system)["b.load"]
+    assert (shown["to_receiver"], shown["written"]) == ("x 0.5 - 1", "factor = 0.5, offset = -1")
+    text = " ".join(evcosim("info", system).out.split())
+    assert "b.load [A] (x 0.5 - 1) (factor = 0.5, offset = -1)" in text
+    assert "b.load: factor = 48" in text

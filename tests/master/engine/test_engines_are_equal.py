@@ -249,3 +249,31 @@ def test_every_spelling_of_a_unit_is_the_same_number(tmp_path):
     for i, (spelling, meaning) in enumerate(rows):
         assert last[f"b.u{i}"] == pytest.approx(between(spelling, meaning)(1.0 + 0.37 * i), rel=1e-14)
         assert last[f"b.v{i}"] == pytest.approx(1.0 + 0.37 * i, rel=1e-3, abs=2e-3)
+
+
+SCALED = """
+[units.a.map.inputs]
+torque = { variable = "u", unit = "N.m", factor = -2.5, offset = 1.0, convert = false }
+[units.a.map.outputs]
+speed = { variable = "y", unit = "m/s", factor = 0.1, offset = -3.0, convert = false }
+"""
+
+
+@pytest.mark.parametrize("isolation", ["none", "process"])
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_values_that_a_mapping_scales(tmp_path, fmi, isolation):
+    """The system's torque is taken times -2.5 plus 1, the FMU's output times 0.1 less 3."""
+    system, scenario = one(tmp_path, fmi, end=4.0)
+    (tmp_path / "scaled.toml").write_text(system.read_text() + SCALED)
+    (tmp_path / "down.toml").write_text(scenario.read_text().replace("a.u", "a.torque"))
+    (tmp_path / "same.toml").write_text('[[stimulus]]\nto = "a.u"\ntable = [[0.0, 1.0], [1.0, -9.0]]\n')
+    found = same(tmp_path / "scaled.toml", tmp_path / "down.toml", isolation=isolation)
+    assert not found[-1]
+    with Simulation(system, tmp_path / "same.toml") as plain:
+        plain.step(plain.plan.steps)
+        expected = 0.1 * plain.results["a.y"] - 3.0
+    with Simulation(tmp_path / "scaled.toml", tmp_path / "down.toml", isolation=isolation) as scaled:
+        assert scaled.manifest()["units"]["a"]["map"]["inputs"]["torque"]["factor"] == -2.5
+        scaled.step(scaled.plan.steps)
+        assert scaled.results.units["a.torque"] == "N.m"
+        assert scaled.results["a.speed"] == pytest.approx(expected, abs=1e-12)

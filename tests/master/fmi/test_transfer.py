@@ -34,7 +34,7 @@ def refuse(place: int, value: Any) -> NoReturn:
 def transfer(kind: FmiType, values: Any, gets: bool, signs: list[float]) -> Transfer:
     """Of as many values as signs, which stand in the memory in reverse order."""
     n = len(signs)
-    items = tuple(Item(i, n - 1 - i, sign, VariableInfo(f"v{i}")) for i, sign in enumerate(signs))
+    items = tuple(Item(i, n - 1 - i, sign, -0.0, VariableInfo(f"v{i}")) for i, sign in enumerate(signs))
     return Transfer("fmi2Get" if gets else "fmi2Set", None, None, values, kind, gets, items)
 
 
