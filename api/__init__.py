@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .cosim.analysis.frequency_response import FrequencyResponse
     from .cosim.analysis.sweep import Sweep
     from .cosim.can.bus_settings import BusVariation, Resolution
+    from .cosim.clock import Clock
     from .cosim.errors import ConfigError, RunError
     from .cosim.interface import Value
     from .cosim.results.metrics import Metric
@@ -51,6 +52,7 @@ __all__ = [
     "Array",
     "Budget",
     "BusVariation",
+    "Clock",
     "ConfigError",
     "EngineName",
     "Estimate",
@@ -107,6 +109,7 @@ _MODULES = {
     "Array": "cosim.row_store",
     "Budget": "cosim.analysis.bus_budget",
     "BusVariation": "cosim.can.bus_settings",
+    "Clock": "cosim.clock",
     "ConfigError": "cosim.errors",
     "EngineName": "cosim.system.system",
     "Estimate": "cosim.analysis.first_order",

@@ -16,6 +16,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from .clock import Clock
 from .errors import RunError
 
 Array = NDArray[np.float64]
@@ -27,10 +28,9 @@ _STRETCH = 2**20  # bytes that are read at a time to take some of the columns
 
 @dataclasses.dataclass(frozen=True)
 class Grid:
-    """The times [s] start + k step, k = 0 ... count - 1."""
+    """The times t_k [s] of a clock, k = 0 ... count - 1."""
 
-    start: float
-    step: float
+    clock: Clock
     count: int
 
     def __len__(self) -> int:
@@ -38,8 +38,8 @@ class Grid:
 
     def __getitem__(self, rows: slice) -> Array:
         """Return the times [s] of some rows, shape (rows,)."""
-        steps = np.arange(*rows.indices(self.count), dtype=np.float64)
-        return self.start + self.step * steps
+        first, stop, stride = rows.indices(self.count)
+        return self.clock.times(first, stop)[::stride]
 
 
 @runtime_checkable

@@ -53,8 +53,9 @@ class Simulation:
     """A system with its FMUs loaded and initialized, ready to step; use it in a `with` block.
 
     `system` and `scenario` are built-in names, paths of TOML files, or made in memory; `log_frames` keeps the
-    frames for `write_can_log`; `profile` measures the time of each part of a step. The other keyword
-    arguments are those of RunOptions.
+    frames for `write_can_log`; `profile` measures the time of each part of a step. With `to_stop` the units
+    are told the stop time, and no step goes beyond it; else they are told that there is none, and the
+    simulation can be stepped on. The other keyword arguments are those of RunOptions.
     Raises ConfigError before any step for every input that does not fit.
     """
 
@@ -65,13 +66,14 @@ class Simulation:
         *,
         log_frames: bool = False,
         profile: bool = False,
+        to_stop: bool = False,
         **options: Unpack[RunOptions],
     ) -> None:
         prepared = prepare(system, scenario, **options)
         made, self._notice = engine_class(options.get("engine") or prepared.plan.experiment.engine)
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
-        self.plan: Plan = prepared.plan
+        self.plan: Plan = prepared.plan if to_stop else prepared.plan.open_ended()
         self._prepared, self._fmus = prepared, prepared.fmus
         self._interfaces = {unit.name: unit.interface for unit in self.plan.units}
         if log_frames:
@@ -114,7 +116,7 @@ class Simulation:
 
     @property
     def finished(self) -> bool:
-        """True once the stop time is reached; stepping on beyond it is allowed."""
+        """True once the stop time is reached; without `to_stop`, stepping on beyond it is allowed."""
         return self._engine.k >= self.plan.steps
 
     @property
@@ -126,10 +128,15 @@ class Simulation:
         """Do `steps` communication steps.
 
         Raises RunError naming unit, time and reason; the results up to then are kept. ConfigError for a
-        negative number of steps.
+        negative number of steps, and with `to_stop` for more than are left.
         """
         if steps < 0:
             raise ConfigError(f"steps = {steps}: a run does 0 steps or more")
+        if self.plan.clock.told and steps > self.steps_left:
+            raise ConfigError(
+                f"steps = {steps}: {self.steps_left} are left to the stop time {self.plan.clock.stop} s, "
+                "which the units were told; without to_stop a simulation can be stepped beyond it"
+            )
         self._advance(steps, None)
 
     def run(self, progress: RunProgress | None = None) -> None:
@@ -250,9 +257,8 @@ class Simulation:
     def results(self) -> Results:
         """The rows recorded up to now, with the manifest of the run."""
         table = self._engine.recorded()
-        experiment = self.plan.experiment
         return Results(
-            time=Grid(experiment.start_time, experiment.step_size, table.shape[0]),
+            time=Grid(self.plan.clock, table.shape[0]),
             variables=self.plan.columns,
             data=table,
             manifest=self.manifest(),
@@ -270,12 +276,11 @@ class Simulation:
             raise ConfigError(
                 "the frames of this run were not kept; make the simulation with log_frames=True"
             )
-        experiment = self.plan.experiment
         logs = [
             BusLog(bus, [s.channel.log for s in self._engine.senders if s.plan.bus == bus])
             for bus in self.system.file.buses
         ]
-        return write_can_log(path, logs, experiment.step_size, experiment.start_time)
+        return write_can_log(path, logs, self.plan.clock)
 
     def manifest(self) -> dict[str, Any]:
         """Return what made these results: versions, FMU digests, parameters, settings, counts (JSON-able)."""
@@ -336,7 +341,7 @@ def simulate(
     ConfigError before any step, RunError when a step fails; what a failed run has recorded is in the
     error's `results` (None where it failed before the first step).
     """
-    simulation = Simulation(system, scenario, **options)
+    simulation = Simulation(system, scenario, to_stop=True, **options)
     try:
         with simulation:
             simulation.run(progress)

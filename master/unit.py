@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..cosim.errors import RunError
 from ..cosim.interface import UnitInterface, Value
-from ..cosim.plan.unit_plan import UnitPlan
+from ..cosim.plan.unit_plan import FmuSteps, UnitPlan
 
 WARNED = 3
 """The most texts of a unit's warnings that are kept: the first that differ from each other."""
@@ -94,8 +94,8 @@ class Unit(Protocol):
         that step is done.
         """
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        """Begin `count` steps of `step_size`, the first from `time` on, both in s.
+    def start_step(self, steps: FmuSteps) -> None:
+        """Begin the FMU steps of a turn.
 
         A unit in this process does them at once, one in a process of its own while the caller goes on.
         """

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from ..clock import Clock
 from ..errors import ConfigError
 from ..writing import replacing
 from .database import Message, Signal
@@ -45,10 +46,10 @@ class Frame:
     data: bytes
 
 
-def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> int:
+def write_can_log(path: str | Path, logs: Sequence[BusLog], clock: Clock) -> int:
     """Write the frames of `logs` in the format that the file's suffix names; return how many there were.
 
-    `.log` is candump's, `.blf` and `.asc` are Vector's. `step_size` and `start_time` are the run's [s].
+    `.log` is candump's, `.blf` and `.asc` are Vector's. `clock` is the run's.
     Signals that no connection feeds are sent with their start value. Written frame by frame. Raises
     ConfigError for another suffix or where the file cannot be written.
     """
@@ -56,7 +57,7 @@ def write_can_log(path: str | Path, logs: Sequence[BusLog], step_size: float, st
     check_suffix(path)
     count = 0
     with replacing(path) as file, _FORMATS[path.suffix.lower()](file) as write:
-        for frame in frames(logs, step_size, start_time):
+        for frame in frames(logs, clock):
             write(frame)
             count += 1
     return count
@@ -69,11 +70,11 @@ def check_suffix(path: str | Path) -> None:
         raise ConfigError(f"{path}: CAN logs are written as {', '.join(_FORMATS)}, not as '{suffix}'")
 
 
-def frames(logs: Sequence[BusLog], step_size: float, start_time: float = 0.0) -> Iterator[Frame]:
+def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
     """Yield the frames of all buses in the order of time, those of one instant by frame id; times in s."""
     streams = [_payloads(channel, log) for channel, bus_log in enumerate(logs) for log in bus_log.messages]
     for k, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
-        yield Frame(start_time + k * step_size, channel, logs[channel].bus, message, data)
+        yield Frame(clock.at(k), channel, logs[channel].bus, message, data)
 
 
 _Payload = tuple[int, int, int, Message, bytes]

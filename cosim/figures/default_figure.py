@@ -106,7 +106,7 @@ def _distinct(results: Results) -> list[ResultVariable]:
 
 
 def _is_time(results: Results, variable: ResultVariable) -> bool:
-    # k * step_size as it is, where the time of results is rounded
+    # an FMU may have added up its steps
     return variable.unit == "s" and all(
         np.allclose(values[:, 0], time, rtol=1e-12, atol=1e-9)
         for time, values in results.pieces([variable.name])

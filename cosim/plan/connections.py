@@ -10,10 +10,11 @@ from ..can.database import Database, Message, Signal, check_signal
 from ..can.dbc import load_dbc
 from ..can.resolution import with_resolution
 from ..can.send_steps import send_steps
+from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.scaling import Scaling
-from ..system.system import Algorithm, Connection, Experiment, System
+from ..system.system import Algorithm, Connection, System
 from ..system.toml import data_file
 from ..units.measure import Affine
 from .plan import InputPlan, Link, MessagePlan
@@ -90,7 +91,7 @@ def connect(
     interfaces: Mapping[str, UnitInterface],
     slots: Slots,
     every: Mapping[str, int],
-    experiment: Experiment,
+    clock: Clock,
     algorithm: Algorithm,
     ideal: bool,
 ) -> Network:
@@ -110,7 +111,7 @@ def connect(
         _connect(work, connection)
     order = list(interfaces)
     for (bus, message), routes in work.signal_routes.items():
-        work.network.messages.append(_message(work, bus, message, routes, experiment, algorithm, order))
+        work.network.messages.append(_message(work, bus, message, routes, clock.step, algorithm, order))
     return work.network
 
 
@@ -287,7 +288,7 @@ def _message(
     bus: str,
     name: str,
     routes: list[SignalRoute],
-    experiment: Experiment,
+    step_size: float,
     algorithm: Algorithm,
     order: list[str],
 ) -> MessagePlan:
@@ -297,7 +298,7 @@ def _message(
     continuous.
     """
     message = work.databases[bus].require(name)
-    settings, step_size = work.system.file.buses[bus], experiment.step_size
+    settings = work.system.file.buses[bus]
     every, first = send_steps(message, step_size, str(work.system.path))
     delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
     arrivals: list[tuple[int, int]] = []

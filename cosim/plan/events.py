@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from typing import assert_never
 
+from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface
 from ..system.scenario import Bias, Event, Override, Reset, Scenario
-from ..system.system import Experiment
 from .plan import InputPlan
 
 
@@ -17,7 +17,7 @@ def scheduled(
     scenario: Scenario,
     interfaces: Mapping[str, UnitInterface],
     inputs: Mapping[str, InputPlan],
-    experiment: Experiment,
+    clock: Clock,
 ) -> tuple[tuple[int, Event], ...]:
     """Return the events of a scenario in the order in which they happen, each with its communication step.
 
@@ -26,8 +26,7 @@ def scheduled(
     events = []
     for number, event in enumerate(scenario.file.events, 1):
         check_event(event, interfaces, inputs, f"{scenario.path}: event {number}", in_file=True)
-        step = math.ceil((event.time - experiment.start_time) / experiment.step_size - 1e-6)
-        events.append((max(step, 0), event))
+        events.append((max(clock.step_at(event.time), 0), event))
     return tuple(sorted(events, key=lambda event: event[0]))
 
 

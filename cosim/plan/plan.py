@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.database import Message
+from ..clock import Clock
 from ..results.results import ResultVariable
 from ..system.scenario import Event
 from ..system.stimuli import TimeFunction, initial_value
@@ -82,7 +83,7 @@ class MessagePlan:
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """A system with a scenario, ready to run: `steps` communication steps to the stop time.
+    """A system with a scenario, ready to run at the times of `clock`.
 
     `events` have the step at which each happens, in order. `inputs` are by "unit.variable"; column j of the
     results shows the slot `column_slots[j]`. `initial` are the values of slots, in the inputs' own units,
@@ -93,7 +94,7 @@ class Plan:
     scenario: str
     experiment: Experiment
     algorithm: Algorithm
-    steps: int
+    clock: Clock
     ideal: bool
     units: tuple[UnitPlan, ...]
     links: tuple[Link, ...]
@@ -106,6 +107,15 @@ class Plan:
     initial: dict[int, float]
     memory_size: int
     warnings: tuple[str, ...]
+
+    @property
+    def steps(self) -> int:
+        """The number of communication steps to the stop time."""
+        return self.clock.steps
+
+    def open_ended(self) -> Plan:
+        """Return the plan of a run that may be stepped beyond the stop time, which units are not told."""
+        return dataclasses.replace(self, clock=dataclasses.replace(self.clock, told=False))
 
     @functools.cached_property
     def slots(self) -> dict[str, int]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
@@ -62,12 +63,14 @@ def resolve(
         path, record = scenario.path, scenario.file.record
     connected = {c.source for c in system.file.connect}
     slots, columns = allot(interfaces, record, connected, str(path))
+    clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
+    experiment = experiment.model_copy(update={"stop_time": clock.stop})
     every = {
         name: _every(entry.period, experiment.step_size, f"{system.keys_of(name)}period")
         for name, entry in entries.items()
     }
-    network = connect(system, interfaces, slots, every, experiment, algorithm, options.get("ideal", False))
-    drives = _drives(scenario, interfaces, network, slots)
+    network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
+    drives = _drives(scenario, interfaces, network, slots, clock)
     _mailboxes_of_the_rest(interfaces, network, slots)
     parameters = _parameters(system, scenario, entries, interfaces, options)
     starts = {u: _starts(system, scenario, u, entries[u], interfaces[u]) for u in entries}
@@ -76,7 +79,7 @@ def resolve(
         scenario=scenario.name,
         experiment=experiment,
         algorithm=algorithm,
-        steps=_steps(experiment, len(columns), _stop_time_in(system, scenario, options)),
+        clock=clock,
         ideal=options.get("ideal", False),
         units=tuple(
             UnitPlan(
@@ -95,7 +98,7 @@ def resolve(
         links=tuple(network.links),
         messages=tuple(network.messages),
         drives=drives,
-        events=scheduled(scenario, interfaces, network.inputs, experiment),
+        events=scheduled(scenario, interfaces, network.inputs, clock),
         inputs=network.inputs,
         columns=tuple(result_variable(unit, v) for unit, v in columns),
         column_slots=tuple(slots.valid[unit, v.name] for unit, v in columns),
@@ -138,8 +141,8 @@ def _stop_time_in(system: System, scenario: Scenario, options: RunOptions) -> st
     return f"{path}: experiment.stop_time"
 
 
-def _steps(experiment: Experiment, columns: int, place: str) -> int:
-    """Return the number of steps of the run, each recorded in so many columns; `place` is the stop time's.
+def _clock(experiment: Experiment, columns: int, place: str) -> Clock:
+    """Return the clock of a run that records so many columns; `place` is that of the stop time.
 
     Raises ConfigError when the stop time is no whole number of steps after the start, or too much is
     recorded.
@@ -151,26 +154,20 @@ def _steps(experiment: Experiment, columns: int, place: str) -> int:
         raise ConfigError(
             f"{place} {experiment.stop_time} s is not after start_time {experiment.start_time} s"
         )
-    steps = _multiple(duration, experiment.step_size, f"{place} - start_time")
+    start, step = experiment.start_time, experiment.step_size
+    steps = steps_in(experiment.stop_time, step, place, start, least=1)
     if steps * (columns + 1) > _MOST_VALUES:
         raise ConfigError(
-            f"{place}: {steps:.3g} steps of {experiment.step_size:g} s with {columns} recorded variables are "
+            f"{place}: {steps:.3g} steps of {step:g} s with {columns} recorded variables are "
             f"more than the {_MOST_VALUES:.3g} values that a run keeps; stop earlier, take longer steps or "
             "`record` less"
         )
-    return steps
+    return Clock.counted(start, step, steps, experiment.stop_time)
 
 
 def _every(period: float | None, step_size: float, place: str) -> int:
     """Return a unit's period [s] in communication steps (None: it steps at each)."""
-    return 1 if period is None else _multiple(period, step_size, place)
-
-
-def _multiple(time: float, step_size: float, place: str) -> int:
-    """Return how many steps of `step_size` [s] the `time` [s] is. Raises ConfigError for less than one."""
-    if (count := steps_in(time, step_size, place)) < 1:
-        raise ConfigError(f"{place} = {time} s is not a multiple of the communication step {step_size} s")
-    return count
+    return 1 if period is None else steps_in(period, step_size, place, least=1)
 
 
 def _parameters(
@@ -258,7 +255,11 @@ def _item(name: str, variable: VariableInfo, place: str) -> int:
 
 
 def _drives(
-    scenario: Scenario, interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots
+    scenario: Scenario,
+    interfaces: Mapping[str, UnitInterface],
+    network: Network,
+    slots: Slots,
+    clock: Clock,
 ) -> tuple[Drive, ...]:
     """Return the stimuli of a scenario, each noted as what drives its input in `network`.
 
@@ -277,7 +278,7 @@ def _drives(
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
         slot = slots.valid[unit, name]
         network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), f"{place}.to")
-        drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path), map_))
+        drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path, clock), map_))
     return tuple(drives)
 
 

@@ -7,7 +7,8 @@ quickly.
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ..interface import UnitInterface, VariableInfo
 from ..units.measure import Affine
@@ -64,3 +65,34 @@ class UnitPlan:
     substeps: int
     groups: tuple[SlotGroup, ...]
     routes: tuple[Route, ...]
+
+
+class FmuSteps(NamedTuple):
+    """The FMU steps of one turn: step j begins at (first + j * advance) / divisor [s], j = 0 ... total - 1.
+
+    They are `size` [s] long, the last one `last`; it ends at `end` [s].
+    """
+
+    first: float
+    advance: float
+    divisor: float
+    total: int
+    size: float
+    last: float
+    end: float
+
+    @classmethod
+    def equal(cls, time: float, size: float, count: int = 1) -> FmuSteps:
+        """Return `count` steps of `size` [s], one after the other from `time` [s] on."""
+        return cls(time, size, 1.0, count, size, size, time + count * size)
+
+    def each(self) -> Sequence[tuple[float, float]]:
+        """Return the time [s] at which each begins, and its size [s]."""
+        if self.total == 1:
+            return ((self.first / self.divisor, self.last),)
+        begins = [(self.first + j * self.advance) / self.divisor for j in range(self.total)]
+        return [*((begin, self.size) for begin in begins[:-1]), (begins[-1], self.last)]
+
+    def ends(self) -> Sequence[float]:
+        """Return the time [s] at which each ends."""
+        return [*((self.first + j * self.advance) / self.divisor for j in range(1, self.total)), self.end]

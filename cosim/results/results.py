@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..system.metric_spec import MetricSpec
     from .metrics import Metric
 
-__all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results", "to_nanoseconds"]
+__all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results"]
 
 CSV_NAME = "results.csv"
 MANIFEST_NAME = "run.json"
@@ -48,9 +48,8 @@ class Results:
     `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
     scenario (None and none for results that were read from a file).
 
-    A time k * step_size that misses its decimal by rounding (7 * 0.01 = 0.07000000000000001) becomes the
-    double nearest to that decimal: times within 1e-12 s (and 4 units in the last place) of a whole
-    nanosecond are put there, others are kept as they are.
+    The times of a run are those of its clock: 0.07 s where 7 * 0.01 is 0.07000000000000001. Times that are
+    given as an array are kept as they are.
     """
 
     def __init__(
@@ -65,7 +64,7 @@ class Results:
         self._grid = time if isinstance(time, Grid) else None
         self._time: Array | None = None
         if not isinstance(time, Grid):
-            self._time = to_nanoseconds(np.array(time, dtype=np.float64, ndmin=1))
+            self._time = np.array(time, dtype=np.float64, ndmin=1)
         self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
@@ -94,7 +93,7 @@ class Results:
         if self._time is not None:
             return self._time[start:stop]
         assert self._grid is not None  # one of the two was given
-        return to_nanoseconds(self._grid[start:stop])
+        return self._grid[start:stop]
 
     @property
     def span(self) -> tuple[float, float]:
@@ -273,16 +272,6 @@ def _table(data: ArrayLike) -> Table:
     if array.ndim != 2:
         raise ValueError(f"data has {array.ndim} dimensions: rows and columns are needed")
     return MemoryTable(array)
-
-
-def to_nanoseconds(time: Array) -> Array:
-    """Return times [s], any shape, with those that miss a whole nanosecond by rounding alone put there.
-
-    `Results` says which these are.
-    """
-    with np.errstate(invalid="ignore", over="ignore"):  # inf and nan fail the comparison and stay
-        decimal = np.rint(time * 1e9) / 1e9
-        return np.where(np.abs(decimal - time) <= 1e-12 + 4 * np.spacing(np.abs(time)), decimal, time)
 
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..clock import Clock
 from ..csv_numbers import CsvFile
 from ..errors import ConfigError, nearest
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
@@ -20,38 +21,44 @@ TimeFunction = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values, shape (n,), of a stimulus at the times [s], shape (n,)."""
 
 
-def stimulus(entry: StimulusEntry, place: str, beside: Path | None) -> TimeFunction:
-    """The signal that an entry describes, in the entry's own unit.
+def stimulus(entry: StimulusEntry, place: str, beside: Path | None, clock: Clock) -> TimeFunction:
+    """Return the signal that an entry describes, in the entry's own unit.
 
-    `place` is the entry's in the scenario file `beside`, from which a csv path is looked up. Raises
-    ConfigError naming `place` with the key, rule and values.
+    `place` is the entry's in the scenario file `beside`, from which a csv path is looked up. A time that
+    misses a communication point of `clock` by rounding alone is that point. Raises ConfigError naming
+    `place` with the key, rule and values.
     """
     if entry.constant is not None:
         return _table(np.zeros(1), np.array([entry.constant]), "hold", Rows(f"{place}.constant"))
     if entry.sine is not None:
-        return _sine(entry.sine)
+        return _sine(entry.sine, clock)
     if entry.ramp is not None:
-        return _ramp(entry.ramp, f"{place}.ramp")
+        return _ramp(entry.ramp, f"{place}.ramp", clock)
     if entry.table is not None:
         points = np.array(entry.table, dtype=float).reshape(-1, 2)
-        return _table(points[:, 0], points[:, 1], entry.interpolation, Rows(f"{place}.table"))
+        return _table(
+            clock.on_points(points[:, 0]), points[:, 1], entry.interpolation, Rows(f"{place}.table")
+        )
     assert entry.csv is not None  # the entry has exactly one kind
     path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
     times, values, rows = read_columns(path, entry.column, entry.time_column)
-    return _table(times, values, entry.interpolation, rows)
+    return _table(clock.on_points(times), values, entry.interpolation, rows)
 
 
-def _sine(sine: Sine) -> TimeFunction:
+def _sine(sine: Sine, clock: Clock) -> TimeFunction:
+    delay = _on_point(sine.delay, clock)
+
     def values(t: NDArray[np.float64]) -> NDArray[np.float64]:
         with np.errstate(over="ignore", invalid="ignore"):  # the engine refuses what is not finite
-            swing = sine.amplitude * np.sin(2.0 * math.pi * (t - sine.delay) / sine.period + sine.phase)
-            return sine.mean + np.where(t >= sine.delay, swing, 0.0)
+            swing = sine.amplitude * np.sin(2.0 * math.pi * (t - delay) / sine.period + sine.phase)
+            return sine.mean + np.where(t >= delay, swing, 0.0)
 
     return values
 
 
-def _ramp(ramp: Ramp, place: str) -> TimeFunction:
+def _ramp(ramp: Ramp, place: str, clock: Clock) -> TimeFunction:
     low, high = -math.inf, math.inf
+    delay = _on_point(ramp.delay, clock)
     if ramp.end is not None:
         if ramp.end != ramp.start and not (ramp.end - ramp.start) * ramp.slope > 0.0:
             raise ConfigError(
@@ -61,9 +68,13 @@ def _ramp(ramp: Ramp, place: str) -> TimeFunction:
 
     def values(t: NDArray[np.float64]) -> NDArray[np.float64]:
         with np.errstate(over="ignore", invalid="ignore"):
-            return np.clip(ramp.start + ramp.slope * np.maximum(t - ramp.delay, 0.0), low, high)
+            return np.clip(ramp.start + ramp.slope * np.maximum(t - delay, 0.0), low, high)
 
     return values
+
+
+def _on_point(time: float, clock: Clock) -> float:
+    return float(clock.on_points(np.array([time]))[0])
 
 
 class Rows:

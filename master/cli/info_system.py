@@ -29,7 +29,7 @@ def described(name: str) -> dict[str, Any]:
         "stop_time": plan.experiment.stop_time,
         "algorithm": plan.algorithm,
         "units": [
-            {"name": u.name, "fmu": u.fmu, "period": u.every * plan.experiment.step_size,
+            {"name": u.name, "fmu": u.fmu, "period": plan.clock.length(u.every),
              "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name)}
             for u in plan.units
         ],
@@ -92,8 +92,8 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
         "bus": plan.bus,
         "name": message.name,
         "id": message.frame_id,
-        "cycle_time": plan.every * whole.experiment.step_size,
-        "delay": plan.delay * whole.experiment.step_size,
+        "cycle_time": whole.clock.length(plan.every),
+        "delay": whole.clock.length(plan.delay),
         "signals": [
             {"name": route.signal.name, "bits": route.signal.length, "scale": route.signal.scale,
              "offset": route.signal.offset, "minimum": route.signal.minimum,

@@ -107,7 +107,12 @@ def _run(order: Order) -> FinishedRun:
     error: BaseException | None = None
     with Interrupts() as interrupts:
         simulation = Simulation(
-            order.system, order.scenario, log_frames=order.can_log, profile=order.profile, **order.options
+            order.system,
+            order.scenario,
+            log_frames=order.can_log,
+            profile=order.profile,
+            to_stop=True,
+            **order.options,
         )
         try:
             with simulation:

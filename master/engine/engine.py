@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from ...cosim.can.channel import MessageChannel
 from ...cosim.can.quantization import ChannelError
+from ...cosim.clock import Clock
 from ...cosim.errors import RunError
 from ...cosim.plan.plan import MessagePlan, Plan
+from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset
@@ -27,8 +29,8 @@ from ..unit import Unit, floats
 from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
 
-Act = Callable[[int, float], None]
-"""A function of k and t_k [s] that does an action in step k, which starts at t_k."""
+Act = Callable[[int], None]
+"""A function of k that does an action in step k."""
 
 CHUNK_SECONDS = 0.1
 """The time [s] after which a chunk of steps ends; progress and Ctrl-C are looked at between two chunks."""
@@ -40,7 +42,7 @@ def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
     """Return a function that writes all inputs of a unit from their routes: one assignment for each."""
     lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
     scope: dict[str, Any] = {"memory": memory}
-    exec("def take(k, time, m=memory):\n" + "\n".join(lines), scope)
+    exec("def take(k, m=memory):\n" + "\n".join(lines), scope)
     return cast(Act, scope["take"])
 
 
@@ -58,14 +60,13 @@ class Effect:
 class Turn:
     """One unit in the schedule: its actions, and the overrides and biases of its inputs by slot.
 
-    `memory` has shape (size,); `step_size` [s] is the communication step, `self.step_size` [s] the FMU's.
+    `memory` has shape (size,); `times` are those of the unit's FMU steps.
     """
 
-    def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], step_size: float) -> None:
+    def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], clock: Clock) -> None:
         self.unit, self.plan, self.memory = unit, plan, memory
         self.take = compile_routes(plan.routes, memory)
-        self.step_size = step_size * plan.every / plan.substeps
-        self.substeps = plan.substeps
+        self.times = TurnTimes(clock, plan.every, plan.substeps)
         outputs = [group for group in plan.groups if group.kind != "input"]
         self.continuous = [group for group in outputs if group.kind == "continuous"]
         self.published = [
@@ -81,22 +82,22 @@ class Turn:
         self.has_feedthrough = any(group.feedthrough for group in outputs)
         self.effects: dict[int, Effect] = {}  # by input slot
 
-    def begin(self, k: int, time: float) -> None:
+    def begin(self, k: int) -> None:
         """Apply overrides and biases to the inputs, set them, and begin the unit's step."""
         if self.effects:
             self.apply_effects()
         self.unit.set_inputs()
         if self.has_feedthrough:
             self.unit.get_feedthrough()
-        self.unit.start_step(time, self.step_size, self.substeps)
+        self.unit.start_step(self.times.steps(k))
 
-    def end(self, k: int, time: float) -> None:
+    def end(self, k: int) -> None:
         """Wait for the step and read the outputs. Raises RunError when one is NaN or infinite."""
         self.unit.finish_step()
         self.unit.get_outputs()
         self.check_finite()
 
-    def publish(self, k: int, time: float) -> None:
+    def publish(self, k: int) -> None:
         """Make the continuous outputs after the step those valid at the next communication point."""
         for valid, latest in self.published:
             self.memory[valid] = latest
@@ -131,7 +132,7 @@ class Sender:
     ) -> None:
         self.plan, self.channel, self.memory, self.waiting = plan, channel, memory, waiting
 
-    def send(self, k: int, time: float) -> None:
+    def send(self, k: int) -> None:
         """Sample all signals. Raises RunError naming sender and signal if a value cannot be sent."""
         try:
             self.channel.transmit(self.memory, k)
@@ -147,7 +148,7 @@ class Sender:
         name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
         return RunError(f"{self.plan.senders.get(error.signal, '')} via {name}: {error.rule}")
 
-    def deliver(self, k: int, time: float) -> None:
+    def deliver(self, k: int) -> None:
         """Copy the values sampled `delay` steps ago to the mailboxes."""
         assert self.waiting is not None  # only messages with a delay are delivered
         row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
@@ -182,8 +183,7 @@ class Engine:
         self._chunk = min(_FIRST, self._most)
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
-        h = plan.experiment.step_size
-        self.turns = [Turn(units[p.name], p, self.view, h) for p in plan.units]
+        self.turns = [Turn(units[p.name], p, self.view, plan.clock) for p in plan.units]
         self.senders = [
             Sender(m, MessageChannel(m.message, m.routes, m.settings, log_raw), self.view, self.late.get(i))
             for i, m in enumerate(plan.messages)
@@ -204,7 +204,7 @@ class Engine:
 
     def time_at(self, k: int) -> float:
         """Return t_k [s]."""
-        return self.plan.experiment.start_time + k * self.plan.experiment.step_size
+        return self.plan.clock.at(k)
 
     def start(self) -> None:
         """Read all outputs at the start time; the units have left initialization mode.
@@ -215,7 +215,7 @@ class Engine:
             self.memory[slot] = value
         for turn in self.turns:
             turn.unit.get_outputs()
-            turn.publish(0, self.time)
+            turn.publish(0)
             turn.check_finite()
 
     # ---- stepping
@@ -254,9 +254,7 @@ class Engine:
         """Return the stimuli at the next `count` communication points, shape (drives, count)."""
         if not self.plan.drives:
             return np.empty((0, count))
-        experiment = self.plan.experiment
-        steps = np.arange(self.k, self.k + count, dtype=np.float64)
-        times = experiment.start_time + steps * experiment.step_size
+        times = self.plan.clock.times(self.k, self.k + count)
         return np.array([drive.at(times) for drive in self.plan.drives])
 
     def _adapt(self, count: int, done: int, seconds: float) -> None:

@@ -73,7 +73,7 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
     # parameters, start values and the inputs that no output reaches, then initialization mode
     notices = [
         units[p.name].enter_initialization(
-            experiment.start_time, experiment.stop_time, p.parameters, _first_inputs(plan, p)
+            experiment.start_time, plan.clock.told_stop, p.parameters, _first_inputs(plan, p)
         )
         for p in plan.units
     ]

@@ -24,11 +24,9 @@ class PythonEngine(Engine):
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
         try:
             for k in range(first, first + count):
-                # the communication point t_k, from its count
-                now = self.time_at(k)
                 # the actions of the schedule in order, each at the steps at which it is due
                 for act in acts:
-                    act(k, now)
+                    act(k)
                 # the step is done: an error in a later one leaves its row
                 self.k = k + 1
                 # the caller looks at progress, events and Ctrl-C
@@ -55,14 +53,14 @@ class PythonEngine(Engine):
             slot, values = self.plan.drives[action.index].sink, drives[action.index].tolist()
             view = self.view
 
-            def drive(k: int, time: float) -> None:
+            def drive(k: int) -> None:
                 view[slot] = values[k - first]
 
             return drive
         if action.kind == "record":
             memory = self.memory[: wide.shape[1]]
 
-            def record(k: int, time: float) -> None:
+            def record(k: int) -> None:
                 wide[k - first] = memory
 
             return record
@@ -72,9 +70,9 @@ class PythonEngine(Engine):
         profile, part = self.profile, part_of(action, self.plan)
         assert profile is not None  # it is wanted
 
-        def timed(k: int, time: float) -> None:
+        def timed(k: int) -> None:
             begin = profile.clock()
-            act(k, time)
+            act(k)
             profile.add(part, profile.clock() - begin)
 
         return timed
@@ -86,8 +84,8 @@ def _when_due(action: Action, act: Act) -> Act:
         return act
     every, first = action.every, action.first
 
-    def when_due(k: int, time: float) -> None:
+    def when_due(k: int) -> None:
         if k >= first and (k - first) % every == 0:
-            act(k, time)
+            act(k)
 
     return when_due

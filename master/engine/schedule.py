@@ -1,6 +1,6 @@
 """The actions of a communication step in order: the one description that every engine follows.
 
-Time is a count: t_k = start + k * step_size. The stages of step k, under `gauss_seidel`:
+Time is a count k, of which `clock` makes the time t_k. The stages of step k, under `gauss_seidel`:
 
 1. the values of the stimuli at t_k are written to the slots of their inputs;
 2. the messages that are due and carry outputs valid at t_k are sent;

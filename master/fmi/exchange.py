@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
-from ...cosim.plan.unit_plan import UnitPlan
+from ...cosim.plan.unit_plan import FmuSteps, UnitPlan
 from ..unit import UnitError
 from .binding import Place
 from .cvode import Cvode, Function, SolverError
@@ -253,11 +253,11 @@ class ModelExchange(Instance):
         else:
             change()
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        """Integrate over `count` steps. No step of the solver is longer than `step_size` [s]."""
+    def start_step(self, steps: FmuSteps) -> None:
+        """Integrate over the steps. No step of the solver is longer than one of them."""
         try:
-            for i in range(1, count + 1):
-                self._advance(time + i * step_size)
+            for end in steps.ends():
+                self._advance(end)
         except SolverError as error:
             self._give_up(f"CVODE cannot go on: {error}{self._why_not()}")
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...cosim.interface import UnitInterface, Value
+from ...cosim.plan.unit_plan import FmuSteps
 from .fmu import Fmu, FmuError
 from .instance import Instance
 from .library import Library
@@ -97,10 +98,8 @@ class Fmi1Unit(Instance):
         self.step_call = StepCall(self._do_step)
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        self._step_size.value = step_size
-        for i in range(count):
-            self._time.value = time + i * step_size
+    def start_step(self, steps: FmuSteps) -> None:
+        for self._time.value, self._step_size.value in steps.each():
             status = self._do_step(self._component, self._time, self._step_size, _TRUE)
             if status:
                 self.judge_step(status)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fmpy.fmi2 import fmi2EventInfo
 
+from ...cosim.plan.unit_plan import FmuSteps
 from .exchange import ModelExchange
 from .instance import Instance
 from .transfer import Call, StepCall
@@ -56,10 +57,8 @@ class Fmi2Unit(Instance):
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
         self._no_set_state = ctypes.c_int(1)
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        self._step_size.value = step_size
-        for i in range(count):
-            self._time.value = time + i * step_size
+    def start_step(self, steps: FmuSteps) -> None:
+        for self._time.value, self._step_size.value in steps.each():
             status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
             if status:
                 self.judge_step(status)

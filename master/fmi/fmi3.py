@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from ...cosim.plan.unit_plan import FmuSteps
 from ..unit import UnitError
 from .exchange import ModelExchange
 from .instance import Instance
@@ -76,10 +77,8 @@ class Fmi3Unit(Instance):
             ctypes.byref(self._ending), ctypes.byref(self._early), ctypes.byref(self._reached),
         )  # fmt: skip # the step writes the last four
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        self._step_size.value = step_size
-        for i in range(count):
-            self._time.value = time + i * step_size
+    def start_step(self, steps: FmuSteps) -> None:
+        for self._time.value, self._step_size.value in steps.each():
             status = self._do_step(*self._step_arguments)
             if status or self._ending or self._early:
                 self.judge_step(status)

@@ -111,7 +111,7 @@ class Server:
                 unit.set_inputs()
                 if kind == shared.STEP_SHOWN:
                     unit.get_feedthrough()
-                unit.start_step(slots[shared.TIME], slots[shared.STEP_SIZE], int(slots[shared.COUNT]))
+                unit.start_step(shared.fmu_steps(slots))
                 unit.finish_step()
             unit.get_outputs()
         except Exception as error:  # whatever it is, the master raises it

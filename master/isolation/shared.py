@@ -17,11 +17,12 @@ import tempfile
 
 import numpy as np
 
-from ...cosim.plan.unit_plan import SlotGroup, UnitPlan
+from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from ..unit import WARNED, floats
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
-REQUEST, KIND, TIME, STEP_SIZE, COUNT, MASTER_SLEEPS, SPIN = range(7)
+REQUEST, KIND, MASTER_SLEEPS, SPIN, STEPS = range(5)
+STEPS_END = STEPS + len(FmuSteps._fields)
 # the child's side
 ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES, _WARNED = range(16, 22)
 
@@ -105,6 +106,12 @@ class Shared:
 def _places(number: int) -> list[int]:
     """Return the slots of the first `number` warnings."""
     return [_WARNED_AT + i * _RECORD for i in range(number)]
+
+
+def fmu_steps(slots: memoryview[float]) -> FmuSteps:
+    """Return the FMU steps that the master has written."""
+    first, advance, divisor, total, *sizes = slots[STEPS:STEPS_END]
+    return FmuSteps(first, advance, divisor, _count(total), *sizes)
 
 
 def _count(number: float) -> int:

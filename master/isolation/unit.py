@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface, Value
-from ...cosim.plan.unit_plan import UnitPlan
+from ...cosim.plan.unit_plan import FmuSteps, UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
 from ..unit import NO_VALUES, UnitError, floats
@@ -232,11 +232,11 @@ class IsolatedUnit:
         """Note that the unit shows outputs before the step that follows."""
         self._shows = True
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
+    def start_step(self, steps: FmuSteps) -> None:
         """Request the steps; the process does them while the caller goes on."""
         self._check_free()
-        slots = self._slots
-        slots[shared.TIME], slots[shared.STEP_SIZE], slots[shared.COUNT] = time, step_size, count
+        for place, number in enumerate(steps, shared.STEPS):
+            self._slots[place] = number
         self._asked = "a step"
         self._request(shared.STEP_SHOWN if self._shows else shared.STEP)
 

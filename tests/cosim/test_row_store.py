@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.row_store import MEMORY, Grid, MemoryTable, RowStore, Table
 
@@ -98,8 +99,9 @@ def test_a_full_disk_loses_nothing() -> None:
 def test_the_times_of_a_grid_are_counted(
     start: float, step: float, count: int, first: int, stop: int
 ) -> None:
-    grid = Grid(start, step, count)
-    expected = np.array([start + step * k for k in range(count)])
+    clock = Clock.counted(start, step, 50)
+    grid = Grid(clock, count)
+    expected = np.array([clock.at(k) for k in range(count)])
     assert len(grid) == count
     assert np.array_equal(grid[:], expected)
     assert np.array_equal(grid[first:stop], expected[first:stop])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from evcosim.cosim.interface import UnitInterface, Value, VariableInfo
 from evcosim.cosim.plan.plan import Plan
 from evcosim.cosim.plan.resolve import participating, resolve
-from evcosim.cosim.plan.unit_plan import SlotGroup, UnitPlan
+from evcosim.cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile
 from evcosim.master.engine.initialization import initialize
@@ -88,10 +88,10 @@ class MockUnit:
             for i in range(group.feedthrough):
                 self.memory[group.slot + i] = self.memory[group.latest + i] = self.values[group.names[i]]
 
-    def start_step(self, time: float, step_size: float, count: int) -> None:
-        for i in range(count):
-            self.steps.append((time + i * step_size, step_size))
-            self._step(self.values, time + i * step_size, step_size)
+    def start_step(self, steps: FmuSteps) -> None:
+        for time, step_size in steps.each():
+            self.steps.append((time, step_size))
+            self._step(self.values, time, step_size)
             self._through(self.values)
 
     def finish_step(self) -> None:

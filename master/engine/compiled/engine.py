@@ -98,10 +98,11 @@ class CompiledEngine(Engine):
         self._raws = np.zeros(max(1, len(program.signals)))
         self._logs = np.zeros(max(1, len(program.logged)), dtype=np.int64)
         self._times = np.zeros(len(program.ops))
-        experiment = self.plan.experiment
-        self._numbers[[L.START, L.H, L.SECONDS]] = (
-            experiment.start_time, experiment.step_size, CHUNK_SECONDS,
+        clock = self.plan.clock
+        self._numbers[[L.CLOCK_FIRST, L.CLOCK_ADVANCE, L.CLOCK_STOP, L.SECONDS]] = (
+            clock.first, clock.advance, clock.numerator(clock.steps), CHUNK_SECONDS,
         )  # fmt: skip # beside their places
+        self._state[L.STOP_STEP] = clock.steps
         self._state[L.PYTHON] = address(self._python)
         self._set_clock()
         tables: dict[int, NDArray[Any]] = {
@@ -145,7 +146,7 @@ class CompiledEngine(Engine):
             if what >= 0:
                 act = self._acts[what]
                 assert act is not None  # the kernel drives and records by itself
-                act(k, self.time_at(k))
+                act(k)
             else:
                 self._raw_value(-1 - what, k)
             return 0

@@ -130,12 +130,22 @@ def call(t, m, row):
 
 
 @inlined
-def step(t, c, begin):
-    """Do the steps of the unit in row c within its period, from `begin` [s] on; return DONE or an error."""
-    size = number(c, L.STEP_SIZE)
-    answers = word(c, L.ANSWERS)
-    for j in range(word(c, L.STEPS)):
-        time = begin + j * size
+def step(t, c, k, now):
+    """Do the steps of the turn at step k of the unit in row c; return DONE or an error.
+
+    `now` is the numerator of t_k.
+    """
+    first, divisor = now * number(c, L.TIME_FACTOR), number(c, L.DIVISOR)
+    advance, size = number(c, L.ADVANCE), number(c, L.STEP_SIZE)
+    landing = size
+    if k == word(c, L.LAST_TURN):
+        advance, size = number(c, L.LAST_ADVANCE), number(c, L.LAST_SIZE)
+        landing = number(c, L.LANDING_SIZE)
+    answers, count = word(c, L.ANSWERS), word(c, L.STEPS)
+    for j in range(count):
+        time = (first + j * advance) / divisor
+        if j == count - 1:
+            size = landing
         if answers:
             status = do_step_3(
                 word(c, L.FUNCTION), word(c, L.COMPONENT), time, size,
@@ -247,8 +257,8 @@ def wait(t, m, o, k):
 
 
 @inlined
-def operate(t, m, o, s, k, time):
-    """Do the operation in row o, in step k, which is step s of the chunk and starts at `time` [s]."""
+def operate(t, m, o, s, k, now):
+    """Do the operation in row o, in step k, which is step s of the chunk; `now` is the numerator of t_k."""
     kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
     if kind == L.TAKE:
         r = word(t, L.ROUTES) + 8 * L.ROUTE * a
@@ -267,7 +277,7 @@ def operate(t, m, o, s, k, time):
             result = call(t, m, row)
             if result != L.DONE:
                 return result
-        return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, time)
+        return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, k, now)
     elif kind == L.CHECK:
         return check(m, b, word(o, L.C))
     elif kind == L.COPY:
@@ -322,9 +332,11 @@ def follow(t, timed):
                 break
             interval = min(2 * interval, LOOK) if now - last < 0.001 else max(1, interval // 2)
             last, look = now, s + interval
-        # the communication point t_k, from its count
+        # the numerator of the communication point t_k, from its count
         k = word(state, L.START_STEP) + s
-        time = number(numbers, L.START) + k * number(numbers, L.H)
+        now = number(numbers, L.CLOCK_FIRST) + k * number(numbers, L.CLOCK_ADVANCE)
+        if k == word(state, L.STOP_STEP):
+            now = number(numbers, L.CLOCK_STOP)
         # the operations in order, each at the steps at which it is due
         o = word(t, L.OPS)
         if timed:
@@ -333,7 +345,7 @@ def follow(t, timed):
             if k == word(o, L.DUE):
                 put_word(state, L.AT, i)
                 put_word(o, L.DUE, k + word(o, L.EVERY))
-                result = operate(t, m, o, s, k, time)
+                result = operate(t, m, o, s, k, now)
                 if timed:
                     now = clock(t)
                     put_number(word(t, L.TIMES_OF_OPS), i, number(word(t, L.TIMES_OF_OPS), i) + now - moment)

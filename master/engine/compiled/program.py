@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ....cosim.can.channel import SignalRoute
 from ....cosim.can.quantization import SignalOperation
+from ....cosim.plan.turns import TurnTimes
 from ....cosim.units.measure import Affine
 from ...fmi.fmi1 import Fmi1Unit
 from ...fmi.fmi2 import Fmi2Unit
@@ -183,9 +184,9 @@ class Program:
         step = instance.step_call
         assert step is not None  # a unit that has been initialized has one
         row: dict[int, int | float] = {
-            L.FUNCTION: address(step.pointer), L.COMPONENT: instance.component, L.STEPS: turn.substeps,
-            L.STEP_SIZE: float(turn.step_size), L.ANSWERS: len(step.answers),
+            L.FUNCTION: address(step.pointer), L.COMPONENT: instance.component, L.ANSWERS: len(step.answers),
         }  # fmt: skip # a row
+        row |= _times(turn.times)
         row |= {L.EVENT + i: ctypes.addressof(answer) for i, answer in enumerate(step.answers)}
 
         def recheck(result: int, detail: int) -> None:
@@ -344,6 +345,16 @@ def _table(rows: Sequence[Cells], width: int) -> KernelTable:
     for i, row in enumerate(rows):
         _fill(made, i, row)
     return made
+
+
+def _times(times: TurnTimes) -> Cells:
+    """Return the columns of UNITS that say when the unit steps."""
+    last = times.last or times.steps(0)  # without a last turn these are not looked at
+    return {
+        L.STEPS: times.substeps, L.TIME_FACTOR: times.factor, L.DIVISOR: times.divisor,
+        L.ADVANCE: times.advance, L.STEP_SIZE: times.size, L.LAST_TURN: times.last_k,
+        L.LAST_ADVANCE: last.advance, L.LAST_SIZE: last.size, L.LANDING_SIZE: last.last,
+    }  # fmt: skip # columns of a row
 
 
 def _mapped(affine: Affine) -> dict[int, int | float]:

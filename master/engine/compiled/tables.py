@@ -55,10 +55,12 @@ FACTOR, ADDEND, LOW, HIGH = range(1, 5)
 ITEM = 5
 """Columns of ITEMS, after SLOT: the map of a value, and the range that fits into the buffer."""
 
-STEPS, STEP_SIZE, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 10)
-UNIT = 10
-"""Columns of UNITS: FMU steps within a period, their size [s], the number of output arguments of FMI 3.0 (4,
-else 0), and their addresses."""
+STEPS, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 9)
+TIME_FACTOR, DIVISOR, ADVANCE, STEP_SIZE, LAST_TURN, LAST_ADVANCE, LAST_SIZE, LANDING_SIZE = range(9, 17)
+UNIT = 17
+"""Columns of UNITS: FMU steps in a turn; the number of output arguments of FMI 3.0 (4, else 0), and their
+addresses; the times of the steps, as in `plan.turns`, and their size [s]; the k of the turn before the stop
+time, what is between its FMU steps, their size [s], and that of its last one."""
 
 # ---- the channel
 
@@ -78,16 +80,16 @@ mailbox)."""
 # ---- a chunk
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
-CLOCK, CLOCK_A, CLOCK_B, NOTED = range(9, 13)
-STATE_SIZE = 13
+CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP = range(9, 14)
+STATE_SIZE = 14
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
-of TICKS; 1 if any column WARNINGS or TIMES is not 0."""
-START, H, SECONDS, VALUE, TICK_0, TICK_1 = range(6)
-NUMBERS_SIZE = 6
-"""Places in NUMBERS: start time and step size, the longest duration of a chunk, a value that Python converts,
-and the seconds in one unit of each number in TICKS."""
+of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time."""
+CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, SECONDS, VALUE, TICK_0, TICK_1 = range(7)
+NUMBERS_SIZE = 7
+"""Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of
+a chunk, a value that Python converts, and the seconds in one unit of each number in TICKS."""
 
 DONE, BAD_STATUS, BAD_END, NO_FIT, NOT_FINITE, RAISED = range(6)
 """Return values of the kernel. DETAIL is the status of a call, or the place of a value that does not fit."""

@@ -13,6 +13,7 @@ import numpy as np
 from ....cosim.analysis.signs import Pair, alike, direction
 from ....cosim.errors import ConfigError, RunError
 from ....cosim.interface import VariableInfo
+from ....cosim.plan.unit_plan import FmuSteps
 from ....cosim.row_store import Array
 from ...fmi.fmu import is_true
 from ...isolation.unit import IsolatedUnit
@@ -231,7 +232,7 @@ def speed(unit: IsolatedUnit, at: float, step: float, seconds: float) -> Finding
     count, best, end = 1, math.inf, time.perf_counter() + seconds
     while True:
         begin = time.perf_counter()
-        unit.start_step(at, step, count)
+        unit.start_step(FmuSteps.equal(at, step, count))
         unit.finish_step()
         took = time.perf_counter() - begin
         at += count * step
@@ -287,7 +288,8 @@ def _onward(unit: IsolatedUnit, bench: Bench, at: float) -> list[tuple[object, .
     """Do some periods from the time `at` [s] on, the inputs held; return the outputs after each."""
     found = []
     for k in range(_STEPS):
-        unit.start_step(at + k * bench.period, bench.period / bench.entry.substeps, bench.entry.substeps)
+        substeps = bench.entry.substeps
+        unit.start_step(FmuSteps.equal(at + k * bench.period, bench.period / substeps, substeps))
         unit.finish_step()
         found.append(_outputs(unit, bench))
     return found

@@ -19,11 +19,13 @@ from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.can.frames import BusLog, frames, write_can_log
 from evcosim.cosim.can.send_steps import send_steps
 from evcosim.cosim.can.transmissions import RawLog
+from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units.measure import Affine
 from support.databases import EV
 
 STEP = 0.01
+CLOCK = Clock.counted(0.0, STEP, 0)
 NAMES = ("EMD_Status", "VCU_Request", "BMS_Status", "MCU_Status")
 SUFFIXES = (".log", ".blf", ".asc")
 
@@ -69,7 +71,7 @@ def read(path: Path) -> list[can.Message]:
 def test_the_log_decodes_to_what_the_receivers_saw(tmp_path: Path, suffix: str) -> None:
     run, database = Run(40), cantools.database.load_file(EV)
     path = tmp_path / f"frames{suffix}"
-    assert write_can_log(path, run.log(), STEP) == len(run.seen)
+    assert write_can_log(path, run.log(), CLOCK) == len(run.seen)
     found = {}
     for frame in read(path):
         message = database.get_message_by_frame_id(frame.arbitration_id)
@@ -82,18 +84,18 @@ def test_the_log_decodes_to_what_the_receivers_saw(tmp_path: Path, suffix: str) 
 
 def test_a_message_with_a_start_delay_is_logged_when_it_was_sampled(tmp_path: Path) -> None:
     run = Run(5, ("MCU_Status",))  # start delay 5 ms: first sent at 10 ms
-    write_can_log(tmp_path / "frames.log", run.log(), STEP, start_time=2.0)
+    write_can_log(tmp_path / "frames.log", run.log(), Clock.counted(2.0, STEP, 0))
     assert [m.timestamp for m in read(tmp_path / "frames.log")] == pytest.approx([2.01, 2.02, 2.03, 2.04])
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_times_count_from_the_run_s_start_not_from_the_first_frame(tmp_path: Path, suffix: str) -> None:
-    write_can_log(tmp_path / f"frames{suffix}", Run(3, ("MCU_Status",)).log(), STEP, start_time=5.0)
+    write_can_log(tmp_path / f"frames{suffix}", Run(3, ("MCU_Status",)).log(), Clock.counted(5.0, STEP, 0))
     assert [m.timestamp for m in read(tmp_path / f"frames{suffix}")] == pytest.approx([5.01, 5.02], abs=1e-9)
 
 
 def test_blf_times_are_whole_nanoseconds(tmp_path: Path) -> None:
-    write_can_log(tmp_path / "frames.blf", Run(220, ("EMD_Status",)).log(), STEP)
+    write_can_log(tmp_path / "frames.blf", Run(220, ("EMD_Status",)).log(), CLOCK)
     assert [m.timestamp for m in read(tmp_path / "frames.blf")] == [k / 100 for k in range(220)]
 
 
@@ -107,7 +109,7 @@ def test_frames_of_one_instant_stand_in_the_order_of_arbitration() -> None:
         return channel.log
 
     logs = [BusLog("can0", [one("C", 0x100 << 18, True), one("D", 0x101), one("B", 0x100), one("A", 1)])]
-    assert [f.message.name for f in frames(logs, STEP)] == ["A", "B", "C", "D"] * 2
+    assert [f.message.name for f in frames(logs, CLOCK)] == ["A", "B", "C", "D"] * 2
 
 
 def test_signals_without_a_connection_are_sent_with_their_start_value(tmp_path: Path) -> None:
@@ -115,7 +117,7 @@ def test_signals_without_a_connection_are_sent_with_their_start_value(tmp_path: 
     message = Message("f", "M", 0x7F, length=4, signals={s.name: s for s in signals})
     channel = MessageChannel(message, [SignalRoute(signals[0], 0, Affine(), ())], log_raw=True)
     channel.transmit([18.0], 0)
-    write_can_log(tmp_path / "frames.log", [BusLog("can0", [channel.log])], STEP)
+    write_can_log(tmp_path / "frames.log", [BusLog("can0", [channel.log])], CLOCK)
     assert (tmp_path / "frames.log").read_text() == "(0.000000) can0 07F#124D0000\n"
 
 
@@ -127,7 +129,7 @@ def test_floats_and_wide_integers(tmp_path: Path) -> None:
     channel.transmit([0.1, 2.0**63 + 2048, 0.1], 0)
     expected = "CDCCCC3D" + (2**63 + 2048).to_bytes(8, "little").hex().upper() + "9A9999999999B93F"
     for suffix in SUFFIXES:
-        write_can_log(tmp_path / f"frames{suffix}", [BusLog("can0", [channel.log])], STEP)
+        write_can_log(tmp_path / f"frames{suffix}", [BusLog("can0", [channel.log])], CLOCK)
         (frame,) = read(tmp_path / f"frames{suffix}")
         assert (frame.arbitration_id, frame.is_extended_id, frame.is_fd) == (0x1ABCDEF0, True, True)
         assert frame.data.hex().upper() == expected
@@ -138,12 +140,12 @@ def test_the_same_run_gives_the_same_bytes_on_another_day_elsewhere(
     tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, second = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
-    write_can_log(first, Run(20).log(), STEP)
+    write_can_log(first, Run(20).log(), CLOCK)
     monkeypatch.setenv("TZ", "Asia/Tokyo")
     if hasattr(time, "tzset"):
         time.tzset()
     monkeypatch.setattr(time, "time", lambda: 2e9)
-    write_can_log(second, Run(20).log(), STEP)
+    write_can_log(second, Run(20).log(), CLOCK)
     monkeypatch.undo()
     if hasattr(time, "tzset"):
         time.tzset()
@@ -151,7 +153,7 @@ def test_the_same_run_gives_the_same_bytes_on_another_day_elsewhere(
 
 
 def test_asc_has_the_fixed_date_and_nothing_of_today(tmp_path: Path) -> None:
-    write_can_log(tmp_path / "frames.asc", Run(2).log(), STEP)
+    write_can_log(tmp_path / "frames.asc", Run(2).log(), CLOCK)
     lines = (tmp_path / "frames.asc").read_text().splitlines()
     assert lines[0] == "date Thu Jan 01 00:00:00.000 1970"
     assert lines[3:5] == ["Begin Triggerblock Thu Jan 01 00:00:00.000 1970", " 0.000000 Start of measurement"]
@@ -161,7 +163,7 @@ def test_asc_has_the_fixed_date_and_nothing_of_today(tmp_path: Path) -> None:
 
 def test_candump_lines_are_those_that_tshark_reads(tmp_path: Path) -> None:
     """can-utils' `candump -L`: time, interface, id#data, and no direction after it."""
-    write_can_log(tmp_path / "frames.log", Run(10).log(), STEP)
+    write_can_log(tmp_path / "frames.log", Run(10).log(), CLOCK)
     for line in (tmp_path / "frames.log").read_text().splitlines():
         assert re.fullmatch(r"\(\d+\.\d{6}\) can0 [0-9A-F]{3}#([0-9A-F]{2}){0,8}", line)
 
@@ -171,7 +173,7 @@ def test_two_buses_keep_apart(tmp_path: Path, suffix: str) -> None:
     drive, body = Run(2, ("VCU_Request",)), Run(2, ("BMS_Status",))
     path = tmp_path / f"frames{suffix}"
     write_can_log(
-        path, [BusLog("drive", drive.log()[0].messages), BusLog("body", body.log()[0].messages)], STEP
+        path, [BusLog("drive", drive.log()[0].messages), BusLog("body", body.log()[0].messages)], CLOCK
     )
     channels = {m.arbitration_id: m.channel for m in read(path)}
     assert channels == ({0x100: "drive", 0x200: "body"} if suffix == ".log" else {0x100: 0, 0x200: 1})
@@ -179,18 +181,18 @@ def test_two_buses_keep_apart(tmp_path: Path, suffix: str) -> None:
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_run_without_a_frame_gives_an_empty_log(tmp_path: Path, suffix: str) -> None:
-    assert write_can_log(tmp_path / f"frames{suffix}", Run(0).log(), STEP) == 0
+    assert write_can_log(tmp_path / f"frames{suffix}", Run(0).log(), CLOCK) == 0
     assert read(tmp_path / f"frames{suffix}") == []
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_what_breaks_off_leaves_the_earlier_log(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"frames{suffix}"
-    write_can_log(path, Run(3).log(), STEP)
+    write_can_log(path, Run(3).log(), CLOCK)
     before, logs = path.read_bytes(), Run(5).log()
     broken = [BusLog("can0", [*logs[0].messages, Interrupted(logs[0].messages[0])])]  # type: ignore[list-item]
     with pytest.raises(KeyboardInterrupt):
-        write_can_log(path, broken, STEP)
+        write_can_log(path, broken, CLOCK)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
     assert path.read_bytes() == before
 
@@ -211,7 +213,7 @@ def test_other_formats_are_refused_before_anything_is_written(tmp_path: Path) ->
     with pytest.raises(
         ConfigError, match=r"frames\.mf4: CAN logs are written as \.log, \.blf, \.asc, not as '\.mf4'"
     ):
-        write_can_log(tmp_path / "frames.mf4", Run(1).log(), STEP)
+        write_can_log(tmp_path / "frames.mf4", Run(1).log(), CLOCK)
     assert not os.listdir(tmp_path)
 
 
@@ -220,5 +222,5 @@ def test_forty_seconds_of_traffic_take_less_than_a_second(tmp_path: Path, suffix
     """0.15 s for 16000 frames seen; the limit leaves room for a busy machine."""
     log = Run(4000, ("EMD_Status", "VCU_Request", "IMU_Motion", "MCU_Status")).log()
     start = time.process_time()
-    assert write_can_log(tmp_path / f"frames{suffix}", log, STEP) == 16000 - 2  # two have a start delay
+    assert write_can_log(tmp_path / f"frames{suffix}", log, CLOCK) == 16000 - 2  # two have a start delay
     assert time.process_time() - start < 1.0

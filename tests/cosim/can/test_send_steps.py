@@ -29,6 +29,10 @@ def test_ten_milliseconds_are_one_step_of_a_hundredth() -> None:
     assert send_steps(message(30), 0.01) == (3, 0)  # in doubles 0.03 / 0.01 is 3.0000000000000004
 
 
+def test_a_step_that_is_no_decimal() -> None:
+    assert send_steps(message(50, 100), 1 / 60) == (3, 6)
+
+
 @pytest.mark.parametrize(("delay", "first"), [(0, 0), (1, 1), (9, 1), (10, 1), (11, 2), (70, 7)])
 def test_the_first_is_at_or_after_the_start_delay(delay: int, first: int) -> None:
     assert send_steps(message(20, delay), 0.01) == (2, first)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan.events import check_event, scheduled
 from evcosim.cosim.plan.plan import InputPlan
 from evcosim.cosim.system.scenario import Bias, Override, Reset, Scenario, ScenarioFile
-from evcosim.cosim.system.system import Experiment
 
+CLOCK = Clock.counted(0.0, 0.01, 1000)
 INPUTS = {
     f"display.{name}": InputPlan(i, None, "") for i, name in enumerate(("level", "count", "state", "flag"))
 }
@@ -22,11 +22,11 @@ VARIABLES = {name: VariableInfo(name, kind, "input", max=9.0) for name, kind in 
 INTERFACES = {"display": UnitInterface("display.fmu", VARIABLES)}
 
 
-def at_steps(*times: float, **experiment: Any) -> list[int]:
+def at_steps(*times: float, start: float = 0.0, step: float = 0.01) -> list[int]:
     """The steps at which resets at these times happen, in the order in which they happen."""
     events = [{"time": t, "action": "reset", "variable": "display.level"} for t in times]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
-    return [step for step, _ in scheduled(scenario, INTERFACES, INPUTS, Experiment(**experiment))]
+    return [step for step, _ in scheduled(scenario, INTERFACES, INPUTS, Clock.counted(start, step, 1000))]
 
 
 def test_an_event_happens_at_the_first_point_at_or_after_its_time():
@@ -36,15 +36,21 @@ def test_an_event_happens_at_the_first_point_at_or_after_its_time():
     )  # whatever the doubles' last bits say
 
 
+def test_at_0_33_s_is_the_point_of_that_time_whatever_the_step():
+    assert at_steps(0.33, 3 * 0.11, step=0.03) == [11, 11]
+    assert at_steps(0.05, 49 / 60, step=1 / 60) == [3, 49]
+    assert at_steps(1.03, 1.0300001, start=0.7) == [33, 34]
+
+
 def test_what_lies_before_the_start_happens_at_the_start():
-    assert at_steps(0.0, 1.0, 1.02, start_time=1.0) == [0, 0, 2]
+    assert at_steps(0.0, 1.0, 1.02, start=1.0) == [0, 0, 2]
 
 
 def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():
     table = [(0.02, 1.0), (0.01, 2.0), (0.02, 3.0), (0.011, 4.0)]
     events = [{"time": t, "action": "override", "variable": "display.level", "value": v} for t, v in table]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
-    found = scheduled(scenario, INTERFACES, INPUTS, Experiment())
+    found = scheduled(scenario, INTERFACES, INPUTS, CLOCK)
     assert [(step, event.value) for step, event in found] == [(1, 2.0), (2, 1.0), (2, 3.0), (2, 4.0)]
 
 
@@ -62,7 +68,7 @@ def test_an_event_of_a_file_is_named_by_its_number_and_key(event, said):
     events = [{"time": 0.0, "action": "reset", "variable": "display.level"}, {"time": 0.0} | event]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
     with pytest.raises(ConfigError, match=rf"^s.toml: event 2\.{said}"):
-        scheduled(scenario, INTERFACES, INPUTS, Experiment())
+        scheduled(scenario, INTERFACES, INPUTS, CLOCK)
 
 
 def override(name: str, value: float) -> Override:

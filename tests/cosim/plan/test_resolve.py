@@ -76,7 +76,7 @@ def test_parameters_user_before_scenario_before_system():
         ),
         (
             {"experiment": {"stop_time": 1.0, "step_size": 0.03}},
-            r"^test.toml: experiment.stop_time - start_time = 1.0 s is not a multiple of the communication step 0.03 s",
+            r"^test.toml: experiment.stop_time = 1.0 s is not a multiple of the communication step 0.03 s; the nearest are 0.99 s and 1.02 s$",
         ),
         ({"parameters": {"car": {"mass": 0}}}, "test.toml: parameters.car.mass: 0 kg is below the minimum"),
         (

@@ -10,10 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures.draw import draw
 from evcosim.cosim.results.formats import csv
-from evcosim.cosim.results.results import PIECE, Results, ResultVariable, to_nanoseconds
+from evcosim.cosim.results.results import PIECE, Results, ResultVariable
 from evcosim.cosim.row_store import Grid, RowStore
 from evcosim.cosim.system.figure_spec import FigureSpec
 from evcosim.cosim.system.metric_spec import MetricSpec
@@ -61,22 +62,11 @@ def test_more_rows_than_one_chunk(tmp_path: Path) -> None:
     same(Results.read(tmp_path), long)
 
 
-@given(st.integers(0, 10**7), st.sampled_from([(1, 100), (1, 1000), (1, 10), (25, 10_000), (1, 100_000)]))
-def test_times_are_the_doubles_nearest_to_their_decimals(k: int, step: tuple[int, int]) -> None:
-    numerator, denominator = step
-    assert to_nanoseconds(np.array([k * (numerator / denominator)]))[0] == k * numerator / denominator
-
-
-@given(arrays.arrays(np.float64, 5))
-def test_rounding_times_twice_is_rounding_once(time: np.ndarray) -> None:
-    once = to_nanoseconds(time)
-    assert to_nanoseconds(once).tobytes() == once.tobytes()
-
-
-def test_a_step_that_is_no_decimal_keeps_its_bits() -> None:
-    time = np.arange(1, 50) / 3
-    third = time[np.arange(1, 50) % 3 != 0]
-    assert to_nanoseconds(third).tobytes() == third.tobytes()
+def test_times_of_an_array_keep_their_bits(tmp_path: Path) -> None:
+    time = 0.01 * np.arange(100)
+    results = Results(time, np.zeros((100, 1)), [ResultVariable("a.x")])
+    assert np.array_equal(results.time, time)
+    assert np.array_equal(Results.read(results.save(tmp_path / "a.csv")).time, time)
 
 
 def test_columns_come_in_their_type() -> None:
@@ -201,14 +191,14 @@ def test_results_read_the_same_from_a_file(tmp_path: Path) -> None:
 
 
 def test_times_on_a_grid_are_those_of_an_array() -> None:
-    grid = Grid(-1.0, 0.01, 70_001)
+    grid = Grid(Clock.counted(-1.0, 0.01, 70_000), 70_001)
     rows = np.zeros((len(grid), WIDTH))
-    kept, made = Results(-1.0 + 0.01 * np.arange(len(rows)), rows, VARIABLES), Results(grid, rows, VARIABLES)
+    kept, made = Results((np.arange(len(rows)) - 100) / 100, rows, VARIABLES), Results(grid, rows, VARIABLES)
     assert made.span == kept.span == (-1.0, 699.0)
     assert np.array_equal(made.times(69_990, 70_500), kept.time[69_990:])
     assert np.array_equal(made.time, kept.time)
     assert np.array_equal(made.times(3, 5), kept.times(3, 5))
-    assert len(Results(Grid(0.0, 0.1, 0), np.zeros((0, WIDTH)), VARIABLES).time) == 0
+    assert len(Results(Grid(Clock.counted(0.0, 0.1, 0), 0), np.zeros((0, WIDTH)), VARIABLES).time) == 0
 
 
 def reached(count: int, use: Callable[[Results], object]) -> int:
@@ -217,7 +207,7 @@ def reached(count: int, use: Callable[[Results], object]) -> int:
     for start in range(0, count, 10_000):
         block = np.sin(np.arange(start, start + 10_000.0))[:, None] * [3.0, 0.0, 0.0]
         store.append(block)
-    results = Results(Grid(0.0, 0.01, count), store.table(), VARIABLES, metrics=SPECS)
+    results = Results(Grid(Clock.counted(0.0, 0.01, count), count), store.table(), VARIABLES, metrics=SPECS)
     tracemalloc.start()
     use(results)
     _, peak = tracemalloc.get_traced_memory()

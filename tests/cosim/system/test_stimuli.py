@@ -7,15 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.scenario import StimulusEntry
 from evcosim.cosim.system.stimuli import initial_value, stimulus
 from evcosim.cosim.system.toml import validate
 
+CLOCK = Clock.counted(0.0, 0.01, 3000)
+
 
 def values(times, **entry):
     described = StimulusEntry.model_validate({"to": "u.x"} | entry)
-    return stimulus(described, "here", None)(np.array(times, dtype=float))
+    return stimulus(described, "here", None, CLOCK)(np.array(times, dtype=float))
 
 
 def test_table_is_linear_between_its_points_and_constant_outside():
@@ -27,7 +30,7 @@ def test_table_is_linear_between_its_points_and_constant_outside():
 def test_a_jump_at_the_start_comes_after_the_initialization(interpolation):
     table = [[0.0, 1.0], [0.7, 2.0], [0.7, 3.0], [0.7, 5.0], [1.0, 6.0]]
     entry = StimulusEntry.model_validate({"to": "u.x", "table": table, "interpolation": interpolation})
-    signal = stimulus(entry, "here", None)
+    signal = stimulus(entry, "here", None, CLOCK)
     assert [initial_value(signal, t) for t in (-1.0, 0.0, 0.7, 1.0)] == [1.0, 1.0, 2.0, 6.0]
     assert signal(np.array([0.7])) == 5.0
 
@@ -35,7 +38,7 @@ def test_a_jump_at_the_start_comes_after_the_initialization(interpolation):
 @given(st.floats(-10.0, 10.0))
 def test_in_the_initialization_a_stimulus_without_a_jump_has_its_value(time):
     for entry in ({"constant": 3.0}, {"sine": {"amplitude": 1.0, "period": 2.0}}, {"ramp": {"slope": 2.0}}):
-        signal = stimulus(StimulusEntry.model_validate({"to": "u.x"} | entry), "here", None)
+        signal = stimulus(StimulusEntry.model_validate({"to": "u.x"} | entry), "here", None, CLOCK)
         assert initial_value(signal, time) == signal(np.array([time]))[0]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.plan.unit_plan import SlotGroup
+from evcosim.cosim.plan.unit_plan import FmuSteps, SlotGroup
 from evcosim.master.fmi.binding import Binding
 from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.fmi.instance import Instance
@@ -79,7 +79,7 @@ def test_outputs_that_feed_through_are_valid_and_latest_at_once(unit: Instance) 
     through = binding.feedthrough(group)
     assert isinstance(through[0], Transfer) and through[1] == Copy(5, 0, 1)
     unit.set("u", 1.0)
-    unit.start_step(0.0, 0.5, 1)
+    unit.start_step(FmuSteps.equal(0.0, 0.5, 1))
     binding.calls(through)()
     assert memory[0] == memory[5] == unit.get("y") == 0.5
     assert memory[6] == 0.0

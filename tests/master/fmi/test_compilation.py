@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.fmi.compilation import compile_fmu
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
@@ -39,7 +40,7 @@ def answer(path: Path) -> list[object]:
     unit.set("u", 0.125)
     unit.set("count_in", 7)
     unit.exit_initialization()
-    unit.start_step(0.0, 0.01, 1)
+    unit.start_step(FmuSteps.equal(0.0, 0.01, 1))
     found = [unit.get(name) for name in ("y", "count", "switch")]
     unit.terminate()
     unit.free()

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from evcosim.cosim.errors import ConfigError, RunError
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.cosim.results.results import Results
 from evcosim.master.cli import main
 from evcosim.master.fmi.fmu import read_fmu
@@ -339,7 +340,7 @@ def test_a_value_set_after_the_initialization_is_an_event(tmp_path: Path, fmi: i
         unit.set("level", 3.0)
         unit.set("label", "second")
         assert [unit.get(name) for name in ("held", "shown")] == [6.0, "second"]
-        unit.start_step(0.0, 0.5, 1)
+        unit.start_step(FmuSteps.equal(0.0, 0.5, 1))
         unit.finish_step()
         assert unit.get("last") == pytest.approx(0.39)
         unit.terminate()

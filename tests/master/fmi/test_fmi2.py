@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmi2 import Fmi2Unit
 from evcosim.master.fmi.fmu import read_fmu
@@ -27,9 +28,9 @@ def test_steps_within_a_turn_are_steps_one_after_the_other(unit: Fmi2Unit, tmp_p
         each.enter_initialization(0.0, None)
         each.set("u", 1.0)
         each.exit_initialization()
-    unit.start_step(0.0, 0.01, 5)
+    unit.start_step(FmuSteps.equal(0.0, 0.01, 5))
     for k in range(5):
-        other.start_step(k * 0.01, 0.01, 1)
+        other.start_step(FmuSteps.equal(k * 0.01, 0.01, 1))
     assert unit.get("y") == other.get("y") == pytest.approx(1.0 - 0.99**5)
     other.free()
 
@@ -46,9 +47,9 @@ def test_a_step_that_is_discarded_is_an_error_that_names_the_function(tmp_path: 
     try:
         made.enter_initialization(0.0, None)
         made.exit_initialization()
-        made.start_step(0.0, 0.01, 50)
+        made.start_step(FmuSteps.equal(0.0, 0.01, 50))
         with pytest.raises(UnitError, match=r"unit 'a': fmi2DoStep returned Discard \(2\)"):
-            made.start_step(0.5, 0.01, 1)
+            made.start_step(FmuSteps.equal(0.5, 0.01, 1))
     finally:
         made.free()
 

@@ -9,6 +9,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.interface import UnitInterface
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.fmi.fmi3 import Fmi3Unit, resources_path
 from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.simulation import simulate
@@ -39,7 +40,7 @@ def test_the_integers_of_fmi_3(tmp_path: Path, kind: str, value: int) -> None:
         unit.enter_initialization(0.0, None)
         unit.exit_initialization()
         unit.set(f"{kind}_in", value)
-        unit.start_step(0.0, 0.01, 1)
+        unit.start_step(FmuSteps.equal(0.0, 0.01, 1))
         assert unit.get(kind) == value + 1
     finally:
         unit.free()

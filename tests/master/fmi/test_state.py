@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.instance import Instance
@@ -33,7 +34,7 @@ def scooter() -> Iterator[Instance]:
 def speeds(unit: Instance, first: int, steps: int) -> list[object]:
     found = []
     for k in range(first, first + steps):
-        unit.start_step(k * 0.01, 0.01, 1)
+        unit.start_step(FmuSteps.equal(k * 0.01, 0.01, 1))
         found.append(unit.get("speed"))
     return found
 

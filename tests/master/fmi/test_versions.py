@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import RunError
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
 from evcosim.master.simulation import simulate
@@ -73,7 +74,7 @@ def test_every_common_type_can_be_set_and_read(tmp_path: Path, fmi: int) -> None
         unit.set("count_in", -7)
         unit.set("switch_in", True)
         unit.exit_initialization()
-        unit.start_step(0.0, 0.01, 1)
+        unit.start_step(FmuSteps.equal(0.0, 0.01, 1))
         unit.finish_step()
         assert [unit.get(n) for n in ("count", "switch", "shown")] == [-6, False, "Grüße"]
         unit.terminate()

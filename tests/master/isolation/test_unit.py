@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.errors import RunError
+from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.cosim.system.system import Algorithm
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
@@ -65,7 +66,7 @@ def test_single_values_are_those_of_a_unit_in_this_process(tmp_path: Path, fmi: 
             unit.set("switch_in", True)
             unit.enter_initialization(0.0, None)
             unit.exit_initialization()
-            unit.start_step(0.0, 0.01, 1)
+            unit.start_step(FmuSteps.equal(0.0, 0.01, 1))
             unit.finish_step()
             found.append({name: unit.get(name) for name in ("y", "count", "switch", "shown", "gain")})
             unit.terminate()

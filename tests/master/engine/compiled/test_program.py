@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -109,3 +111,13 @@ def operation(kind, a=0, b=0, c=0, every=1):
 )
 def test_operations_that_follow_each_other(before, after, expected):
     assert _joined(before, after) == expected
+
+
+def test_no_two_places_of_the_tables_have_one_name():
+    """A second assignment would give the columns of one table the numbers of another."""
+    tree = ast.parse(Path(L.__file__).read_text(encoding="utf-8"))
+    names = [
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    ]
+    assert len(names) > 80
+    assert sorted(set(names)) == sorted(names)
