@@ -1,4 +1,4 @@
-"""Rows of numbers that a run appends: in memory while they are few, in a temporary file beyond that.
+"""Rows of numbers that a run appends: in memory while they are few, in a file beyond that.
 
 A run of 8 hours at 100 Hz records a gigabyte. Its results are read a stretch of rows at a time, so that is
 all that is in memory of a Table in a file. The times of equal steps are not kept at all (Grid).
@@ -7,7 +7,9 @@ all that is in memory of a Table in a file. The times of equal steps are not kep
 from __future__ import annotations
 
 import dataclasses
+import os
 import tempfile
+import threading
 import weakref
 from collections.abc import Sequence
 from pathlib import Path
@@ -87,34 +89,47 @@ class MemoryTable:
         return self._array
 
 
-class _TemporaryFile:
-    """A file without a name, closed when the last that refers to it has gone."""
+class _RowFile:
+    """A file with rows from byte `offset` on, closed when the last that refers to it has gone.
 
-    def __init__(self, folder: Path | None) -> None:
-        file = tempfile.TemporaryFile(prefix="evcosim-", dir=folder, buffering=0)  # noqa: SIM115 - see finalize
-        self._file: Any = file  # its type depends on the platform
+    Two threads may read and write it.
+    """
+
+    def __init__(self, file: Any, offset: int = 0) -> None:
+        self._file = file  # whose type depends on the platform
+        self._offset = offset
+        self._lock = threading.Lock()
         weakref.finalize(self, file.close)
 
     def read(self, place: int, into: memoryview[int]) -> None:
         """Fill `into` from byte `place` on. Raises RunError where the file has fewer bytes."""
-        self._file.seek(place)
-        while into:  # one call reads 2 GiB at most
-            count = self._file.readinto(into)
-            if not count:
-                raise RunError(f"the temporary file of the results ends {len(into)} bytes too early")
-            into = into[count:]
+        with self._lock:
+            self._file.seek(self._offset + place)
+            while into:  # one call reads 2 GiB at most
+                count = self._file.readinto(into)
+                if not count:
+                    raise RunError(f"the file of the rows ends {len(into)} bytes too early")
+                into = into[count:]
 
     def write(self, place: int, data: memoryview[int]) -> None:
         """Write bytes from byte `place` on. Raises OSError where the disk refuses."""
-        self._file.seek(place)
-        while data:
-            data = data[self._file.write(data) :]
+        with self._lock:
+            self._file.seek(self._offset + place)
+            while data:
+                data = data[self._file.write(data) :]
+
+
+def rows_in(path: Path, offset: int, width: int) -> Table:
+    """Return the whole rows of `width` numbers from byte `offset` of a file on. Raises OSError."""
+    file = path.open("rb", buffering=0)
+    count = max(0, os.fstat(file.fileno()).st_size - offset) // (8 * width) if width else 0
+    return _FileTable(_RowFile(file, offset), count, np.empty((0, width)))
 
 
 class _FileTable:
     """A Table of the first `count` rows of a file, and then those of `last`, shape (rows, m)."""
 
-    def __init__(self, file: _TemporaryFile, count: int, last: Array) -> None:
+    def __init__(self, file: _RowFile, count: int, last: Array) -> None:
         self._file, self._count, self._last = file, count, last
         self.shape: tuple[int, int] = (count + len(last), last.shape[1])
 
@@ -150,7 +165,8 @@ class RowStore:
     """Rows of `width` numbers, appended in order.
 
     Beyond `memory` bytes they are in a temporary file without a name in `folder` (default: the system's,
-    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. Where it
+    which TMPDIR sets); it is gone when nothing refers to it any more, however the process ends. After
+    `keep_in` they are in a file with a name, which `save` brings up to date, in any thread. Where a file
     cannot be written, the error names the rows by `what`, and what to do by `advice`.
     """
 
@@ -164,50 +180,84 @@ class RowStore:
     ) -> None:
         self._width, self._memory, self._folder = width, memory, folder
         self._what, self._advice = what, advice
-        self._chunks: list[Array] = []
-        self._file: _TemporaryFile | None = None
-        self._in_file = self._in_memory = 0
+        self._chunks: list[Array] = []  # the rows in memory: those from row `_freed` on
+        self._file: _RowFile | None = None
+        self._path: Path | None = None
+        self._head = b""
+        self._freed = self._in_memory = self._in_file = 0
+        self._lock = threading.RLock()
 
     def __len__(self) -> int:
-        return self._in_file + self._in_memory
+        return self._freed + self._in_memory
+
+    def keep_in(self, path: Path, head: bytes) -> None:
+        """Name the file that `save` makes: it begins with `head`, then the rows follow from the first on."""
+        self._path, self._head = path, head
 
     def append(self, rows: Array) -> None:
         """Keep rows, shape (n, width), which are not to be changed afterwards.
 
-        Raises RunError when the temporary file cannot be written; the rows are then kept in memory.
+        Raises RunError when the file cannot be written; the rows are then kept in memory.
         """
         if not len(rows):
             return  # nothing to keep, and a memoryview of nothing cannot be cast
-        self._chunks.append(rows)
-        self._in_memory += len(rows)
-        if self._in_memory * self._width * 8 > self._memory:
-            self._write()
+        with self._lock:
+            self._chunks.append(rows)
+            self._in_memory += len(rows)
+            if self._in_memory * self._width * 8 > self._memory:
+                self.save()
+                self._freed += self._in_memory
+                self._chunks, self._in_memory = [], 0
 
-    def _write(self) -> None:
-        try:
-            if self._file is None:
-                self._file = _TemporaryFile(self._folder)
-            place = self._in_file * self._width * 8
-            for rows in self._chunks:
-                data = np.ascontiguousarray(rows)
-                self._file.write(place, data.data.cast("B"))
-                place += data.nbytes
-        except OSError as error:
-            folder = self._folder or tempfile.gettempdir()
-            raise RunError(
-                f"{self._what} cannot be kept in {folder}: {error.strerror or error}; "
-                f"TMPDIR names another folder, {self._advice}"
-            ) from error
-        self._in_file += self._in_memory
-        self._chunks, self._in_memory = [], 0
+    def save(self, more: Array | None = None, after: int = 0) -> None:
+        """Write the rows that are not yet in the file.
+
+        `more`, shape (n, width), are the first ones of the rows that will be appended when there are `after`
+        rows; they are left out where there are more already. Raises RunError as `append` does.
+        """
+        with self._lock:
+            first = self._freed
+            chunks = list(self._chunks)
+            if more is not None and after == len(self):
+                chunks.append(more)
+            try:
+                for rows in chunks:
+                    self._save(first, rows)
+                    first += len(rows)
+            except OSError as error:
+                raise self._refused(error) from error
+
+    def _save(self, first: int, rows: Array) -> None:
+        """Write what the file does not have of `rows`, the first of which is row `first`."""
+        data = np.ascontiguousarray(rows[max(0, self._in_file - first) :])
+        if not data.size:
+            return
+        if self._file is None:
+            self._file = self._made()
+        self._file.write(self._in_file * self._width * 8, data.data.cast("B"))
+        self._in_file += len(data)
+
+    def _made(self) -> _RowFile:
+        if self._path is None:
+            return _RowFile(tempfile.TemporaryFile(prefix="evcosim-", dir=self._folder, buffering=0))
+        file = self._path.open("x+b", buffering=0)  # exclusively: it follows no link
+        file.write(self._head)
+        return _RowFile(file, len(self._head))
+
+    def _refused(self, error: OSError) -> RunError:
+        folder = self._folder or tempfile.gettempdir() if self._path is None else self._path.parent
+        other = "TMPDIR names another folder, " if self._path is None else ""
+        said = error.strerror or error
+        return RunError(f"{self._what} cannot be kept in {folder}: {said}; {other}{self._advice}")
 
     def table(self, last: Array | None = None) -> Table:
         """Return the rows up to now and after them `last`, shape (rows, width).
 
         Rows that are appended later do not change it.
         """
-        tail = [*self._chunks, *([] if last is None else [last])]
-        rows = np.vstack([np.empty((0, self._width)), *tail])
-        if self._file is None:
-            return MemoryTable(rows)
-        return _FileTable(self._file, self._in_file, rows)
+        with self._lock:
+            tail = [*self._chunks, *([] if last is None else [last])]
+            rows = np.vstack([np.empty((0, self._width)), *tail])
+            if not self._freed or self._file is None:
+                return MemoryTable(rows)
+            return _FileTable(self._file, self._freed, rows)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
 import platform
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
-from ..cosim.system.toml import is_built_in
+from ..cosim.system.toml import data_file, is_built_in
 from .engine.engine import Engine
 from .fmi.tolerance import tolerance_of
 from .prepare import Prepared
@@ -37,6 +39,7 @@ def manifest(
         "system": plan.system,
         "scenario": plan.scenario,
         "files": _own_files(system, prepared.scenario),
+        "settings": _digest(prepared),
         "experiment": experiment.model_dump() | {"algorithm": plan.algorithm, "engine": engine.name},
         "ideal": plan.ideal,
         "order": [unit.name for unit in plan.units],
@@ -48,6 +51,24 @@ def manifest(
         "warnings": list(warnings),
         "loop_seconds": round(loop_seconds, 6),
     }
+
+
+_NO_SETTINGS = {"title", "source", "figure", "metrics", "identification", "budget"}
+
+
+def _digest(prepared: Prepared) -> str:
+    """Return SHA-256 of what the files say that counts for the numbers of a run, with the files they name."""
+    system, scenario = prepared.system, prepared.scenario
+    named: list[tuple[str, Path | None, str]] = []
+    named += [(entry.dbc, system.path, "dbc") for entry in system.file.buses.values()]
+    named += [(s.csv, scenario.path, "csv") for s in scenario.file.stimuli if s.csv is not None]
+    digest = hashlib.sha256()
+    for model in (system.file, scenario.file):
+        digest.update(model.model_dump_json(exclude=_NO_SETTINGS).encode())
+    for name, beside, key in named:
+        path = data_file(name, beside, key) if beside is not None else Path(name)
+        digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
 
 
 def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str, Any]:

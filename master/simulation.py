@@ -12,6 +12,7 @@ with Simulation("scooter") as sim:
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -39,6 +40,7 @@ from .fmi.fmu import Fmu
 from .fmi.loading import load_unit
 from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
+from .keeping import KeptRun, ended
 from .manifest import manifest, saturations
 from .prepare import prepare
 from .unit import Unit
@@ -83,6 +85,7 @@ class Simulation:
         self._units: dict[str, Unit] = {}
         self._last_warnings: dict[str, tuple[int, list[str]]] = {}
         self.isolation: dict[str, Isolation] = {}
+        self._kept: KeptRun | None = None
         try:
             for unit in self.plan.units:
                 self._units[unit.name] = self._load(unit, options.get("isolation"))
@@ -101,6 +104,17 @@ class Simulation:
         if self.isolation[plan.name] == "none":
             return load_unit(fmu, plan.name, plan.interface, entry.tolerance)
         return IsolatedUnit(fmu, plan.name, plan.interface, process_limits(entry), entry.tolerance)
+
+    def keep_in(self, folder: str | os.PathLike[str]) -> None:
+        """Let the run have a folder: from now on a row is on the disk within a second, in results.rows.
+
+        `Results.read` reads that, even if the process is killed; `close` writes results.csv and run.json in
+        its place. An earlier run of the same files, FMUs and settings is replaced. Raises ConfigError for a
+        folder with other files of these names, that another run has, or that cannot be written.
+        """
+        if self._kept is not None:
+            raise ConfigError(f"{folder}: the run has a folder already: {self._kept.folder.path}")
+        self._kept = KeptRun(self._engine, self.plan, folder, self.manifest())
 
     # ---- a loop of one's own
 
@@ -243,7 +257,8 @@ class Simulation:
             if n
         ]
         defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
-        notices = [notice for notice in (self._notice, self._engine.notice) if notice]
+        kept = self._kept.notice if self._kept is not None else ""
+        notices = [notice for notice in (self._notice, self._engine.notice, kept) if notice]
         beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
         return [*notices, *defects, *self.plan.warnings, *self._notices, *from_units, *beyond]
 
@@ -298,18 +313,29 @@ class Simulation:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.close(orderly=error is None and self._engine.whole)
+        self._end(error is None and self._engine.whole, error)
 
     def close(self, orderly: bool = True) -> None:
         """Terminate the units (not after an error) and release them. The results stay.
 
-        Raises the error of the first unit that cannot be terminated, after the others were.
+        Raises the error of the first unit that cannot be terminated, after the others were; ConfigError where
+        the results cannot be written into the folder that the run has.
         """
+        self._end(orderly, None)
+
+    def _end(self, orderly: bool, error: BaseException | None) -> None:
         try:
             if orderly:
                 self._terminate()
+        except RunError as failure:
+            error = failure
+            raise
         finally:
+            if self._kept is not None:
+                self._kept.stop()
             self._free()
+            if self._kept is not None:
+                self._kept.end(ended(self.results, self.finished, error))
 
     def _terminate(self) -> None:
         failures: list[RunError] = []
@@ -333,10 +359,12 @@ def simulate(
     scenario: str | Path | Scenario | None = None,
     *,
     progress: RunProgress | None = None,
+    folder: str | os.PathLike[str] | None = None,
     **options: Unpack[RunOptions],
 ) -> Results:
     """Run a system to its stop time; the arguments are those of `Simulation`.
 
+    With a `folder`, rows reach it while the run goes on, as `Simulation.keep_in` says.
     The options, as `parameters` and `stop_time`, are the keys of `evcosim.RunOptions`. Raises
     ConfigError before any step, RunError when a step fails; what a failed run has recorded is in the
     error's `results` (None where it failed before the first step).
@@ -344,6 +372,8 @@ def simulate(
     simulation = Simulation(system, scenario, to_stop=True, **options)
     try:
         with simulation:
+            if folder is not None:
+                simulation.keep_in(folder)
             simulation.run(progress)
     except RunError as error:
         error.results = simulation.results

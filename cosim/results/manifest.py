@@ -24,11 +24,16 @@ def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[
     Numbers that are not finite become null: JSON has no name for them. Raises ConfigError where the file
     cannot be written; then none is left half-done.
     """
-    about = {**manifest, "variables": [_described(v) for v in variables]}
-    text = json.dumps(_jsonable(about), indent=2, allow_nan=False, ensure_ascii=False)
+    about = {**manifest, "variables": [described(v) for v in variables]}
     with replacing(path) as file:
-        # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
-        file.write((text + "\n").encode(errors="backslashreplace"))
+        file.write(manifest_text(about) + b"\n")
+
+
+def manifest_text(about: Mapping[str, Any], indent: int | None = 2) -> bytes:
+    """Return facts as JSON; without an indent it is one line."""
+    text = json.dumps(_jsonable(about), indent=indent, allow_nan=False, ensure_ascii=False)
+    # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
+    return text.encode(errors="backslashreplace")
 
 
 def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]]:
@@ -38,10 +43,11 @@ def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]
     or does not describe variables.
     """
     manifest = _read(path)
-    return manifest, _variables(manifest.pop("variables", []), path)
+    return manifest, variables_in(manifest.pop("variables", []), path)
 
 
-def _described(variable: ResultVariable) -> dict[str, Any]:
+def described(variable: ResultVariable) -> dict[str, Any]:
+    """Return the description of a variable as JSON has it; `variables_in` reads it."""
     about = dataclasses.asdict(variable)
     for name in ("items", "difference"):
         if not about[name]:
@@ -75,11 +81,12 @@ def _read(path: Path) -> dict[str, Any]:
     return manifest
 
 
-def _variables(described: Any, place: Path) -> dict[str, ResultVariable]:
+def variables_in(descriptions: Any, place: Path) -> dict[str, ResultVariable]:
+    """Return by name the variables that are described. Raises ConfigError naming the file `place`."""
     try:
         found = [
             ResultVariable(**{**about, "items": tuple((int(v), str(n)) for v, n in about.get("items", ()))})
-            for about in described
+            for about in descriptions
         ]
     except (TypeError, ValueError, AttributeError) as error:
         raise ConfigError(f"{place}: 'variables' does not describe the variables: {error}") from error

@@ -18,9 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import ConfigError, nearest
 from ..row_store import Array, Grid, MemoryTable, Table
 from ..writing import replacing
+from .folder_lock import MANIFEST_NAME, status
 from .formats.format import Format
 from .formats.suffixes import CSV, FORMATS, format_of
 from .manifest import read_manifest, write_manifest
+from .rows_file import ROWS_NAME
+from .rows_file import read as read_rows
 from .variable import ResultVariable
 
 if TYPE_CHECKING:
@@ -34,7 +37,6 @@ if TYPE_CHECKING:
 __all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results"]
 
 CSV_NAME = "results.csv"
-MANIFEST_NAME = "run.json"
 PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each variable
 
 
@@ -225,17 +227,23 @@ class Results:
     def read(cls, path: str | os.PathLike[str]) -> Results:
         """Read a results folder, its results.csv, or a file in a format that its suffix names.
 
-        Any other file is read as CSV: the time [s] is the column of such a name, and without a run.json
-        beside results.csv every variable is a Real without a unit of measure. Raises ConfigError naming file,
-        line, column and value of what is not a number.
+        The folder of a run that lives, or was killed, has results.rows in place of results.csv: the rows that
+        were saved are read, half a row at the end is left out. Any other file is read as CSV: the time [s] is
+        the column of such a name, and without a run.json beside results.csv every variable is a Real without
+        a unit of measure. Raises ConfigError naming file, line, column and value of what is not a number.
         """
         path = Path(path)
         if path.is_dir():
-            path = path / CSV_NAME
+            rows, path = path / ROWS_NAME, path / CSV_NAME
+            path = rows if rows.exists() and not path.exists() else path
+        if path.name == ROWS_NAME:
+            return _of_rows(path)
         held = FORMATS.get(path.suffix.lower(), CSV).read(path)
         manifest, variables = dict(held.manifest), list(held.variables)
         if path.name == CSV_NAME:
             manifest, known = read_manifest(path.with_name(MANIFEST_NAME))
+            if "status" in manifest:
+                manifest["status"] = status(path.parent, manifest)
             variables = [known.get(v.name, v) for v in variables]
         return cls(held.time, held.data, variables, manifest)
 
@@ -265,6 +273,17 @@ class Results:
         if path is not None:
             figures.write(figure, Path(path))
         return figure
+
+
+def _of_rows(path: Path) -> Results:
+    """Read the rows that a run, which may have been killed, has saved up to now."""
+    saved = read_rows(path)
+    said, _ = read_manifest(path.with_name(MANIFEST_NAME))
+    manifest = saved.manifest | {key: said[key] for key in ("status", "error") if key in said}
+    manifest |= {"steps": len(saved.time), "status": status(path.parent, manifest)}
+    for counted_at_the_end in ("saturations", "loop_seconds"):
+        manifest.pop(counted_at_the_end, None)
+    return Results(saved.time, saved.data, saved.variables, manifest)
 
 
 def _table(data: ArrayLike) -> Table:

@@ -18,6 +18,7 @@ from .info import info
 from .listing import list_
 from .plot import plot
 from .reproduce import reproduce
+from .results import results
 from .run import run
 from .schema import schema
 
@@ -49,6 +50,7 @@ def command() -> Any:
     }
     for name, verb in verbs.items():
         app.command(name)(verb)
+    app.add_typer(results, name="results")
     return typer.main.get_command(app)
 
 

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import contextlib
+import re
 import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ...cosim.results.results import Results
+    from ...cosim.results.run_folder import RunFolder
+    from ...cosim.system.run_options import RunOptions
     from ..simulation import Simulation
 
-FIGURES = ("figure.png", "figure.svg")
-CAN_LOGS = ("can.log", "can.blf", "can.asc")
+_LONGEST = 60  # characters of a suffix
+_MOST = 1000  # folders with a number
+
+
+_LONGEST = 60  # characters of a suffix
+_MOST = 1000  # folders with a number
 
 
 def default_folder(*names: str) -> Path:
@@ -35,48 +42,103 @@ def output_folder(folder: Path) -> Path:
     return folder
 
 
-def run_folder(folder: Path) -> Path:
-    """Make the folder if needed, try to write into it, and return it; a run replaces an earlier one in it.
+def run_folder(
+    wanted: Path, manifest: Mapping[str, Any], suffix: str, replace: bool
+) -> tuple[RunFolder, list[str]]:
+    """Lock the folder of a run, which is made if needed, and return it with remarks on the choice.
 
-    Raises ConfigError with the reason, also if a file to be replaced or removed was not written by a run.
+    A run replaces an earlier one of the same files, FMUs and settings (with `replace` any run). Where another
+    one is in the folder, the run gets WANTED-SUFFIX, or one with a number. A killed run is recovered before.
+    Raises ConfigError with the reason where the folder cannot be written, if another run has it, or if a file
+    to be replaced or removed was not written by a run.
     """
     from ...cosim.errors import ConfigError
-    from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
+    from ...cosim.results.run_folder import RunFolder
 
-    names = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
-    taken = [name for name in names if (folder / name).exists()]
-    if taken and not _is_of_a_run(folder / MANIFEST_NAME):
-        raise ConfigError(
-            f"output folder {folder}: {', '.join(taken)} would be replaced, but no {MANIFEST_NAME} says that "
-            "a run wrote it; --output names another folder"
-        )
-    return output_folder(folder)
+    remarks: list[str] = []
+    for folder in _candidates(wanted, suffix):
+        if folder != wanted and _is_taken(folder, manifest):
+            continue
+        try:
+            locked = RunFolder(folder)
+            remarks += _recovered(locked)
+        except ConfigError as error:
+            raise ConfigError(f"{error}; --output names another one") from error
+        if replace or not locked.is_of_another(manifest):
+            moved = f"{wanted} has results of other files, FMUs or settings; this run's are in {folder}"
+            return locked, [*remarks, moved] if folder != wanted else remarks
+        locked.release()
+    raise ConfigError(f"output folder {wanted}: there are too many with a number; --output names another one")
 
 
-def _is_of_a_run(manifest: Path) -> bool:
-    import json
+def _candidates(wanted: Path, suffix: str) -> Iterator[Path]:
+    """Yield the folders that a run may have, the best first."""
+    yield wanted
+    base = wanted if wanted.name not in ("", "..") else wanted.resolve()
+    if not base.name:  # the root of all folders
+        return
+    named = base.with_name(f"{base.name}-{suffix}") if suffix else base
+    if suffix:
+        yield named
+    for number in range(2, _MOST):
+        yield named.with_name(f"{named.name}-{number}")
+
+
+def _is_taken(folder: Path, manifest: Mapping[str, Any]) -> bool:
+    """Return True for a folder that holds files of somebody's own, or that another run of others has."""
+    from ...cosim.results.folder_lock import lives, manifest_of
+    from ...cosim.results.run_folder import foreign_files, same_settings
+
+    if not folder.exists():
+        return False
+    if not folder.is_dir():
+        return True
+    return bool(foreign_files(folder)) or (lives(folder) and not same_settings(manifest, manifest_of(folder)))
+
+
+def _recovered(locked: RunFolder) -> list[str]:
+    """Recover the rows of a run that was killed, and return a remark about it.
+
+    Raises ConfigError, also where files of somebody's own would be replaced; the folder is released then.
+    """
+    from ...cosim.errors import ConfigError
 
     try:
-        about = json.loads(manifest.read_bytes())
-    except (OSError, ValueError):
-        return False
-    return isinstance(about, dict) and "evcosim" in about
+        if foreign := locked.foreign_files():
+            raise ConfigError(locked.refusal(foreign))
+        found = locked.recover()
+    except ConfigError:
+        locked.release()
+        raise
+    if found is None:
+        return []
+    return [f"{locked.path}: the run before was killed; {len(found)} of its rows were recovered"]
 
 
-def write_results(folder: Path, results: Results) -> list[str]:
+def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
+    """Return the part of a folder's name that says what was set for a run; "" where nothing was, or much."""
+    parts = [Path(scenario).stem] if scenario else []
+    parts += [f"{name}={value}" for name, value in (options.get("parameters") or {}).items()]
+    for files in (options.get("fmus") or {}, options.get("swaps") or {}):
+        parts += [f"{unit}={Path(path).stem}" for unit, path in files.items()]
+    parts += ["ideal"] if options.get("ideal") else []
+    parts += [str(each) for each in (options.get("algorithm"), options.get("engine")) if each]
+    parts += [f"isolation={options['isolation']}"] if options.get("isolation") else []
+    parts += [f"stop_time={options['stop_time']:g}"] if options.get("stop_time") is not None else []
+    text = re.sub(r"[^A-Za-z0-9._=+-]+", "_", "-".join(parts))
+    return text if len(text) <= _LONGEST else ""
+
+
+def write_results(folder: RunFolder, results: Results) -> list[str]:
     """Write results.csv and run.json, and return their names.
 
-    Figures and logs of an earlier run are removed: a folder holds one run. If the two cannot be written they
-    go to a temporary folder, and RunError names it.
+    If the two cannot be written they go to a temporary folder, and RunError names it.
     """
     from ...cosim.errors import ConfigError, RunError
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
 
-    for name in (*FIGURES, *CAN_LOGS):
-        with contextlib.suppress(OSError):  # the error of writing below has the reason
-            (folder / name).unlink(missing_ok=True)
     try:
-        results.write(folder)
+        folder.finish(results)
     except ConfigError as error:
         rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
         results.write(rescue)
@@ -93,6 +155,8 @@ def write_figure(folder: Path, results: Results) -> list[str]:
 
 def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:
     """Write the frames of the run in each format and return the names of the files. Raises ConfigError."""
+    from ...cosim.results.run_folder import CAN_LOGS
+
     for name in CAN_LOGS:
         simulation.write_can_log(folder / name)
     return list(CAN_LOGS)

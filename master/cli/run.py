@@ -12,6 +12,7 @@ from .options import QuietOption, ScenarioOption, SystemArgument, takes_run_opti
 
 if TYPE_CHECKING:
     from ...cosim.results.results import Results
+    from ...cosim.results.run_folder import RunFolder
     from ...cosim.system.run_options import RunOptions
     from ..simulation import Simulation
     from .console import Show
@@ -28,6 +29,9 @@ def run(
         Path | None,
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>."),
     ] = None,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Replace results of other settings in DIR.")
+    ] = False,
     can_log: Annotated[
         bool, typer.Option("--can-log", help="Write the CAN frames (.log .blf .asc).")
     ] = False,
@@ -38,7 +42,7 @@ def run(
 ) -> int:
     """Run a system; write results.csv, run.json, a figure."""
     bar = not (as_json or quiet)
-    order = Order(system, scenario, options, output, can_log, not no_plot, profile, bar)
+    order = Order(system, scenario, options, output, replace, can_log, not no_plot, profile, bar)
     return _carry_out(order, as_json, quiet)
 
 
@@ -46,13 +50,15 @@ def run(
 class Order:
     """A run as the command line describes it; `output` is its folder (None: the default).
 
-    `can_log` and `figure` are wanted files, `profile` measures the parts of a step, `bar` shows the progress.
+    With `replace` the run may replace results of other settings. `can_log` and `figure` are wanted files,
+    `profile` measures the parts of a step, `bar` shows the progress.
     """
 
     system: str
     scenario: str | None
     options: RunOptions
     output: Path | None
+    replace: bool
     can_log: bool
     figure: bool
     profile: bool
@@ -64,7 +70,7 @@ class FinishedRun:
     """A run at its end: `error` is its failure (None: none), `files` are the names of written files."""
 
     simulation: Simulation
-    folder: Path
+    folder: RunFolder
     results: Results
     error: BaseException | None
     files: list[str] = dataclasses.field(default_factory=list)
@@ -78,8 +84,9 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
     from .failures import FAILED, INTERRUPTED, complain
 
     finished = _run(order)
-    _evaluate(finished)
-    _write(finished, order)
+    with finished.folder:
+        _evaluate(finished)
+        _write(finished, order)
     if as_json:
         print_json(summary.as_data(finished))
     for remark in finished.remarks if as_json or quiet else ():
@@ -95,16 +102,18 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
 def _run(order: Order) -> FinishedRun:
     """Prepare everything, then step.
 
-    An error in the steps, or Ctrl-C, is kept in the finished run; one before the first step is raised.
+    An error in the steps, or Ctrl-C, is kept in the finished run; one before the run has a folder is raised.
     """
     from ...cosim.errors import ConfigError, RunError
     from ..simulation import Simulation
     from .interrupts import Interrupts
-    from .outputs import default_folder, run_folder
+    from .outputs import default_folder, run_folder, suffix_of
 
     if order.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
+    folder: RunFolder | None = None
+    remarks: list[str] = []
     with Interrupts() as interrupts:
         simulation = Simulation(
             order.system,
@@ -118,13 +127,19 @@ def _run(order: Order) -> FinishedRun:
             with simulation:
                 interrupts.check()
                 named = default_folder(simulation.system.file.name, simulation.scenario.name)
-                folder = run_folder(order.output or named)
+                suffix = suffix_of(order.options, order.scenario if order.output else None)
+                about = simulation.manifest()
+                folder, remarks = run_folder(order.output or named, about, suffix, order.replace)
+                simulation.keep_in(folder)
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
-            if simulation.time <= simulation.plan.experiment.start_time and not isinstance(failure, RunError):
-                raise  # before the first step there is nothing to keep
+            if folder is None:
+                raise
             error = failure
-    return FinishedRun(simulation, folder, simulation.results, error, remarks=list(simulation.warnings))
+    assert folder is not None  # without one there was an error
+    return FinishedRun(
+        simulation, folder, simulation.results, error, remarks=[*remarks, *simulation.warnings]
+    )
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
@@ -145,15 +160,13 @@ def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
 
 def _evaluate(finished: FinishedRun) -> None:
     """Evaluate the metrics of a whole run, and note them, or the error of a failed one, for run.json."""
+    from ..keeping import ended
+
     manifest = finished.results.manifest
     if finished.error is None:
         finished.metrics = finished.results.metrics()
-        manifest["status"] = "done"
         manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in finished.metrics}
-    elif isinstance(finished.error, KeyboardInterrupt):
-        manifest["status"] = "interrupted"
-    else:
-        manifest["status"], manifest["error"] = "failed", str(finished.error)
+    ended(finished.results, True, finished.error)
 
 
 def _write(finished: FinishedRun, order: Order) -> None:
@@ -165,13 +178,13 @@ def _write(finished: FinishedRun, order: Order) -> None:
     try:
         _write_the_rest(finished, order)
     except ConfigError as error:
-        raise RunError(f"{error}\nin {folder}: {', '.join(finished.files)}") from error
+        raise RunError(f"{error}\nin {folder.path}: {', '.join(finished.files)}") from error
 
 
 def _write_the_rest(finished: FinishedRun, order: Order) -> None:
     from .outputs import write_can_logs, write_figure
 
-    simulation, folder, results = finished.simulation, finished.folder, finished.results
+    simulation, folder, results = finished.simulation, finished.folder.path, finished.results
     if order.can_log and not simulation.plan.messages:
         finished.remarks.append("no CAN log: no connection of the system is over a bus")
     elif order.can_log:

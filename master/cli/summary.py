@@ -33,7 +33,7 @@ def show(finished: FinishedRun) -> None:
     if profile := finished.simulation.profile:
         print()
         _show_profile(profile)
-    print(f"\nin {finished.folder}: {', '.join(finished.files)}")
+    print(f"\nin {finished.folder.path}: {', '.join(finished.files)}")
 
 
 def as_data(finished: FinishedRun) -> dict[str, Any]:
@@ -49,7 +49,7 @@ def as_data(finished: FinishedRun) -> dict[str, Any]:
         "profile": finished.simulation.profile,
         "metrics": manifest.get("metrics", {}),
         "final": results.final(),
-        "folder": str(finished.folder),
+        "folder": str(finished.folder.path),
         "files": finished.files,
     }
 
@@ -77,7 +77,7 @@ def of_failure(finished: FinishedRun) -> str:
     else:
         why = str(finished.error)
     kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"
-    return f"{why}\n{kept}; in {finished.folder}: {', '.join(finished.files)}"
+    return f"{why}\n{kept}; in {finished.folder.path}: {', '.join(finished.files)}"
 
 
 def _name(manifest: dict[str, Any]) -> str:

@@ -159,8 +159,8 @@ class Sender:
 class Engine:
     """A plan with its units, and the steps done so far; a subclass does the steps of a chunk in `_run`.
 
-    `k` counts the steps done, `memory` has shape (size,), and `whole` is False from an error on. The recorded
-    rows of a long run are in a temporary file (`cosim.row_store`).
+    `k` counts the steps done, `memory` has shape (size,), `chunks` counts the chunks begun, and `whole` is
+    False within one and from an error on. `store` has the recorded rows, those of a long run in a file.
     """
 
     name: str
@@ -178,7 +178,8 @@ class Engine:
         self.memory: NDArray[np.float64] = np.zeros(size)
         self.view = floats(self.memory)
         self.columns = np.array(plan.column_slots, dtype=np.intp)
-        self._store = RowStore(len(self.columns))
+        self.store = RowStore(len(self.columns))
+        self.chunks = 0
         self._most = max(_LEAST, _ROOM // (8 * (len(self.columns) + len(plan.drives) + 1)))
         self._chunk = min(_FIRST, self._most)
         for unit_plan in plan.units:
@@ -238,6 +239,7 @@ class Engine:
         drives = self._stimuli(count)
         rows = np.empty((count, len(self.columns)))
         self.whole = False
+        self.chunks += 1
         try:
             self._run(count, drives, rows)
             self.whole = True
@@ -245,7 +247,7 @@ class Engine:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         finally:
             done = self.k - first
-            self._store.append(rows if done == count else rows[:done].copy())
+            self.store.append(rows if done == count else rows[:done].copy())
             for sender in self.senders:
                 sender.channel.flush()
         self._adapt(count, done, time.perf_counter() - begin)
@@ -269,6 +271,13 @@ class Engine:
 
         `drives` has the values of the stimuli, shape (drives, count); `rows`, shape (count, columns),
         receives those of the recorded slots. No event is due within.
+        """
+        raise NotImplementedError
+
+    def rows_under_way(self) -> NDArray[np.float64]:
+        """Return a copy of the rows that the present chunk has done, shape (rows, columns).
+
+        For another thread, while a step takes long.
         """
         raise NotImplementedError
 
@@ -318,4 +327,4 @@ class Engine:
 
         In that one the inputs and the discrete outputs are those of the last step.
         """
-        return self._store.table(self.memory[None, self.columns] if self.whole else None)
+        return self.store.table(self.memory[None, self.columns] if self.whole else None)

@@ -16,10 +16,12 @@ class PythonEngine(Engine):
     """The engine whose actions are Python functions."""
 
     name = "python"
+    _under_way: tuple[int, NDArray[np.float64]] | None = None
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         first, width = self.k, int(self.columns.max(initial=-1)) + 1
         wide = np.empty((count, width))  # all slots up to the last recorded one: faster than picking them
+        self._under_way = first, wide
         acts = self._acts(first, drives, wide)
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
         try:
@@ -34,6 +36,12 @@ class PythonEngine(Engine):
                     break
         finally:
             np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])
+
+    def rows_under_way(self) -> NDArray[np.float64]:
+        if self._under_way is None:
+            return np.empty((0, len(self.columns)))
+        first, wide = self._under_way
+        return wide[: self.k - first, self.columns]
 
     def _acts(self, first: int, drives: NDArray[np.float64], wide: NDArray[np.float64]) -> list[Act]:
         """Return the functions of the schedule's actions for a chunk that begins at step `first`.

@@ -32,11 +32,13 @@ class CompiledEngine(Engine):
 
     name = "compiled"
     _program: Program | None = None
+    _rows: NDArray[np.float64] | None = None
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         program = self._program
         assert program is not None  # it was made at the start
         state, first, addresses = self._state, self.k, self._addresses
+        self._rows = rows
         # the operations that are due in this chunk
         ops, self._places = program.chunk(first, count)
         state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
@@ -58,6 +60,12 @@ class CompiledEngine(Engine):
             raise self._raised
         if result != L.DONE:
             self._raise(program, result)
+
+    def rows_under_way(self) -> NDArray[np.float64]:
+        rows = self._rows
+        if rows is None:
+            return np.empty((0, len(self.columns)))
+        return rows[: int(self._state[L.STEPS_DONE])].copy()
 
     def _raise(self, program: Program, result: int) -> NoReturn:
         """Repeat the check at which the kernel stopped with the code `result`, and raise its exception."""

@@ -91,3 +91,64 @@ def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch,
 def test_a_default_folder_is_named_by_what_has_a_name():
     assert outputs.default_folder("scooter", "fig8", "budget") == Path("results/scooter-fig8-budget")
     assert outputs.default_folder("scooter", "") == Path("results/scooter")
+
+
+def test_another_run_in_the_folder_stays(evcosim, tmp_path):
+    """The suffix says what was set, a number comes where that is taken; the same run replaces its own."""
+    short = ("run", "scooter", "--no-plot", "--stop-time", "0.1")
+    assert evcosim(*short, "-o", "out").code == 0
+    first = (tmp_path / "out" / "results.csv").read_bytes()
+    answer = evcosim(*short, "-o", "out", "--set", "vehicle.mass=180")
+    named = "out-vehicle.mass=180-stop_time=0.1"
+    said = " ".join(answer.out.split())  # it is wrapped
+    assert f"out has results of other files, FMUs or settings; this run's are in {named}" in said
+    assert f"in {named}: results.csv, run.json" in answer.out
+    assert evcosim(*short, "-o", "out", "--set", "vehicle.mass=180").code == 0  # where it was
+    about = tmp_path / named / "run.json"
+    about.write_text(about.read_text().replace('"sha256": "', '"sha256": "0', 1))  # of another FMU
+    assert f"in {named}-2: results.csv" in evcosim(*short, "-o", "out", "--set", "vehicle.mass=180").out
+    assert (tmp_path / "out" / "results.csv").read_bytes() == first
+    folders = {path.name for path in tmp_path.iterdir()}
+    assert folders == {"out", named, f"{named}-2"}
+    answer = evcosim(*short, "-o", "out", "--ideal", "--replace", "--json")
+    assert (answer.json["folder"], answer.json["warnings"]) == ("out", [])
+    assert Results.read(tmp_path / "out").manifest["ideal"] is True
+
+
+def test_settings_in_a_file_count(evcosim, tmp_path):
+    scenario = tmp_path / "mine.toml"
+    for value in (10.0, 20.0):
+        scenario.write_text(
+            'leave_out = ["rider", "planner", "battery"]\n[parameters.ecu]\nenabled = false\n'
+            f'[[stimulus]]\nto = "ecu.throttle_request"\nconstant = {value}\n'
+        )
+        answer = evcosim("run", "scooter", "-s", scenario, "--no-plot", "--stop-time", "0.1", "-o", "out")
+        assert answer.code == 0
+    assert "this run's are in out-mine-stop_time=0.1" in " ".join(answer.out.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "suffix"),
+    [
+        ({}, ""),
+        (
+            {"parameters": {"vehicle.mass": 180.0, "ecu.enabled": False}},
+            "vehicle.mass=180.0-ecu.enabled=False",
+        ),
+        ({"fmus": {"vehicle": "my/Car 2.fmu"}, "ideal": True}, "vehicle=Car_2-ideal"),
+        ({"algorithm": "jacobi", "engine": "python", "isolation": "none"}, "jacobi-python-isolation=none"),
+        ({"parameters": {f"vehicle.p{i}": 1.0 for i in range(20)}}, ""),
+        ({"parameters": {"a.b": "../../x/\x1b"}}, "a.b=.._.._x_"),
+    ],
+)
+def test_a_suffix_says_what_was_set(options, suffix):
+    assert outputs.suffix_of(options) == suffix
+
+
+def test_the_names_of_folders_beside_the_working_folder_and_of_the_root(monkeypatch, tmp_path):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    second = [next(outputs._candidates(Path(name), "a")) for name in (".", "..", "/")]
+    assert second == [Path("."), Path(".."), Path("/")]
+    assert list(outputs._candidates(Path("."), "a"))[1:3] == [tmp_path / "here-a", tmp_path / "here-a-2"]
+    assert list(outputs._candidates(Path("/"), "a")) == [Path("/")]

@@ -1,0 +1,115 @@
+"""The lock on a folder that a process writes into.
+
+It is `flock` of the folder itself: there is no file of it, and it ends with the process, however that ends.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Self
+
+from ..errors import ConfigError
+from ..writing import reason, try_folder
+from .manifest import read_manifest
+
+MANIFEST_NAME = "run.json"
+_PATIENCE = 0.3  # s for somebody who looks whether a run lives
+
+
+class FolderLock:
+    """A lock on a folder, which no other process can have meanwhile. It is made if needed.
+
+    Raises ConfigError naming the run that has the folder, or the reason why it cannot be written. Where the
+    system or the disk knows no such lock (Windows, some network disks), nothing is locked.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder
+        self._descriptor: int | None = None
+        try:
+            try_folder(folder)
+        except OSError as error:
+            said = reason(folder / MANIFEST_NAME, error)
+            raise ConfigError(f"output folder {folder}: cannot be written: {said}") from error
+        self._descriptor = _locked(folder)
+
+    def release(self) -> None:
+        """Give the folder free."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+
+def _locked(folder: Path) -> int | None:
+    """Lock a folder and return the descriptor that holds the lock. Raises ConfigError as FolderLock does."""
+    end = time.monotonic() + _PATIENCE
+    while (descriptor := _try_lock(folder)) == _TAKEN:
+        if time.monotonic() > end:
+            raise ConfigError(
+                f"output folder {folder}: {_owner(folder)} is writing into it; wait for its end"
+            )
+        time.sleep(0.01)
+    return descriptor
+
+
+_TAKEN = -1
+
+
+def _try_lock(folder: Path) -> int | None:
+    """Return the descriptor that holds the lock; _TAKEN: another one does; None: there are no locks."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError:  # a folder that can be written and not read
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(descriptor)
+        return _TAKEN if isinstance(error, BlockingIOError) else None
+    return descriptor
+
+
+def _owner(folder: Path) -> str:
+    """Return a name for the run that has a folder: run.json says which it is, once it has begun."""
+    about = manifest_of(folder)
+    process = about.get("process")
+    if about.get("status") != "running" or not isinstance(process, dict):
+        return "another run"
+    name = " ".join(str(about[key]) for key in ("system", "scenario") if about.get(key))
+    who = f"process {process.get('id')} on {process.get('host')} since {process.get('since')}"
+    return f"the run '{name}', {who},"
+
+
+def manifest_of(folder: Path) -> dict[str, Any]:
+    """Return what run.json says of the run in a folder; nothing where there is none that can be read."""
+    try:
+        return read_manifest(folder / MANIFEST_NAME)[0]
+    except ConfigError:
+        return {}
+
+
+def lives(folder: Path) -> bool:
+    """Return True while a run has the folder."""
+    descriptor = _try_lock(folder)
+    if descriptor is not None and descriptor != _TAKEN:
+        os.close(descriptor)
+    return descriptor == _TAKEN
+
+
+def status(folder: Path, manifest: Mapping[str, Any]) -> str | None:
+    """Return how the run in a folder ended: "killed" where its manifest says that it runs and it does not."""
+    said = manifest.get("status")
+    return "killed" if said == "running" and not lives(folder) else said

@@ -1,0 +1,74 @@
+"""The rows of a run while it lives, of which any prefix reads: results.rows in the folder of the run.
+
+A line of JSON says what the run is and what the columns are; the rows follow from a multiple of 8 bytes on,
+each number a double in the byte order of the machine. Row k is that of communication point k. The file is
+removed when results.csv is written, so that one that stands there without a living run is of a run that was
+killed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..clock import Clock
+from ..errors import ConfigError
+from ..row_store import Grid, Table, rows_in
+from .manifest import described, manifest_text, variables_in
+from .variable import ResultVariable
+
+ROWS_NAME = "results.rows"
+_FORMAT = "evcosim rows 1"
+_LONGEST = 1 << 28  # bytes of the line
+
+
+def head(clock: Clock, variables: Sequence[ResultVariable], manifest: Mapping[str, Any]) -> bytes:
+    """Return the begin of the file of a run whose rows are at the times of a clock."""
+    about = {
+        "format": _FORMAT,
+        "byteorder": sys.byteorder,
+        "clock": dataclasses.asdict(clock),
+        "variables": [described(v) for v in variables],
+        "manifest": manifest,
+    }
+    line = manifest_text(about, indent=None)
+    return line + b" " * (-(len(line) + 1) % 8) + b"\n"
+
+
+@dataclasses.dataclass(frozen=True)
+class SavedRows:
+    """The contents of such a file: n rows, `data` of shape (n, m), which stay in the file."""
+
+    time: Grid
+    data: Table
+    variables: list[ResultVariable]
+    manifest: dict[str, Any]
+
+
+def read(path: Path) -> SavedRows:
+    """Read what there is of a file of rows; half a row at its end counts for nothing.
+
+    Raises ConfigError naming a file that cannot be read or does not begin as one.
+    """
+    try:
+        with path.open("rb") as file:
+            line = file.readline(_LONGEST)
+        about = json.loads(line) if line.endswith(b"\n") else None
+        if not isinstance(about, dict) or about.get("format") != _FORMAT:
+            raise ConfigError(f"{path}: does not begin as a file of rows ({_FORMAT})")
+        if about["byteorder"] != sys.byteorder:
+            raise ConfigError(f"{path}: was written on a machine of the other byte order")
+        variables = list(variables_in(about["variables"], path).values())
+        clock, manifest = Clock(**about["clock"]), dict(about["manifest"])
+        data = rows_in(path, len(line), len(variables))
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (ValueError, TypeError, KeyError) as error:
+        if isinstance(error, ConfigError):
+            raise
+        raise ConfigError(f"{path}: its first line does not describe rows: {error}") from error
+    return SavedRows(Grid(clock, data.shape[0]), data, variables, manifest)

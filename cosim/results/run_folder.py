@@ -1,0 +1,150 @@
+"""The folder of a run: one living run has it, and the files that stand in it are of one run.
+
+From its begin on run.json says "running"; the last thing that a run does is to say how it ended. Where
+run.json says "running" and nobody has the lock, the run was killed: what it had saved is in results.rows, and
+`recover` makes results.csv of it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import json
+import os
+import socket
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import ConfigError
+from ..writing import remove_drafts
+from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
+from .manifest import manifest_text, write_manifest
+from .results import CSV_NAME, Results
+from .rows_file import ROWS_NAME
+from .variable import ResultVariable
+
+FIGURES = ("figure.png", "figure.svg")
+CAN_LOGS = ("can.log", "can.blf", "can.asc")
+_SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
+FILES = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
+"""The files of a run that has ended."""
+
+
+class RunFolder(FolderLock):
+    """The locked folder of a run, with its files from the begin to the end."""
+
+    def __fspath__(self) -> str:
+        return os.fspath(self.path)
+
+    @property
+    def rows(self) -> Path:
+        """The file of the rows while the run lives."""
+        return self.path / ROWS_NAME
+
+    def begin(self, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
+        """Remove the files of an earlier run, and let run.json say that this one is running.
+
+        Raises ConfigError with the reason where that is impossible.
+        """
+        try:
+            for name in (*FILES, ROWS_NAME):
+                (self.path / name).unlink(missing_ok=True)
+        except OSError as error:
+            said = f"{error.strerror}: {error.filename}"
+            raise ConfigError(f"output folder {self.path}: cannot be written: {said}") from error
+        remove_drafts(self.path)
+        now = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+        process = {"id": os.getpid(), "host": socket.gethostname(), "since": now}
+        about = {**manifest, "status": "running", "process": process}
+        write_manifest(self.path / MANIFEST_NAME, about, variables)
+
+    def finish(self, results: Results) -> None:
+        """Write results.csv and run.json, then remove the rows. Raises ConfigError where a disk refuses."""
+        results.write(self.path)
+        self.discard_rows()
+
+    def discard_rows(self) -> None:
+        """Remove the file of the rows, which other files hold now."""
+        with contextlib.suppress(OSError):  # Windows removes no file that is open: the next run does
+            self.rows.unlink(missing_ok=True)
+
+    @property
+    def was_killed(self) -> bool:
+        """True where run.json says that a run is going on: this process has the lock, so that it is gone."""
+        return manifest_of(self.path).get("status") == "running"
+
+    @property
+    def has_rows(self) -> bool:
+        """True where rows are there, as results or as they were saved."""
+        return self.rows.exists() or (self.path / CSV_NAME).exists()
+
+    def recover(self) -> Results | None:
+        """Make results.csv of the rows of a killed run, and return the results; None: there are no such rows.
+
+        Raises ConfigError where a file cannot be read or written.
+        """
+        if not self.rows.exists() and not (self.was_killed and self.has_rows):
+            return None
+        if not self.was_killed and (self.path / CSV_NAME).exists():  # it was killed after its last word
+            self.discard_rows()
+            return None
+        results = Results.read(self.path)
+        if self.was_killed:
+            results.manifest["status"] = "killed"
+        self.finish(results)
+        remove_drafts(self.path)
+        return results
+
+    def foreign_files(self) -> list[str]:
+        """Return the names of the files in it that no run wrote: they are somebody's own."""
+        return foreign_files(self.path)
+
+    def is_of_another(self, manifest: Mapping[str, Any]) -> bool:
+        """Return True where the rows of a run of other files, FMUs or settings are there."""
+        return self.has_rows and not same_settings(manifest, manifest_of(self.path))
+
+    def check(self, manifest: Mapping[str, Any]) -> None:
+        """Raise ConfigError where a run would replace files of somebody's own, or results of another run."""
+        if foreign := self.foreign_files():
+            raise ConfigError(self.refusal(foreign))
+        if self.is_of_another(manifest):
+            raise ConfigError(
+                f"output folder {self.path}: it has the results of a run of other files, FMUs or settings"
+            )
+
+    def refusal(self, foreign: Sequence[str]) -> str:
+        """Return the message for files of somebody's own."""
+        return (
+            f"output folder {self.path}: {', '.join(foreign)} would be replaced, but no {MANIFEST_NAME} says "
+            "that a run wrote it"
+        )
+
+
+def recover(folder: Path) -> Results | None:
+    """Make results.csv of what a killed run had saved in a folder, and let run.json say that it was killed.
+
+    Return the results; None where no killed run is in the folder. Raises ConfigError for a run that lives,
+    for one that had saved nothing, and for a folder that is none or cannot be written.
+    """
+    if not folder.is_dir():
+        raise ConfigError(f"{folder}: there is no such folder")
+    with RunFolder(folder) as locked:
+        if locked.was_killed and not locked.has_rows:
+            raise ConfigError(f"{folder}: the run was killed before it had saved any rows; run it again")
+        return locked.recover()
+
+
+def foreign_files(folder: Path) -> list[str]:
+    """Return the names of files that a run would replace in a folder, and that no run wrote."""
+    taken = [name for name in FILES if os.path.lexists(folder / name)]
+    return [] if "evcosim" in manifest_of(folder) else taken
+
+
+def same_settings(manifest: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    """Return True if two manifests are of runs with the same files, FMUs and settings.
+
+    What the run.json of an earlier evcosim does not have is not compared.
+    """
+    one, two = (json.loads(manifest_text(each)) for each in (manifest, other))
+    return all(one[key] == two[key] for key in _SETTINGS if key in one and key in two)

@@ -1,0 +1,33 @@
+"""`evcosim results`: what is done with the folder of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+results = typer.Typer(help="What is done with the folder of a run.", rich_markup_mode=None)
+
+
+@results.callback()
+def _group() -> None:
+    """Recover the folder of a run that was killed."""
+
+
+@results.command("recover")
+def recover(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a run that was killed.")],
+) -> None:
+    """Make results.csv of what a run had saved that was killed.
+
+    `evcosim plot` and `compare` read such a folder as it is, and the next run into it recovers it.
+    """
+    from ...cosim.results.run_folder import recover as recovered
+
+    found = recovered(folder)
+    if found is None:
+        print(f"{folder}: no run was killed here, there is nothing to recover")
+        return
+    until = f"up to t = {found.span[1]:.6g} s" if len(found) else "none"
+    print(f"{folder}: results.csv has {len(found)} rows, {until}; status: {found.manifest['status']}")

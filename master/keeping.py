@@ -1,0 +1,74 @@
+"""The folder of a run while it goes on, and at its end."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..cosim.plan.plan import Plan
+from ..cosim.results import rows_file
+from ..cosim.results.results import Results
+from ..cosim.results.run_folder import RunFolder
+from .engine.engine import Engine
+from .engine.row_keeper import RowKeeper
+
+
+class KeptRun:
+    """A run that has a folder: from now on its rows reach the disk within a second.
+
+    `about` is the manifest at the begin. A folder that is given by its name is filled by `end`; one that the
+    caller has locked, the caller fills. Raises ConfigError for a folder that another run has, that holds
+    another one's results, or that cannot be written.
+    """
+
+    def __init__(
+        self, engine: Engine, plan: Plan, folder: str | os.PathLike[str], about: Mapping[str, Any]
+    ) -> None:
+        self.folder = folder if isinstance(folder, RunFolder) else RunFolder(Path(folder))
+        self._fills = self.folder is not folder
+        try:
+            if self._fills:
+                self.folder.check(about)
+            self.folder.begin(about, plan.columns)
+            engine.store.keep_in(self.folder.rows, rows_file.head(plan.clock, plan.columns, about))
+            self._keeper = RowKeeper(engine)
+        except BaseException:
+            if self._fills:
+                self.folder.release()
+            raise
+
+    @property
+    def notice(self) -> str:
+        """The reason why rows cannot be saved; "" while they can."""
+        return self._keeper.notice
+
+    def stop(self) -> None:
+        """Save no more rows: the run has ended."""
+        self._keeper.stop()
+
+    def end(self, results: Results) -> None:
+        """Write results.csv and run.json, and give the folder free, if that is not the caller's.
+
+        Raises ConfigError where the disk refuses; the rows that were saved stay then.
+        """
+        if self._fills:
+            self._fills = False
+            with self.folder:
+                self.folder.finish(results)
+
+
+def ended(results: Results, finished: bool, error: BaseException | None) -> Results:
+    """Return the results of a run at its end, whose manifest says how it ended: "done" at the stop time.
+
+    A loop of one's own may leave it before ("stopped").
+    """
+    manifest = results.manifest
+    if isinstance(error, KeyboardInterrupt):
+        manifest["status"] = "interrupted"
+    elif error is not None:
+        manifest["status"], manifest["error"] = "failed", str(error) or type(error).__name__
+    else:
+        manifest["status"] = "done" if finished else "stopped"
+    return results

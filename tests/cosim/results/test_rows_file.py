@@ -1,0 +1,75 @@
+"""Any prefix of a file of rows reads, as the rows that it holds whole."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.cosim.clock import Clock
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.results import Results
+from evcosim.cosim.results.rows_file import head, read
+from evcosim.cosim.results.variable import ResultVariable
+
+VARIABLES = [ResultVariable("a.x", "m/s"), ResultVariable("b.n", type="Integer", variability="discrete")]
+HEAD = head(Clock.counted(0.5, 0.1, 4), VARIABLES, {"system": "toy", "note": "ä\udc80"})
+ROWS = np.arange(10.0).reshape(5, 2)
+
+
+@given(st.integers(0, ROWS.nbytes))
+def test_a_prefix_reads(tmp_path_factory: pytest.TempPathFactory, kept: int) -> None:
+    path = tmp_path_factory.mktemp("rows") / "results.rows"
+    path.write_bytes(HEAD + ROWS.tobytes()[:kept])
+    results = Results.read(path)
+    n = kept // 16
+    assert np.array_equal(results.data, ROWS[:n])
+    assert np.array_equal(results.time, [0.5, 0.6, 0.7, 0.8, 0.9][:n])
+    assert results.variables == tuple(VARIABLES)
+    assert (results.manifest["system"], results.manifest["steps"]) == ("toy", n)
+
+
+def test_rows_begin_at_a_multiple_of_eight_bytes() -> None:
+    assert len(HEAD) % 8 == 0
+    assert HEAD.endswith(b"\n")
+    assert HEAD.count(b"\n") == 1
+
+
+@pytest.mark.parametrize("kept", [0, 1, 40, len(HEAD) - 1])
+def test_half_a_head_is_refused_by_name(tmp_path: Path, kept: int) -> None:
+    path = tmp_path / "results.rows"
+    path.write_bytes(HEAD[:kept])
+    with pytest.raises(ConfigError, match=r"results.rows: does not begin as a file of rows"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        (b"[1]\n", "does not begin as a file of rows"),
+        (b"{}\n", "does not begin as a file of rows"),
+        (b"\xff\n", "its first line does not describe rows"),
+        (HEAD.replace(b'"little"', b'"middle"').replace(b'"big"', b'"middle"'), "the other byte order"),
+        (HEAD.replace(b'"clock": {', b'"clock": {"x": 1,'), "its first line does not describe rows"),
+        (HEAD.replace(b'"clock"', b'"clack"'), "its first line does not describe rows"),
+        (HEAD.replace(b'"unit"', b'"color"'), "'variables' does not describe the variables"),
+    ],
+)
+def test_what_is_no_file_of_rows_is_refused(tmp_path: Path, line: bytes, message: str) -> None:
+    path = tmp_path / "results.rows"
+    path.write_bytes(line)
+    with pytest.raises(ConfigError, match=f"results.rows: {message}|results.rows: .*{message}"):
+        read(path)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"none.rows: cannot be read: No such file"):
+        read(tmp_path / "none.rows")
+
+
+def test_a_run_that_records_nothing_has_no_rows(tmp_path: Path) -> None:
+    (tmp_path / "results.rows").write_bytes(head(Clock.counted(0.0, 0.1, 4), [], {}))
+    assert read(tmp_path / "results.rows").data.shape == (0, 0)

@@ -1,0 +1,131 @@
+"""A folder holds the files of one run, and says how that ended."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from evcosim.cosim.clock import Clock
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.results import Results
+from evcosim.cosim.results.rows_file import head
+from evcosim.cosim.results.run_folder import FILES, RunFolder, recover, same_settings
+from evcosim.cosim.results.variable import ResultVariable
+
+CLOCK = Clock.counted(0.0, 0.1, 9)
+VARIABLES = [ResultVariable("a.x", "m/s")]
+ABOUT: dict[str, Any] = {
+    "evcosim": "0", "system": "toy", "scenario": "", "experiment": {"step_size": 0.1}, "order": ["a"],
+    "units": {"a": {"sha256": "1", "parameters": {"m": 1.0}}}, "ideal": False, "buses": {}, "settings": "x",
+    "saturations": {}, "loop_seconds": 0.0,
+}  # fmt: skip # a table
+
+
+def status(folder: Path) -> str:
+    found: str = json.loads((folder / "run.json").read_text())["status"]
+    return found
+
+
+def begun(folder: Path, rows: int | None = None) -> None:
+    """Leave a folder as a run does that is killed after it has saved some rows, or none."""
+    with RunFolder(folder) as run:
+        run.begin(ABOUT, VARIABLES)
+        if rows is not None:
+            run.rows.write_bytes(head(CLOCK, VARIABLES, ABOUT) + np.arange(float(rows)).tobytes() + b"half")
+
+
+def done(folder: Path, about: dict[str, Any] = ABOUT) -> None:
+    with RunFolder(folder) as run:
+        run.begin(about, VARIABLES)
+        run.finish(Results([0.0, 0.1], [[1.0], [2.0]], VARIABLES, {**about, "status": "done"}))
+
+
+def test_the_begin_removes_what_an_earlier_run_left(tmp_path: Path) -> None:
+    done(tmp_path)
+    for name in (*FILES, "results.rows", ".evcosim-0a.part", "notes.txt"):
+        (tmp_path / name).write_text("")
+    begun(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"run.json", "notes.txt"}
+    assert status(tmp_path) == "running"
+    assert json.loads((tmp_path / "run.json").read_text())["process"]["id"] > 0
+
+
+def test_a_killed_run_reads_and_is_recovered(tmp_path: Path) -> None:
+    begun(tmp_path, rows=5)
+    before = Results.read(tmp_path)
+    assert (len(before), before.manifest["status"], before.manifest["steps"]) == (5, "killed", 5)
+    assert "saturations" not in before.manifest  # they are counted at the end
+    found = recover(tmp_path)
+    assert found is not None
+    assert {path.name for path in tmp_path.iterdir()} == {"run.json", "results.csv"}
+    after = Results.read(tmp_path)
+    assert status(tmp_path) == "killed"
+    assert after.variables == tuple(VARIABLES)
+    assert np.array_equal(after.data, np.arange(5.0)[:, None])
+    assert recover(tmp_path) is None
+
+
+def test_a_run_that_lives_is_read_and_not_recovered(tmp_path: Path) -> None:
+    begun(tmp_path, rows=2)
+    with RunFolder(tmp_path):
+        assert Results.read(tmp_path).manifest["status"] == "running"
+        with pytest.raises(ConfigError, match="the run 'toy', process"):
+            recover(tmp_path)
+
+
+def test_a_run_that_was_killed_at_once_has_nothing(tmp_path: Path) -> None:
+    begun(tmp_path)
+    with pytest.raises(ConfigError, match="the run was killed before it had saved any rows; run it again"):
+        recover(tmp_path)
+    with pytest.raises(ConfigError, match=r"no such folder"):
+        recover(tmp_path / "none")
+
+
+def test_a_run_that_was_killed_between_its_files_is_whole(tmp_path: Path) -> None:
+    begun(tmp_path, rows=1)  # the rows that were saved are fewer than the results that were written
+    Results([0.0, 0.1], [[1.0], [2.0]], VARIABLES).to_csv(tmp_path / "results.csv")
+    assert Results.read(tmp_path).manifest["status"] == "killed"
+    found = recover(tmp_path)
+    assert found is not None
+    assert len(found) == 2
+    assert (status(tmp_path), (tmp_path / "results.rows").exists()) == ("killed", False)
+
+
+def test_rows_that_stayed_after_the_last_word_are_removed(tmp_path: Path) -> None:
+    done(tmp_path)
+    (tmp_path / "results.rows").write_bytes(head(CLOCK, VARIABLES, ABOUT))
+    assert recover(tmp_path) is None
+    assert (status(tmp_path), (tmp_path / "results.rows").exists()) == ("done", False)
+
+
+def test_only_a_run_of_the_same_settings_is_replaced(tmp_path: Path) -> None:
+    done(tmp_path)
+    other = json.loads(json.dumps(ABOUT))
+    other["units"]["a"]["sha256"] = "2"
+    with RunFolder(tmp_path) as run:
+        run.check(ABOUT | {"steps": 3, "loop_seconds": 1.0})
+        with pytest.raises(ConfigError, match="it has the results of a run of other files, FMUs or settings"):
+            run.check(other)
+        (tmp_path / "results.csv").unlink()
+        run.check(other)  # no row is lost
+        (tmp_path / "run.json").unlink()
+        (tmp_path / "figure.png").symlink_to("nowhere")
+        with pytest.raises(ConfigError, match=r"figure.png would be replaced, but no run.json says"):
+            run.check(ABOUT)
+
+
+@pytest.mark.parametrize("key", ["system", "scenario", "settings", "experiment", "ideal", "order", "units"])
+def test_every_setting_counts(key: str) -> None:
+    assert same_settings(ABOUT, dict(ABOUT))
+    assert not same_settings(ABOUT, {**ABOUT, key: "other"})
+    assert same_settings(ABOUT, {k: v for k, v in ABOUT.items() if k != key})
+
+
+def test_a_folder_that_cannot_be_emptied_is_named(tmp_path: Path) -> None:
+    (tmp_path / "results.csv").mkdir()
+    with RunFolder(tmp_path) as run, pytest.raises(ConfigError, match=r"cannot be written: .*results.csv"):
+        run.begin(ABOUT, VARIABLES)

@@ -1,0 +1,80 @@
+"""A run that has a folder: what is in it while it goes on, and at its end."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evcosim import ConfigError, Results, Simulation, simulate
+from evcosim.master.keeping import ended
+
+
+def status(folder: Path) -> str:
+    found: str = json.loads((folder / "run.json").read_text())["status"]
+    return found
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_a_run_fills_its_folder_and_says_how_it_ended(tmp_path: Path, engine: str) -> None:
+    made = simulate("scooter", stop_time=1.0, engine=engine, folder=tmp_path / "out")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"results.csv", "run.json"}
+    assert status(tmp_path / "out") == "done"
+    assert np.array_equal(Results.read(tmp_path / "out").data, made.data)
+    simulate("scooter", stop_time=1.0, engine=engine, folder=tmp_path / "out")  # the same again
+    with pytest.raises(ConfigError, match="it has the results of a run of other files, FMUs or settings"):
+        simulate("scooter", stop_time=2.0, engine=engine, folder=tmp_path / "out")
+    assert status(tmp_path / "out") == "done"
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_rows_are_there_while_it_goes_on(tmp_path: Path, engine: str) -> None:
+    with Simulation("scooter", engine=engine) as sim:
+        sim.keep_in(tmp_path)
+        with pytest.raises(ConfigError, match="the run has a folder already"):
+            sim.keep_in(tmp_path / "other")
+        sim.step(50)
+        sim._engine.store.save()
+        saved = Results.read(tmp_path)
+        assert saved.manifest["status"] == "running"
+        assert np.array_equal(saved.data, sim.results.data[:50])
+        assert saved.time.tolist() == sim.results.time[:50].tolist()
+    assert (status(tmp_path), len(Results.read(tmp_path))) == ("stopped", 51)
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_the_rows_of_a_chunk_are_seen_while_it_is_under_way(engine: str) -> None:
+    with Simulation("scooter", engine=engine) as sim:
+        assert sim._engine.rows_under_way().shape[0] == 0
+        sim.step(20)
+        assert np.array_equal(sim._engine.rows_under_way(), sim.results.data[:20])
+
+
+@pytest.mark.parametrize(
+    ("error", "said"), [(RuntimeError("the chain came off"), "failed"), (KeyboardInterrupt(), "interrupted")]
+)
+def test_a_failure_fills_the_folder_too(tmp_path: Path, error: BaseException, said: str) -> None:
+    with pytest.raises(type(error)), Simulation("scooter") as sim:
+        sim.keep_in(tmp_path)
+        sim.step(10)
+        raise error
+    about = json.loads((tmp_path / "run.json").read_text())
+    assert (about["status"], about.get("error")) == (said, str(error) or None)
+    assert len(Results.read(tmp_path)) == 11
+
+
+def test_a_folder_that_another_run_has_is_refused(tmp_path: Path) -> None:
+    with Simulation("scooter") as first, Simulation("scooter") as second:
+        first.keep_in(tmp_path)
+        with pytest.raises(ConfigError, match=r"the run 'scooter fig8', process .* is writing into it"):
+            second.keep_in(tmp_path)
+        second.step(1)
+
+
+def test_the_end_is_said_in_the_manifest() -> None:
+    results = Results([], np.empty((0, 0)), [])
+    assert ended(results, True, None).manifest["status"] == "done"
+    assert ended(results, False, None).manifest["status"] == "stopped"
+    assert ended(results, True, ValueError()).manifest["error"] == "ValueError"
