@@ -43,6 +43,8 @@ from .frequency_response import FrequencyResponse
 
 POOR_COHERENCE = 0.9
 POOR_FIT = 0.1
+USELESS_COHERENCE = 0.3
+USELESS_INTERVAL = 10.0  # the upper end of an interval over the lower one
 _NEIGHBORS = 8.0 / 3.0  # (3)
 _FAR = 1e3  # how far outside the band a pole is looked for, as a factor
 
@@ -59,6 +61,18 @@ class Estimate:
     def relative(self) -> float:
         """Half the width of the interval as a share of the value."""
         return 0.5 * (self.high - self.low) / abs(self.value) if self.value else math.inf
+
+    @property
+    def percentage(self) -> str:
+        """`relative` in words, as +-2.6 %."""
+        share = 100.0 * self.relative
+        return f"+-{share:.1f} %" if share < 1000.0 else "by more than a factor of 10"
+
+    @property
+    def spread(self) -> float:
+        """The end of the interval that is farther from 0 over the other one; inf if it holds 0 or is none."""
+        near, far = sorted((abs(self.low), abs(self.high)))
+        return far / near if near > 0.0 and self.low * self.high > 0.0 else math.inf
 
 
 @dataclasses.dataclass(frozen=True)
@@ -117,6 +131,25 @@ class Fit:
         return self.band[0] < self.pole.value < self.band[1]
 
     @property
+    def refusal(self) -> str:
+        """The reason why the numbers say nothing ("": they do)."""
+        if not self.coherence >= USELESS_COHERENCE:
+            return (
+                f"coherence in the band is {self.coherence:.2f} on average, less than "
+                f"{USELESS_COHERENCE:g}: what the output does is not from this input; a larger amplitude, "
+                "more repeats or another band may help"
+            )
+        estimates = (("gain", self.gain), ("pole", self.pole), ("gain x pole", self.product))
+        wide = [name for name, estimate in estimates if not estimate.spread <= USELESS_INTERVAL]
+        if not wide:
+            return ""
+        return (
+            f"the {100 * self.confidence:g} % interval of {' and '.join(wide)} spans more than a factor of "
+            f"{USELESS_INTERVAL:g}; a band with the pole inside ({self.band[0]:g} to {self.band[1]:g} Hz was "
+            "fitted), a larger amplitude or more repeats may help"
+        )
+
+    @property
     def warnings(self) -> list[str]:
         """A sentence for each reason not to trust the numbers."""
         said = [] if self.separable else [self._conditioning()]
@@ -138,7 +171,7 @@ class Fit:
             return (
                 f"the band ({low:g} to {high:g} Hz) lies above the pole ({pole:.3g} Hz), where the data "
                 f"cannot separate gain from pole: only gain x pole is well conditioned "
-                f"(+-{100 * self.product.relative:.1f} %; gain alone +-{100 * self.gain.relative:.1f} %); "
+                f"({self.product.percentage}; gain alone {self.gain.percentage}); "
                 "a band that reaches below the pole gives both"
             )
         return (

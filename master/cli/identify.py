@@ -283,7 +283,7 @@ def _fields(each: Identification) -> list[tuple[str, str]]:
         ),
         ("gain", _interval(fit.gain, each.gain_unit)),
         ("pole", f"{_interval(fit.pole, 'Hz')}; T = {number(fit.model.time_constant)} s"),
-        ("gain x pole", _interval(fit.product, "") + f", +-{100 * fit.product.relative:.1f} %"),
+        ("gain x pole", f"{_interval(fit.product, '')}, {fit.product.percentage}"),
         *([("ESR", f"{esr:.2f} % on average in accelerations")] if esr == esr else []),
         *(("warning", warning) for warning in each.warnings),
     ]

@@ -5,8 +5,9 @@
     result = identify("Scooter", spec)                        # one FMU alone
     print(result.fit.gain, result.fit.pole, result.warnings)
 
-The input is overridden, whatever drives it, and everything else runs as in any other run: over the bus, or
-ideal. `identification_run` does the experiment, `cosim.analysis` the computation.
+The input is overridden, whatever drives it; what else the scenario moves is held where it starts, its events
+are left out, and the result says so. The rest runs as in any other run: over the bus, or ideal.
+`identification_run` does the experiment, `cosim.analysis` the computation.
 """
 
 from __future__ import annotations
@@ -20,14 +21,16 @@ import numpy as np
 from ...cosim.analysis.first_order import Fit, Prediction, curvature, fit_first_order, flat_share
 from ...cosim.analysis.frequency_response import FrequencyResponse, averaged, frequency_response, midpoints
 from ...cosim.analysis.sweep import Sweep, sweep_of
+from ...cosim.clock import Clock
 from ...cosim.errors import ConfigError, RunError
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
 from ...cosim.system.run_options import RunOptions
+from ...cosim.system.scenario import load_scenario
 from ...cosim.system.system import load_system
 from ..simulation import Simulation
 from .identification_run import IdentificationRun, PhaseProgress, longest
-from .identification_target import UNIT, default_scenario, is_fmu, one_unit_system, spec_of
+from .identification_target import UNIT, default_scenario, held, is_fmu, one_unit_system, spec_of
 
 _FLAT = 0.2  # periods at an extreme: of a sine it is 0.06, quantized to 20 levels 0.1
 _BEND = 0.12  # of the swing: the scooter at 30 km/h and 20 % has 0.09, at 25 % it meets a limit and has 0.19
@@ -128,10 +131,16 @@ def identify(
     if step_size is not None and not alone:
         raise ConfigError(f"{target} is a system: its step size stands in its file")
     options["parameters"] = {prefix + n: value for n, value in (options.get("parameters") or {}).items()}
-    options["stop_time"] = longest(sweep, system.file.experiment.step_size)
-    with Simulation(system, scenario, **options) as simulation:
+    stop_time = longest(sweep, system.file.experiment.step_size)
+    options["stop_time"] = stop_time
+    driven = load_scenario(system, None if scenario is None else str(scenario))
+    experiment = system.file.experiment
+    steps = round(stop_time / experiment.step_size)
+    clock = Clock.counted(experiment.start_time, experiment.step_size, steps)
+    driven, changes = held(driven, spec.input, clock)
+    with Simulation(system, driven, **options) as simulation:
         run = IdentificationRun(simulation, spec, sweep, prefix, progress or (lambda what, share: None))
-        return _identified(run, target)
+        return _identified(run, target, changes)
 
 
 def each_working_point(spec: IdentificationSpec) -> list[IdentificationSpec]:
@@ -148,8 +157,11 @@ def each_working_point(spec: IdentificationSpec) -> list[IdentificationSpec]:
     return [spec.model_copy(update={"at": [y]}) for y in spec.at] or [spec]
 
 
-def _identified(run: IdentificationRun, target: str) -> Identification:
-    """Do all phases and the analysis."""
+def _identified(run: IdentificationRun, target: str, changes: tuple[str, ...]) -> Identification:
+    """Do all phases and the analysis. Raises RunError for a fit that says nothing.
+
+    `changes` are sentences about what the scenario would have moved beside the input.
+    """
     u_0, y_0 = run.working_point()
     raw_u, raw_y, saturated = run.swept(u_0)
     u, y = averaged(raw_u, run.block), averaged(midpoints(raw_y), run.block)
@@ -159,7 +171,13 @@ def _identified(run: IdentificationRun, target: str) -> Identification:
     segment = 1 << int(np.log2(max(run.sweep.duration * rate / 4.0, 1.0)))
     response = frequency_response(u, y, rate, segment)
     fit = fit_first_order(response, run.spec.fit_band)
+    if refusal := fit.refusal:
+        raise RunError(
+            f"{run.spec.input} to {run.spec.output} at {u_0:.6g} {run.variable.unit}: no gain and no pole: "
+            f"{refusal}"
+        )
     warnings = [
+        *changes,
         *(f"{signal} saturates in the sweep: reduce the amplitude" for signal in saturated),
         *_limits(run, time, u - u_0, y - y_0, fit, rate),
         *fit.warnings,

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
+import numpy as np
+
+from ...cosim.clock import Clock
 from ...cosim.errors import ConfigError, nearest
 from ...cosim.system.identification_spec import IdentificationSpec
-from ...cosim.system.scenario import load_scenario, scenario_names
+from ...cosim.system.scenario import Scenario, StimulusEntry, load_scenario, scenario_names
+from ...cosim.system.stimuli import stimulus
 from ...cosim.system.system import (
     Experiment,
     System,
@@ -20,6 +25,8 @@ from ..fmi.fmu import read_fmu
 
 SCENARIO = "identification"
 """The scenario that a system is identified in if it has one of this name."""
+
+_LOOKS = 10_001  # times at which a stimulus is looked at for a change
 
 UNIT = "fmu"
 """The name of the unit in the system of an FMU alone."""
@@ -63,6 +70,33 @@ def one_unit_system(target: str, step_size: float | None = None) -> System:
 def default_scenario(system: System, scenario: str | Path | None) -> str | Path | None:
     """Return the given scenario, else `identification` if the system has it, else None: its default."""
     return SCENARIO if scenario is None and SCENARIO in scenario_names(system) else scenario
+
+
+def held(scenario: Scenario, swept: str, clock: Clock) -> tuple[Scenario, tuple[str, ...]]:
+    """Return the scenario without what moves beside the swept input, and a sentence for each change.
+
+    A stimulus of another input that changes within the time of `clock` is held at its first value;
+    events are left out, those of the swept input too, which is overridden. Raises ConfigError as `stimulus`.
+    """
+    times = np.linspace(clock.start, clock.stop, _LOOKS)
+    stimuli, said = [], []
+    for number, entry in enumerate(scenario.file.stimuli, 1):
+        values = stimulus(entry, f"{scenario.path}: stimulus {number}", scenario.path, clock)(times)
+        if entry.to != swept and np.ptp(values) > 0.0:
+            at = float(values[0])
+            said.append(
+                f"held at {at:.6g}{f' {entry.unit}' if entry.unit else ''}: the stimulus of {entry.to}"
+            )
+            entry = StimulusEntry(to=entry.to, unit=entry.unit, constant=at)
+        stimuli.append(entry)
+    said += [
+        f"left out: the event '{e.action}' of {', '.join(e.needs)} at {e.time:g} s"
+        for e in scenario.file.events
+    ]
+    if not said:
+        return scenario, ()
+    file = scenario.file.model_copy(update={"stimuli": stimuli, "events": []})
+    return dataclasses.replace(scenario, file=file), tuple(said)
 
 
 def spec_of(target: str, scenario: str | Path | None = None) -> IdentificationSpec | None:

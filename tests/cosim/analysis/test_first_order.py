@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evcosim.cosim.analysis.first_order import FirstOrder, curvature, fit_first_order, flat_share, predict
+from evcosim.cosim.analysis.first_order import (
+    Estimate,
+    FirstOrder,
+    curvature,
+    fit_first_order,
+    flat_share,
+    predict,
+)
 from evcosim.cosim.analysis.frequency_response import FrequencyResponse, frequency_response, midpoints
 from evcosim.cosim.errors import ConfigError
 from support.swept import BAND, GAINS, POLES, RATE, SWEEP, exact, swept
@@ -89,6 +99,33 @@ def test_too_few_points_and_no_response():
         fit_first_order(data, (0.05, 0.06))
     with pytest.raises(ConfigError, match="zero or not finite"):
         fit_first_order(FrequencyResponse(data.frequency, 0.0 * data.response, data.coherence), BAND)
+
+
+@pytest.mark.parametrize("coherence", [0.29, float("nan"), 0.0])
+def test_a_fit_without_coherence_is_refused(coherence):
+    model = FirstOrder(0.46, 0.03)
+    f = np.linspace(0.012, 0.3, 60)
+    fit = fit_first_order(FrequencyResponse(f, model.response(f), np.full(60, 0.9)), BAND)
+    assert fit.refusal == ""
+    assert "coherence in the band" in dataclasses.replace(fit, coherence=coherence).refusal
+
+
+def test_a_fit_whose_interval_says_nothing_is_refused_and_shown_in_few_digits():
+    f, random = np.linspace(0.05, 0.3, 6), np.random.default_rng(3)
+    scattered = np.exp(random.normal(scale=2.0, size=6) + 1j * random.uniform(-3.0, 3.0, size=6))
+    fit = fit_first_order(FrequencyResponse(f, scattered, np.full(6, 0.9)), (0.05, 0.3))
+    assert "spans more than a factor of 10" in fit.refusal
+    assert all(len(warning) < 400 for warning in fit.warnings)
+    exact = fit_first_order(FrequencyResponse(f, FirstOrder(-2.0, 0.1).response(f), np.ones(6)), (0.05, 0.3))
+    assert exact.refusal == ""
+
+
+@pytest.mark.parametrize(
+    ("low", "value", "high", "spread"),
+    [(1.0, 2.0, 4.0, 4.0), (-4.0, -2.0, -1.0, 4.0), (-1.0, 1.0, 3.0, math.inf), (0.0, 1.0, 2.0, math.inf)],
+)
+def test_the_spread_of_an_interval(low, value, high, spread):
+    assert Estimate(value, low, high).spread == spread
 
 
 # ---- saturation

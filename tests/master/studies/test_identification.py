@@ -54,3 +54,53 @@ def test_only_one_kind_of_working_point():
         each_working_point(spec(at=[30.0]))
     assert [s.at_input for s in each_working_point(spec(at_input=[1.0, 2.0]))] == [[1.0], [2.0]]
     assert each_working_point(spec(at_input=[])) == [spec(at_input=[])]
+
+
+MOVING = """
+[parameters.ecu]
+enabled = false
+[parameters.vehicle]
+initial_speed = 8.333333
+[[stimulus]]
+to = "ecu.throttle_request"
+constant = 28.2
+[[stimulus]]
+to = "vehicle.road_grade"
+unit = "deg"
+sine = { mean = 0.0, amplitude = 2.0, period = 40.0 }
+[[stimulus]]
+to = "vehicle.brake_force"
+constant = 0.0
+[[event]]
+time = 50.0
+action = "bias"
+variable = "ecu.speed_measured"
+value = 10.0
+"""
+
+
+def test_what_else_a_scenario_moves_is_held_and_said(tmp_path):
+    found = []
+    for name, moving in (
+        ("moving", MOVING),
+        ("still", MOVING[: MOVING.index('[[stimulus]]\nto = "vehicle.r')]),
+    ):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(f'title = "{name}"\nleave_out = ["rider", "planner", "battery"]\n{moving}')
+        task = spec(input="ecu.throttle_request", output="vehicle.speed", amplitude=10.0, at_input=[])
+        found.append(identify("scooter", task, path))
+    moving, still = found
+    assert moving.fit == still.fit
+    assert set(moving.warnings) - set(still.warnings) == {
+        "held at 0 deg: the stimulus of vehicle.road_grade",
+        "left out: the event 'bias' of ecu.speed_measured at 50 s",
+    }
+
+
+def test_a_fit_that_says_nothing_is_refused():
+    """A sweep of 0.2 % of throttle drowns in a bus signal of whole km/h."""
+    task = IdentificationSpec(
+        input="ecu.throttle_request", output="ecu.speed_measured", amplitude=1.5, at_input=[29.0], **SHORT
+    )
+    with pytest.raises(RunError, match=r"no gain and no pole: (coherence|the 95 % interval)|does not answer"):
+        identify("scooter", task)
