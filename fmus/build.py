@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import re
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
@@ -46,12 +47,27 @@ _SLAVE = '''\
 """pythonfmu imports this module by its name and, for every instance, runs its text once more."""
 
 import ctypes
+import sys
 
-from {identity}.entry import {name}
+_PYTHON = "%d.%d.%d in %s" % (sys.version_info[0], sys.version_info[1], sys.version_info[2], sys.prefix)
+if sys.version_info < {python}:
+    raise ImportError("{name}.fmu needs Python {least} or newer; this importer runs Python " + _PYTHON)
+try:
+{needed}
+    from {identity}.entry import {name}
+except ImportError as error:
+    raise ImportError(
+        "{name}.fmu needs a Python package that Python %s does not have (%s); pip installs it there"
+        % (_PYTHON, error)
+    )
 
 # For every instance, pythonfmu also gives up a reference to this module's globals that it does not own.
 ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 '''
+
+_PYTHON = (3, 11)
+_PACKAGES = ("numpy", "scipy")
+"""The packages beside Python's own that a model of ours imports, some of them in a function only."""
 
 
 class Recipe(NamedTuple):
@@ -182,7 +198,15 @@ def _resources(recipe: Recipe) -> dict[str, bytes]:
     embedded = {source.module for source in recipe.sources}
     # All modules are imported at once: a folder that was unpacked for the first instance may be gone later.
     imports = "\n".join(f"from . import {m}" if "." not in m else _import_line(m) for m in sorted(embedded))
-    fields = {"name": recipe.name, "identity": package, "module": recipe.module, "imports": imports}
+    fields = {
+        "name": recipe.name,
+        "identity": package,
+        "module": recipe.module,
+        "imports": imports,
+        "python": repr(_PYTHON),
+        "least": ".".join(map(str, _PYTHON)),
+        "needed": "\n".join(f"    import {p}" for p in _needed(recipe)) or "    pass",
+    }
     files = {
         "slavemodule.txt": f"{package}_slave\n".encode(),
         f"{package}_slave.py": _SLAVE.format(**fields).encode(),
@@ -196,6 +220,12 @@ def _resources(recipe: Recipe) -> dict[str, bytes]:
     for file, content in runtime.python_files().items():
         files[f"{package}/pythonfmu/{file}"] = content
     return files
+
+
+def _needed(recipe: Recipe) -> list[str]:
+    """Return which of `_PACKAGES` the sources import, wherever that stands in them."""
+    text = b"\n".join(source.content for source in recipe.sources).decode()
+    return [p for p in _PACKAGES if re.search(rf"^\s*(import|from) {p}\b", text, re.MULTILINE)]
 
 
 def _import_line(module: str) -> str:

@@ -10,7 +10,8 @@
 Errors. Every entry point catches whatever the model raises. pythonfmu can return three statuses only:
 - do_step that fails logs a message of status Error (category `logStatusError`) with type and text of the
   exception and the place it was raised, leaves state and outputs as they were, and returns Discard; the
-  native library then also answers fmi2Terminated = true.
+  native library then also answers fmi2Terminated = true. A step that is not finite and longer than 0, and one
+  after fmi2Terminate, fail.
 - any other call that fails ends Fatal, and the native library writes the message. A message in the queue
   would reach the importer's logger while the exception is still set: an importer in Python loses it ("unknown
   error", measured), and any call of the logger may fail because of it.
@@ -29,6 +30,7 @@ Relative imports only: this file also runs inside FMUs, in a package of another 
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
@@ -36,7 +38,7 @@ from typing import Any, ClassVar
 from ..models.base import Model, violations
 from .accessors import Accessors, misfit
 from .messages import Refused, SlaveError, message, told
-from .native import hold, leave_search_path, settle_at_exit
+from .native import give_back_interrupts, hold, leave_search_path, settle_at_exit
 from .snapshot import Snapshot, from_bytes, to_bytes
 
 _WARNING, _ERROR = 1, 3  # fmi2Status
@@ -51,6 +53,7 @@ class ModelSlave:
     # Python finds slots and attributes of the instance ten times faster than those of its class
     __slots__ = (
         "_access",
+        "_ended",
         "_feeds_through",
         "_follows_inputs",
         "_given",
@@ -97,6 +100,7 @@ class ModelSlave:
         super().__init__(**kwargs)
         leave_search_path(self.resources)
         settle_at_exit(self.resources, type(self).__name__)
+        give_back_interrupts()
         self._access = access = self._accessors
         self._step, self._outputs = self.model.step, self.model.outputs
         self._notice, self._noticed = self.model.notice, set[str]()
@@ -109,7 +113,7 @@ class ModelSlave:
         self._parameters: Any = None
         self._inputs: Any = None
         self._state: Any = None
-        self._started = False
+        self._started = self._ended = False
         self._stale = True  # outputs (and before the start the state) do not belong to the inputs
         self._living.add(self)
 
@@ -127,11 +131,19 @@ class ModelSlave:
         except BaseException as error:
             raise self._failure("fmi2ExitInitializationMode", error) from None
 
+    def terminate(self) -> None:
+        """Take no step any more (fmi2Terminate)."""
+        self._ended = True
+
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Advance by step_size [s] (fmi2DoStep); return True for OK, False for Discard."""
         try:
             if not self._started:
                 raise Refused("the initialization mode has not been left")
+            if self._ended:
+                raise Refused("it was terminated")
+            if not 0.0 < step_size < math.inf:
+                raise Refused(f"the step is {step_size} s: it must be finite and longer than 0")
             if self._timed:
                 self._set_time(current_time)
             u = self._inputs
@@ -307,7 +319,7 @@ class ModelSlave:
             settings, given, shown, self._time = snapshot.values
             self._settings, self._given, self._shown = list(settings), list(given), list(shown)
             self._state = snapshot.state
-            self._started = snapshot.started
+            self._started, self._ended = snapshot.started, False
             self._stale = snapshot.stale
             self._inputs = None
             self._parameters = self._derive_parameters()
