@@ -116,6 +116,7 @@ def write(path: Path, content: bytes, mode: int = 0o666) -> Path:
 
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, draft = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    _unfinished.add(Path(draft))
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
@@ -129,7 +130,23 @@ def write(path: Path, content: bytes, mode: int = 0o666) -> Path:
     except BaseException:
         Path(draft).unlink(missing_ok=True)
         raise
+    finally:
+        _unfinished.discard(Path(draft))
     return path
+
+
+_unfinished: set[Path] = set()
+
+
+def take_away() -> None:
+    """Remove half-written files and the folder that is deleted at exit, before the process ends at once."""
+    import shutil
+
+    for path in list(_unfinished):
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
 
 
 _DAMAGED = "is damaged: its digest is not the one with which it was kept"
@@ -238,6 +255,7 @@ def _temporary(reason: str) -> Path:
     import tempfile
 
     path = Path(tempfile.mkdtemp(prefix="evcosim-"))
+    _unfinished.add(path)
     atexit.register(shutil.rmtree, path, ignore_errors=True)
     print(f"evcosim: {reason}; FMUs are built into {path} for this run", file=sys.stderr)
     return path

@@ -34,6 +34,7 @@ class KeptRun:
             self.folder.begin(about, plan.columns)
             engine.store.keep_in(self.folder.rows, rows_file.head(plan.clock, plan.columns, about))
             self._keeper = RowKeeper(engine)
+            self.folder.saver = self._keeper.save_all
         except BaseException:
             if self._fills:
                 self.folder.release()

@@ -12,14 +12,14 @@ import datetime
 import json
 import os
 import socket
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..errors import ConfigError
 from ..writing import remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
-from .manifest import manifest_text, write_manifest
+from .manifest import manifest_text, read_manifest, write_manifest
 from .results import CSV_NAME, Results
 from .rows_file import ROWS_NAME
 from .variable import ResultVariable
@@ -33,6 +33,25 @@ FILES = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
 
 class RunFolder(FolderLock):
     """The locked folder of a run, with its files from the begin to the end."""
+
+    saver: Callable[[], int] | None = None
+    """Saves the rows of the run up to now at once, in any thread, and returns their number."""
+
+    def rescue(self, words: str) -> str:
+        """Save the rows of a process that ends at once, and return what to say of them.
+
+        run.json says that it was interrupted.
+        """
+        if (self.path / CSV_NAME).exists():
+            return f"; results.csv is in {self.path}"
+        count = self.saver() if self.saver is not None else 0
+        about, variables = read_manifest(self.path / MANIFEST_NAME)
+        about |= {"status": "interrupted", "steps": count}
+        write_manifest(self.path / MANIFEST_NAME, about, variables.values())
+        if not count:
+            return f"; no row was saved in {self.path}"
+        recover = f"evcosim results recover {self.path}"
+        return f"; {count} rows are in {self.rows}, and {recover} makes results.csv of them"
 
     def __fspath__(self) -> str:
         return os.fspath(self.path)

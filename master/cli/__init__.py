@@ -6,13 +6,13 @@
     completion  the names that the Tab key offers
     failures    every error as plain text on stderr, and the exit code
     console     tables, JSON and the progress bar
-    interrupts  Ctrl-C while units are stepping
+    interrupts  Ctrl-C, SIGTERM and SIGHUP, whatever the command is doing
     outputs     the folder of a run
     summary     the summary of a run at its end
 
-Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C; 141 the
-reader of the output has gone. Verb modules import heavy packages inside their functions, so that
-`evcosim --help` answers at once.
+Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C, 143 by
+SIGTERM, 129 by SIGHUP; 141 the reader of the output has gone. Verb modules import heavy packages inside their
+functions, so that `evcosim --help` answers at once.
 """
 
 from __future__ import annotations
@@ -22,6 +22,18 @@ from collections.abc import Sequence
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (default: that of the process) and return the exit code."""
+    if arguments is None:  # the process is ours
+        from . import interrupts
+
+        interrupts.install()  # before anything that takes time
+        try:
+            return _main(None)
+        finally:
+            interrupts.leave()
+    return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     import os
     import sys
 
@@ -31,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from .failures import guarded, open_closed_streams
 
     open_closed_streams()
-    if arguments is None:  # the process is ours
+    if arguments is None:
         if instruction := os.environ.get(completion.VARIABLE):
             return completion.completed(command(), instruction)
         crash.enable()

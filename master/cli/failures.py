@@ -9,9 +9,11 @@ from typing import Any
 
 import typer
 
+from . import interrupts
+
 _SCREEN = 20  # lines of a message at most
 
-FAILED, WRONG_USE, INTERRUPTED, BROKEN_PIPE = 1, 2, 130, 141
+FAILED, WRONG_USE, BROKEN_PIPE = 1, 2, 141
 
 
 def guarded(command: Any, arguments: Sequence[str]) -> int:
@@ -29,10 +31,12 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
     except BrokenPipeError:
         _forget_stdout()
         return BROKEN_PIPE
-    except (KeyboardInterrupt, typer.Abort):
-        complain("interrupted")
-        return INTERRUPTED
+    except (KeyboardInterrupt, typer.Abort) as error:
+        interrupts.wait_if_ending()
+        complain(interrupts.words(interrupts.exit_code(error) - 128))
+        return interrupts.exit_code(error)
     except Exception as error:  # the last line of defense: a plain message, --debug for the traceback
+        interrupts.wait_if_ending()  # it took away what the command needs
         if debug:
             import traceback
 

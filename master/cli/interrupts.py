@@ -1,66 +1,182 @@
-"""Ctrl-C while units are stepping: the first is noted and looked at between steps, the second ends at once.
+"""Signals that end a command: Ctrl-C (SIGINT), SIGTERM and SIGHUP, whatever it is doing.
 
-Python would raise KeyboardInterrupt wherever it happens to be, which can be inside a model that runs on
-pythonfmu: its native library turns that into a failed step. Python's own handler also waits for a native
-step to end; the thread here does not, since the signal writes into a socket by itself. While the master waits
-for a unit in a process of its own, the first one breaks the wait off.
+Python would raise KeyboardInterrupt wherever it happens to be: in an import, which takes it for a missing
+module, in a `finally`, in a model that runs on pythonfmu, whose native library makes a failed step of it. And
+it would wait for the end of whatever native code is running. So nothing is raised here:
+
+- Where nothing is to be kept, the handler takes away temporary folders, half-written files and children, and
+  ends the process with 128 + signal. A thread, which the signal wakes by itself, does it where Python does
+  not come to the handler in time.
+- While a run has rows to keep (`Interrupts`), the signal is noted, and `check` raises it between two steps.
+  The run has PATIENCE to write its results; then, or at a second signal, the thread saves the rows as they
+  are and ends the process. While the master waits for a unit in a process of its own, the wait is broken off.
+
+A signal that is ignored at the start stays ignored (nohup). A program that uses evcosim as a library handles
+signals by itself: only the command line calls `install`.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
+import select
 import signal
-import socket
+import sys
 import threading
+import time
+from collections.abc import Callable
 from types import FrameType, TracebackType
-from typing import Any
+from typing import NoReturn
 
 from ..isolation.waiting import waits
-from .failures import INTERRUPTED
+
+PATIENCE = 0.7  # s that the end of a run may take
+_GRACE = 0.25  # s until the thread ends a process whose handler has not come
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal that ends the command; `number` is the signal's."""
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__()
+        self.number = int(number)
+
+
+def exit_code(error: BaseException) -> int:
+    """Return the exit code of a command that a signal has ended: 128 + its number."""
+    return 128 + int(getattr(error, "number", signal.SIGINT))
+
+
+def words(number: int) -> str:
+    """Return what is said of a command that a signal has ended."""
+    return "interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}"
+
+
+class _State:
+    """The signals of this process: `number` is the first one that came (0: none)."""
+
+    def __init__(self) -> None:
+        self.handled: list[int] = []
+        self.number = 0
+        self.keeping = False
+        self.rescue: Callable[[str], str] | None = None
+        self.said = ""
+        self.ending = threading.Lock()  # whoever has it ends the process
+
+
+_state = _State()
+
+
+def install() -> None:
+    """Handle the signals from now on, all but those that are ignored. The process is the command's own."""
+    for name in _NAMES:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _handle)
+            _state.handled.append(int(number))
+    if os.name == "posix":  # Windows has no wake-up by a pipe: there the handler alone does it
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+        threading.Thread(target=_watch, args=(reader,), name="evcosim signals", daemon=True).start()
+
+
+def leave() -> None:
+    """Ignore the signals from now on: the command has done all, and its exit code stands."""
+    for number in _state.handled:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def wait_if_ending() -> None:
+    """Wait for the end of the process, where a thread is ending it."""
+    while _state.ending.locked():
+        time.sleep(1.0)
+
+
+def _handle(number: int, frame: FrameType | None) -> None:
+    if not _state.number:
+        _state.number = number
+    if not _state.keeping:
+        _end()
+    elif waits():
+        raise Interrupted(_state.number)
+
+
+def _watch(reader: int) -> None:
+    """Wait for signals, and end the process where its main thread does not do it in time."""
+    seen, deadline = 0, 0.0
+    while True:
+        ready = select.select([reader], [], [], max(0.0, deadline - time.monotonic()) if seen else None)[0]
+        if ready:
+            for number in os.read(reader, 16):
+                if number in _state.handled:
+                    seen += 1
+                    _state.number = _state.number or number
+                    if seen == 1:
+                        deadline = time.monotonic() + (PATIENCE if _state.keeping else _GRACE)
+        if seen > 1 or (seen and time.monotonic() >= deadline):
+            _end()
+
+
+def _end() -> NoReturn:
+    """End the process: save the rows, take away what it would leave, say why."""
+    if not _state.ending.acquire(blocking=False):
+        while True:  # another thread does it
+            time.sleep(1.0)
+    said = _state.said
+    if _state.keeping and _state.rescue is not None:
+        with contextlib.suppress(Exception):  # whatever fails, the process ends
+            said = _state.rescue(words(_state.number))
+    for module in ("evcosim.cosim.leftovers", "evcosim.fmus.cache"):
+        take_away = getattr(sys.modules.get(module), "take_away", None)  # None while it is being imported
+        if take_away is not None:
+            with contextlib.suppress(Exception):  # as above
+                take_away()
+    cursor = "\r\x1b[K\x1b[?25h" if _is_terminal() else ""  # a progress bar hides it
+    text = f"{cursor}evcosim: {words(_state.number)}{said}\n"
+    with contextlib.suppress(OSError):
+        os.write(2, text.encode("utf-8", "replace"))
+    os._exit(128 + _state.number)
+
+
+def _is_terminal() -> bool:
+    with contextlib.suppress(OSError):
+        return os.isatty(2)
+    return False
 
 
 class Interrupts:
-    """A `with` block in which Ctrl-C is noted, and `check` raises KeyboardInterrupt after it.
+    """A `with` block in which a signal is noted, and `check` raises Interrupted after it.
 
-    Outside the main thread, where Python allows no signal handlers, it does nothing.
+    `rescue` saves what is there, when the process ends at once all the same; it is given the words for the
+    signal and returns what to say beyond them.
     """
 
-    def __init__(self) -> None:
-        self._count = 0
-        self._active = threading.current_thread() is threading.main_thread()
+    def __init__(self, rescue: Callable[[str], str] | None = None) -> None:
+        self._rescue = rescue
+
+    @property
+    def number(self) -> int:
+        """The signal that was noted; 0: none."""
+        return _state.number
 
     def check(self) -> None:
-        """Raise KeyboardInterrupt if Ctrl-C was noted."""
-        if self._count:
-            raise KeyboardInterrupt
+        """Raise Interrupted if a signal was noted."""
+        if _state.number:
+            raise Interrupted(_state.number)
 
     def __enter__(self) -> Interrupts:
-        if self._active:
-            self._reader, self._writer = socket.socketpair()
-            self._writer.setblocking(False)
-            self._handler: Any = signal.signal(signal.SIGINT, self._note)
-            self._wakeup = signal.set_wakeup_fd(self._writer.fileno())
-            threading.Thread(target=self._watch, args=(self._reader,), daemon=True).start()
+        _state.rescue = self._rescue
+        _state.keeping = True
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._active:
-            signal.set_wakeup_fd(self._wakeup)
-            signal.signal(signal.SIGINT, self._handler)
-            self._writer.close()  # the thread reads the end of the stream and returns
+        _state.keeping = False
 
-    def _note(self, number: int, frame: FrameType | None) -> None:
-        self._count += 1
-        if waits():
-            raise KeyboardInterrupt
 
-    @staticmethod
-    def _watch(reader: socket.socket) -> None:
-        seen = 0
-        with reader:
-            while received := reader.recv(16):
-                seen += received.count(signal.SIGINT)
-                if seen > 1:
-                    os._exit(INTERRUPTED)
+def say(text: str) -> None:
+    """Set what is said beyond the words for a signal that comes from now on."""
+    _state.said = text

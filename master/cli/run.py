@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -81,65 +82,67 @@ class FinishedRun:
 def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
     from . import summary
     from .console import print_json
-    from .failures import FAILED, INTERRUPTED, complain
+    from .failures import FAILED, complain
+    from .interrupts import exit_code
 
-    finished = _run(order)
-    with finished.folder:
-        _evaluate(finished)
-        _write(finished, order)
+    with contextlib.ExitStack() as keeping:
+        finished, interrupts = _run(order, keeping)
+        with finished.folder:
+            _evaluate(finished)
+            _write(finished, order, interrupts, keeping)
     if as_json:
         print_json(summary.as_data(finished))
     for remark in finished.remarks if as_json or quiet else ():
         complain(f"warning: {remark}")
     if finished.error is not None:
         complain(summary.of_failure(finished))
-        return INTERRUPTED if isinstance(finished.error, KeyboardInterrupt) else FAILED
+        return exit_code(finished.error) if isinstance(finished.error, KeyboardInterrupt) else FAILED
     if not (as_json or quiet):
         summary.show(finished)
     return 0
 
 
-def _run(order: Order) -> FinishedRun:
-    """Prepare everything, then step.
+def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Interrupts]:
+    """Prepare everything, then step; `keeping` is left when the results are written.
 
-    An error in the steps, or Ctrl-C, is kept in the finished run; one before the run has a folder is raised.
+    An error in the steps, or a signal, is kept in the finished run. Before the run has a folder, an error is
+    raised, and a signal ends the process.
     """
     from ...cosim.errors import ConfigError, RunError
     from ..simulation import Simulation
-    from .interrupts import Interrupts
+    from .interrupts import Interrupted, Interrupts
     from .outputs import default_folder, run_folder, suffix_of
 
     if order.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
-    folder: RunFolder | None = None
-    remarks: list[str] = []
-    with Interrupts() as interrupts:
-        simulation = Simulation(
-            order.system,
-            order.scenario,
-            log_frames=order.can_log,
-            profile=order.profile,
-            to_stop=True,
-            **order.options,
-        )
+    simulation = Simulation(
+        order.system,
+        order.scenario,
+        log_frames=order.can_log,
+        profile=order.profile,
+        to_stop=True,
+        **order.options,
+    )
+    with contextlib.ExitStack() as running:
+        running.enter_context(simulation)
+        named = default_folder(simulation.system.file.name, simulation.scenario.name)
+        suffix = suffix_of(order.options, order.scenario if order.output else None)
+        about = simulation.manifest()
+        folder, remarks = run_folder(order.output or named, about, suffix, order.replace)
+        interrupts = keeping.enter_context(Interrupts(folder.rescue))
         try:
-            with simulation:
-                interrupts.check()
-                named = default_folder(simulation.system.file.name, simulation.scenario.name)
-                suffix = suffix_of(order.options, order.scenario if order.output else None)
-                about = simulation.manifest()
-                folder, remarks = run_folder(order.output or named, about, suffix, order.replace)
+            with running.pop_all():
                 simulation.keep_in(folder)
                 _step(simulation, interrupts, order.bar)
         except (RunError, KeyboardInterrupt) as failure:
-            if folder is None:
-                raise
-            error = failure
-    assert folder is not None  # without one there was an error
-    return FinishedRun(
-        simulation, folder, simulation.results, error, remarks=[*remarks, *simulation.warnings]
-    )
+            # a signal that everybody got may have ended a unit as well
+            error = Interrupted(interrupts.number) if interrupts.number else failure
+        except BaseException:
+            folder.release()
+            raise
+    remarks += simulation.warnings
+    return FinishedRun(simulation, folder, simulation.results, error, remarks=remarks), interrupts
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
@@ -169,25 +172,32 @@ def _evaluate(finished: FinishedRun) -> None:
     ended(finished.results, True, finished.error)
 
 
-def _write(finished: FinishedRun, order: Order) -> None:
+def _write(
+    finished: FinishedRun, order: Order, interrupts: Interrupts, keeping: contextlib.ExitStack
+) -> None:
+    """Write results, CAN logs and, unless a signal came, the figure. Raises RunError naming what is there."""
     from ...cosim.errors import ConfigError, RunError
-    from .outputs import write_results
+    from .interrupts import Interrupted, say
+    from .outputs import write_figure, write_results
 
     folder = finished.folder
     finished.files += write_results(folder, finished.results)
     try:
-        _write_the_rest(finished, order)
+        _write_logs(finished, order)
+        say(f"; in {folder.path}: {', '.join(finished.files)}")
+        keeping.close()
+        if interrupts.number:
+            finished.error = finished.error or Interrupted(interrupts.number)
+        elif order.figure and len(finished.results) > 1:
+            finished.files += write_figure(folder.path, finished.results)
     except ConfigError as error:
         raise RunError(f"{error}\nin {folder.path}: {', '.join(finished.files)}") from error
 
 
-def _write_the_rest(finished: FinishedRun, order: Order) -> None:
-    from .outputs import write_can_logs, write_figure
+def _write_logs(finished: FinishedRun, order: Order) -> None:
+    from .outputs import write_can_logs
 
-    simulation, folder, results = finished.simulation, finished.folder.path, finished.results
-    if order.can_log and not simulation.plan.messages:
+    if order.can_log and not finished.simulation.plan.messages:
         finished.remarks.append("no CAN log: no connection of the system is over a bus")
     elif order.can_log:
-        finished.files += write_can_logs(folder, simulation)
-    if order.figure and len(results) > 1:
-        finished.files += write_figure(folder, results)
+        finished.files += write_can_logs(finished.folder.path, finished.simulation)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
+from . import interrupts
 from .console import number, print_fields, print_table
 
 if TYPE_CHECKING:
@@ -73,7 +74,8 @@ def of_failure(finished: FinishedRun) -> str:
     """Return the reason why a run failed or was interrupted, and the place of its recorded rows."""
     results = finished.results
     if isinstance(finished.error, KeyboardInterrupt):
-        why = f"interrupted at t = {number(finished.simulation.time)} s"
+        words = interrupts.words(interrupts.exit_code(finished.error) - 128)
+        why = f"{words} at t = {number(finished.simulation.time)} s"
     else:
         why = str(finished.error)
     kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"

@@ -38,6 +38,17 @@ class RowKeeper:
         self._over.set()
         self._thread.join()
 
+    def save_all(self) -> int:
+        """Save the rows up to now, those of a chunk under way too, and return their number. Raises RunError.
+
+        The process ends then, whatever its other threads are doing.
+        """
+        engine = self._engine
+        before = len(engine.store)
+        rows = None if engine.whole else engine.rows_under_way()
+        engine.store.save(rows, before)
+        return max(before + (0 if rows is None else len(rows)), len(engine.store))
+
     def _watch(self) -> None:
         while not self._over.wait(LOOK):
             try:

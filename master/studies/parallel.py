@@ -224,11 +224,11 @@ def _ending(code: int | None) -> str:
 
 @contextlib.contextmanager
 def _without_ctrl_c() -> Iterator[None]:
-    """Block Ctrl-C within: a process started here never sees it, this one receives it at the end."""
+    """Block Ctrl-C, SIGTERM and SIGHUP within: a process started here never sees them, this one later."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows: a worker ignores it from `_serve` on
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
     try:
         yield
     finally:
@@ -243,7 +243,9 @@ def _serve(pipe: Connection, folder: str, reports_crash: bool) -> None:
 
     It `reports_crash`, as its caller does, on stderr: the stack and the unit that was called last.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # which a whole group of processes may get
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     sys.stdout = sys.stderr
     if reports_crash:
         crash.enable()

@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import io
-import tempfile
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,6 +22,7 @@ from typing import Any
 import llvmlite.binding
 import numba
 
+from ....cosim import leftovers
 from ...builtin import cache_folder, keep, kept
 from ...fmi import types
 from . import call, kernel, tables
@@ -59,12 +59,12 @@ def _name(timed: bool) -> str:
 def _through_the_cache(function: Any, name: str) -> tuple[Any, str]:
     """Return the compiled function, and why it could not be kept, or ""."""
     try:
-        with tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True) as folder:
+        with leftovers.temporary() as folder:
             if (packed := kept(name)) is not None:
                 zipfile.ZipFile(io.BytesIO(packed)).extractall(folder)
-            with _cached_in(folder):
+            with _cached_in(str(folder)):
                 made = _compiled(function, cache=True)
-            return made, "" if made.cache_hits else keep(name, _packed(Path(folder)))
+            return made, "" if made.cache_hits else keep(name, _packed(folder))
     except OSError as error:  # no temporary folder, or a full disk
         return _compiled(function, cache=False), error.strerror or str(error)
 

@@ -1,8 +1,9 @@
-"""Ctrl-C on a real process, and the progress bar on a real terminal."""
+"""Signals to a real process, and the progress bar on a real terminal."""
 
 from __future__ import annotations
 
 import os
+import random
 import signal
 import sys
 import time
@@ -10,6 +11,8 @@ import time
 import pytest
 
 from evcosim.cosim.results.results import Results
+from evcosim.master.cli import interrupts
+from support import signals
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to one process, no pty")
 
@@ -59,3 +62,75 @@ def test_no_bar_in_a_pipe(process):
     out, err = run.communicate(timeout=60)
     assert (run.returncode, err) == (0, "")
     assert "times real time" in out
+
+
+MOMENTS = random.Random(7)
+ORDERS = [("SIGINT", MOMENTS.random()) for _ in range(10)] + [
+    (name, MOMENTS.random()) for name in ("SIGTERM", "SIGHUP", "SIGKILL") for _ in range(2)
+]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="children are found in /proc")
+@pytest.mark.parametrize(("name", "share"), ORDERS)
+def test_a_signal_at_any_moment_ends_the_command_cleanly(name, share, tmp_path):
+    """`tests/support/signals.py` does it hundreds of times, with an empty cache and figures too."""
+    command = [*signals.COMMAND, "--no-plot", "--quiet"]
+    end = signals.ended(signal.Signals[name], 0.1 + 1.5 * share, tmp_path, command)
+    assert end is None or end.problems == []
+
+
+@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT", "SIGTERM"])
+def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name, process, tmp_path):
+    """As with nohup, and in a shell's background jobs."""
+    number = signal.Signals[name]
+    before = signal.signal(number, signal.SIG_IGN)
+    try:
+        run = process("run", "scooter", "-o", "out", "--no-plot")
+    finally:
+        signal.signal(number, before)
+    while not (tmp_path / "out" / "run.json").exists():
+        assert run.poll() is None
+        time.sleep(0.01)
+    run.send_signal(number)
+    run.communicate(timeout=60)
+    assert run.returncode == 0
+
+
+def test_sigterm_is_said_and_is_the_exit_code(process, tmp_path):
+    run = process("run", "scooter", "--scenario", "udds", "-o", "out", "--no-plot")
+    while not (tmp_path / "out" / "run.json").exists():
+        time.sleep(0.02)
+    run.send_signal(signal.SIGTERM)
+    err = run.communicate(timeout=30)[1]
+    assert run.returncode == 128 + signal.SIGTERM
+    assert err.startswith("evcosim: ended by SIGTERM")
+    results = Results.read(tmp_path / "out")
+    assert results.manifest["status"] == "interrupted"
+    assert results.manifest["steps"] >= len(results) - 1
+
+
+def test_a_step_that_never_ends_loses_no_row(process, system, tmp_path):
+    """One signal is enough: the rows are saved as they are after a time."""
+    run = process("run", system({"cart": "Stuck"}), "--isolation", "none", "-o", "out")
+    while not (tmp_path / "out" / "run.json").exists():
+        assert run.poll() is None
+        time.sleep(0.02)
+    time.sleep(0.3)
+    run.send_signal(signal.SIGINT)
+    err = run.communicate(timeout=10)[1]
+    assert run.returncode == 130
+    assert err.startswith(
+        "evcosim: interrupted; 10 rows are in out/results.rows, and evcosim results recover"
+    )
+    results = Results.read(tmp_path / "out")
+    assert (results.manifest["status"], results.column("cart.way").tolist()) == (
+        "interrupted",
+        [float(k) for k in range(10)],
+    )
+
+
+def test_the_words_and_the_codes_of_signals():
+    assert interrupts.exit_code(KeyboardInterrupt()) == 130
+    assert interrupts.exit_code(interrupts.Interrupted(signal.SIGTERM)) == 143
+    assert interrupts.words(signal.SIGINT) == "interrupted"
+    assert interrupts.words(signal.SIGHUP) == "ended by SIGHUP"
