@@ -118,11 +118,29 @@ def build_model(
 
     `model` is a subclass of evcosim.models.base.Model. The docstring of `sources` lists which of the user's
     files are embedded. `version` and `license` are those of the model, and are left out where empty. Raises
-    ValueError for sources that cannot be embedded and for unknown units, OSError.
+    ValueError for sources that cannot be embedded and for unknown units, OSError. The user's cache notes its
+    digest, so that evcosim runs it in its own process as it does the built-in ones.
     """
     module, file = file_of(model.__module__)
     recipe = _recipe(model.__qualname__, module, file, experiment or Experiment(), version, license)
-    return cache.write(Path(folder) / f"{recipe.name}.fmu", _content(recipe, model))
+    content = _content(recipe, model)
+    path = cache.write(Path(folder) / f"{recipe.name}.fmu", content)
+    cache.keep(_record(hashlib.sha256(content).hexdigest()), f"{recipe.name}\n".encode())
+    return path
+
+
+def is_own(digest: str) -> bool:
+    """Return True if `build_model` made the file of this SHA-256 for this user on this machine.
+
+    The record of it is in the user's cache, which is trusted as its docstring says. Without a cache that can
+    be used there is none, and the FMU counts as anybody's.
+    """
+    return cache.load(_record(digest)) is not None
+
+
+def _record(digest: str) -> str:
+    """Return the name in the cache that notes the FMU of a SHA-256 as built here."""
+    return f"built-here-{digest}"
 
 
 def _catalog_recipe(name: str) -> Recipe:

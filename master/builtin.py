@@ -59,6 +59,16 @@ def is_builtin(name: str, path: Path) -> bool:
     return built == path or built.read_bytes() == path.read_bytes()
 
 
+def is_ours(name: str, path: Path, digest: str) -> bool:
+    """Return True for a built-in FMU, and for one that this user built of a model of their own.
+
+    `name` is that of its model, `digest` the SHA-256 of its file. Nobody else's code passes for ours.
+    """
+    from ..fmus import build
+
+    return is_builtin(name, path) or build.is_own(digest)
+
+
 def build_fmu(name: str, folder: Path | None = None) -> Path:
     """Build a built-in FMU into a folder (default: the cache, anew) and return its file.
 

@@ -49,6 +49,8 @@ class Unit(Protocol):
 
     name: str
     interface: UnitInterface
+    apart: bool
+    """True for a unit in a process of its own."""
 
     @property
     def warnings(self) -> int:

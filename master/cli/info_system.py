@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 def described(name: str) -> dict[str, Any]:
     """Return the report on a system. Raises ConfigError for everything that is wrong in it."""
     from ...cosim.system.scenario import load_scenario, scenario_names
+    from ..isolation.decision import decided
 
     prepared = _whole(name)
     system, plan = prepared.system, prepared.plan
@@ -30,7 +31,8 @@ def described(name: str) -> dict[str, Any]:
         "algorithm": plan.algorithm,
         "units": [
             {"name": u.name, "fmu": u.fmu, "period": plan.clock.length(u.every),
-             "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name)}
+             "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name),
+             "isolation": decided(prepared.fmus[u.name], system.file.units[u.name], None)}
             for u in plan.units
         ],
         "connections": _connections(system, plan),
@@ -115,7 +117,7 @@ def show(about: dict[str, Any]) -> None:
         fields += [("scaled", f"{unit['name']}.{name}: {words}") for name, words in unit["scaled"].items()]
     print_fields([(name, value) for name, value in fields if value])
     print_title("Units, in the order in which they step")
-    print_table(("name", "FMU", "every [s]", "parameters"), [_unit_row(u) for u in about["units"]])
+    print_table(("name", "FMU", "every [s]", "process", "parameters"), [_unit_row(u) for u in about["units"]])
     print_title("Connections")
     print_table(("from", "to", "via"), [_connection_row(c) for c in about["connections"]])
     if about["messages"]:
@@ -134,7 +136,8 @@ def show(about: dict[str, Any]) -> None:
 def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:
     period = f"{unit['period']:g}" + (f" in {unit['substeps']} FMU steps" if unit["substeps"] > 1 else "")
     parameters = ", ".join(f"{name} = {value}" for name, value in unit["parameters"].items())
-    return (unit["name"], unit["fmu"], period, parameters)
+    process = "its own" if unit["isolation"] == "process" else "evcosim's"
+    return (unit["name"], unit["fmu"], period, process, parameters)
 
 
 def _connection_row(c: dict[str, str]) -> tuple[str, ...]:

@@ -22,6 +22,8 @@ def show(finished: FinishedRun) -> None:
         ("time", _time(finished)),
         ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
     ]
+    if isolated := [name for name, unit in manifest["units"].items() if unit["isolation"] == "process"]:
+        fields.append(("isolated", f"{', '.join(isolated)} (each in a process of its own)"))
     for i, (signal, about) in enumerate(manifest["saturations"].items()):
         times = counted(int(about["count"]), "time")
         fields.append(
@@ -47,6 +49,7 @@ def as_data(finished: FinishedRun) -> dict[str, Any]:
         "simulated_seconds": _simulated(finished),
         "real_time_factor": _factor(finished),
         "warnings": finished.remarks,
+        "isolation": {name: unit["isolation"] for name, unit in manifest["units"].items()},
         "profile": finished.simulation.profile,
         "metrics": manifest.get("metrics", {}),
         "final": results.final(),

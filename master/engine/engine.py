@@ -281,6 +281,11 @@ class Engine:
         """
         raise NotImplementedError
 
+    def is_apart(self, action: Action) -> bool:
+        """Return True for an action of a unit in a process of its own."""
+        of_unit = action.kind in ("take", "begin", "end", "publish")
+        return of_unit and self.turns[action.index].unit.apart
+
     def act(self, action: Action) -> Act:
         """Return the function that does an action of a message or a unit."""
         if action.kind in ("send", "deliver"):

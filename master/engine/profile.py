@@ -17,8 +17,17 @@ _WHAT: dict[Kind, str] = {
 }  # fmt: skip # a table
 
 
-def part_of(action: Action, plan: Plan, what: str = "") -> Part:
-    """Return the part that an action belongs to; `what` is its activity, if the engine knows it exactly."""
+_APART: dict[Kind, str] = {"begin": "send", "end": "wait"}
+"""The activity of the master where the unit is in a process of its own."""
+
+
+def part_of(action: Action, plan: Plan, what: str = "", apart: bool = False) -> Part:
+    """Return the part that an action belongs to; `what` is its activity, if the engine knows it exactly.
+
+    `apart`: its unit is in a process of its own, so that the master waits while it steps.
+    """
+    if apart:
+        what = _APART.get(action.kind, what)
     if action.kind == "drive":
         name = "stimuli"
     elif action.kind == "record":

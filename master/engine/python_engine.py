@@ -75,7 +75,7 @@ class PythonEngine(Engine):
         return self.act(action)
 
     def _timed(self, action: Action, act: Act) -> Act:
-        profile, part = self.profile, part_of(action, self.plan)
+        profile, part = self.profile, part_of(action, self.plan, apart=self.is_apart(action))
         assert profile is not None  # it is wanted
 
         def timed(k: int) -> None:

@@ -52,6 +52,7 @@ class Instance:
     Raises FmuError when the FMU cannot be run here or instantiated, UnitError when a call fails.
     """
 
+    apart = False
     fmi: str
     """The first part of the names of the C functions."""
     _true: Any = ctypes.c_int(1)

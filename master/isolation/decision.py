@@ -6,19 +6,27 @@ import os
 
 from ...cosim.errors import ConfigError
 from ...cosim.system.system import Isolation, UnitEntry
-from ..builtin import is_builtin
+from ..builtin import is_ours
 from ..fmi.fmu import Fmu
 from .process import ProcessLimits
 
 
+def decided(fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> Isolation:
+    """Return the isolation wanted for all units or for this one; else "none" for our FMUs alone:
+    the built-in ones, and those that this user built with `build_model`.
+    """
+    asked = wanted or entry.isolation
+    return asked or ("none" if is_ours(fmu.description.modelName, fmu.path, fmu.digest) else "process")
+
+
 def chosen(name: str, fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> Isolation:
-    """Return the isolation wanted for all units or for this one; else "none" for our FMUs alone.
+    """Return what `decided` does.
 
     Raises ConfigError for "process" on a system that has none: nobody else's code comes into this process
     unasked.
     """
     asked = wanted or entry.isolation
-    found = asked or ("none" if is_builtin(fmu.description.modelName, fmu.path) else "process")
+    found = decided(fmu, entry, wanted)
     if found == "process" and not available():
         why = 'isolation = "process"' if asked else f"evcosim did not build {fmu.path.name}"
         raise ConfigError(

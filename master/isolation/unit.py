@@ -34,6 +34,8 @@ class IsolatedUnit:
     Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
     """
 
+    apart = True
+
     def __init__(
         self,
         fmu: Fmu,

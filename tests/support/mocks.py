@@ -50,6 +50,7 @@ class MockUnit:
         self._step, self._through = step, through
         self.steps: list[tuple[float, float]] = []
         self.log: list[str] = []
+        self.apart = False
         self.warnings = 0
         self.warned: list[str] = []
 

@@ -122,7 +122,7 @@ class Program:
             what = ""
             if action.kind == "begin" and kind != L.PYTHON_ACT:
                 what = "step" if kind == L.STEP else "set"
-            found.append(part_of(action, self._engine.plan, what))
+            found.append(part_of(action, self._engine.plan, what, self._engine.is_apart(action)))
         return found
 
     def units_of(self, places: list[int]) -> list[Unit | None]:

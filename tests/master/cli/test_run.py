@@ -63,3 +63,11 @@ def test_results_name_own_files(evcosim, system, tmp_path):
     path = system({"cart": "Fragile"}, stop_time=0.1)
     evcosim("run", path, "--no-plot", "-q", "-o", "out")
     assert Results.read(tmp_path / "out").manifest["files"] == {"system": str(path)}
+
+
+def test_the_units_in_processes_of_their_own_are_named(evcosim):
+    apart = evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "--isolation", "process")
+    assert "isolated" in apart.out and "(each in a process of its own)" in apart.out
+    assert "isolated" not in evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "here").out
+    units = evcosim("info", "scooter", "--json").json["units"]
+    assert {unit["isolation"] for unit in units} == {"none"}

@@ -54,3 +54,12 @@ def test_the_last_rows_are_the_rest_and_the_total():
 
 def test_no_step_takes_no_time():
     assert Profile().rows(0.0, 0) == [("master", "between", 0.0, 0.0, 0.0), ("total", "", 0.0, 0.0, 0.0)]
+
+
+@pytest.mark.parametrize("engine", ["compiled", "python"])
+def test_the_time_for_which_the_master_waits_is_called_so(engine):
+    with Simulation("scooter", stop_time=0.2, engine=engine, isolation="process", profile=True) as simulation:
+        simulation.run()
+        named = {(row["name"], row["what"]) for row in simulation.profile}
+    assert {("vehicle", "wait"), ("vehicle", "send")} <= named
+    assert not {("vehicle", "step"), ("vehicle", "set and step")} & named

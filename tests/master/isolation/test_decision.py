@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,13 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.system import Isolation, UnitEntry
+from evcosim.fmus.build import build_model
 from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmu import read_fmu
 from evcosim.master.isolation import decision
 from evcosim.master.isolation.decision import chosen, process_limits
 from evcosim.master.simulation import simulate
+from evcosim.models.rider import Rider
 from support.c_fmu import mixed_fmu
 from support.pairs import pair
 
@@ -62,3 +65,48 @@ def test_a_copy_of_a_built_in_fmu_is_ours_and_a_changed_one_is_not(tmp_path: Pat
 def test_the_limits_are_those_of_the_entry() -> None:
     limits = process_limits(entry(memory_limit=1e9, file_limit=2e6, load_timeout=3.0, step_timeout=4.0))
     assert (limits.memory, limits.file, limits.loading, limits.step) == (1e9, 2e6, 3.0, 4.0)
+
+
+def own_fmu(folder: Path) -> Path:
+    """A file of a model of one's own: the built-in rider as `build_model` builds it."""
+    return build_model(Rider, folder, version="of my own")
+
+
+def test_an_fmu_that_was_built_here_is_ours_as_long_as_it_and_its_record_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    path = own_fmu(tmp_path)
+    assert chosen("a", read_fmu(path), entry(), None) == "none"
+    copy = tmp_path / "copy.fmu"
+    copy.write_bytes(path.read_bytes())
+    assert chosen("a", read_fmu(copy), entry(), None) == "none"
+    copy.write_bytes(path.read_bytes()[:-2] + b"\1\0?")
+    assert chosen("a", read_fmu(copy), entry(), None) == "process"
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "of somebody else"))
+    assert chosen("a", read_fmu(path), entry(), None) == "process"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no modes that say who can write")
+def test_a_record_that_others_can_write_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    path = own_fmu(tmp_path)
+    (record,) = (tmp_path / "cache").glob("built-here-*")
+    os.chmod(record, 0o666)
+    assert chosen("a", read_fmu(path), entry(), None) == "process"
+    own_fmu(tmp_path)
+    assert chosen("a", read_fmu(path), entry(), None) == "none"
+    os.chmod(tmp_path / "cache", 0o777)
+    assert chosen("a", read_fmu(path), entry(), None) == "process"
+
+
+def test_an_own_fmu_runs_the_same_in_both_ways_and_the_run_says_which(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    path = own_fmu(tmp_path)
+    here = simulate("scooter", "ece15", stop_time=5.0, fmus={"rider": path})
+    apart = simulate("scooter", "ece15", stop_time=5.0, fmus={"rider": path}, isolation="process")
+    assert here.manifest["units"]["rider"]["isolation"] == "none"
+    assert apart.manifest["units"]["rider"]["isolation"] == "process"
+    assert here.data.tobytes() == apart.data.tobytes()
