@@ -25,6 +25,7 @@ class VariableInfo:
     `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
     `inverted`: the system's value is the FMU's with the other sign.
     `scaling` is the map of a value on its way between the two, beside the sign.
+    `sampled`: an output that the unit computes at t_k from the inputs at t_k, and that holds from t_k on.
     `difference`: it is one of two absolute quantities (FMI: relativeQuantity), so that no offset converts it.
     """
 
@@ -43,6 +44,7 @@ class VariableInfo:
     declared: str = ""
     inverted: bool = False
     difference: bool = False
+    sampled: bool = False
     scaling: Affine = Affine()  # noqa: RUF009 - Affine is frozen, so a shared default is safe
 
     @property
@@ -70,13 +72,16 @@ class UnitInterface:
     """The variables of a unit by name, and the units of measure that it defines by name.
 
     `place` names the file of the description for error messages. `unusable` are declared variables that
-    cannot be used, with the reason.
+    cannot be used, with the reason. `tells_sampled`: the description says which outputs are sampled; `ours`:
+    evcosim built the FMU.
     """
 
     place: str
     variables: dict[str, VariableInfo]
     units_of_measure: dict[str, UnitOfMeasure] = dataclasses.field(default_factory=dict)
     unusable: dict[str, str] = dataclasses.field(default_factory=dict)
+    tells_sampled: bool = False
+    ours: bool = False
 
     def of_causality(self, *causalities: str) -> tuple[VariableInfo, ...]:
         """Return the variables of these causalities, in declared order."""

@@ -68,6 +68,7 @@ def describe(model: type[Model], origin: Origin, experiment: Experiment) -> byte
         stopTime=repr(experiment.stop_time),
         stepSize=repr(experiment.step_size),
     )
+    _sampled(root, model, variables)
     listed = SubElement(root, "ModelVariables")
     for entry in variables:
         listed.append(_scalar_variable(entry, model.sampled))
@@ -81,6 +82,17 @@ def headline(described: type) -> str:
     """Return the first line of a class's own docstring, without code marks."""
     text = inspect.cleandoc(described.__doc__ or "") or described.__name__
     return text.splitlines()[0].replace("`", "")
+
+
+def _sampled(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
+    """Add the annotation that names the outputs which hold from the time of their inputs on."""
+    held = [
+        entry.variable.name
+        for entry in variables
+        if entry.causality == "output" and _variability(entry, model.sampled) == "discrete"
+    ]
+    tool = SubElement(SubElement(root, "VendorAnnotations"), "Tool", name="evcosim")
+    SubElement(tool, "Sampled", outputs=" ".join(held))
 
 
 def _units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:

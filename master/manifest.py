@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..cosim.plan.unit_plan import UnitPlan
+from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
 from ..cosim.system.toml import data_file, is_built_in
@@ -81,6 +82,7 @@ def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str,
         "parameters": unit.parameters,
         "period": prepared.plan.clock.length(unit.every),
         "substeps": unit.substeps,
+        "sampled": list(sampled_in(unit.interface)),
         "interface": fmu.interface_type,
         "tolerance": tolerance,
         "tolerance_from": origin,

@@ -14,6 +14,7 @@ from ..cosim.plan.plan import Plan
 from ..cosim.plan.resolve import participating, resolve
 from ..cosim.swap.mapping import present, without_absent, without_untaken
 from ..cosim.swap.requirements import lacking
+from ..cosim.swap.sampled import inherited, sampled_in, told, untold
 from ..cosim.swap.swap_file import swapped
 from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
@@ -52,13 +53,15 @@ def prepare(
     _check_one_fmu(swaps, fmus)
     # the files: system and scenario, with varied buses and swapped units, without absent variables
     read, driven = _files(system, scenario, options)
+    original = read
     read, driven, left_out = without_absent(swapped(read, swaps), driven)
     # the FMUs, and the interfaces that they present to the system
     loaded = _read_fmus(read, driven, fmus, options.get("strict", False), runnable)
-    interfaces = {
-        unit: present(fmu.interface, read.file.units[unit], read.keys_of(unit))
-        for unit, fmu in loaded.items()
-    }
+    interfaces, sampling = {}, []
+    for unit, fmu in loaded.items():
+        interface = present(fmu.interface, read.file.units[unit], read.keys_of(unit))
+        interfaces[unit], said = _sampled(read, original, unit, interface, unit in fmus)
+        sampling += said
     for unit, interface in interfaces.items():
         _check_absent(read, unit, interface)
     for unit, path in swaps.items():
@@ -68,10 +71,36 @@ def prepare(
     read, untaken = without_untaken(read, interfaces)
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
-    plan = dataclasses.replace(plan, warnings=(*left_out, *untaken, *plan.warnings))
+    plan = dataclasses.replace(plan, warnings=(*left_out, *untaken, *sampling, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)
+
+
+def _sampled(
+    system: System, original: System, unit: str, interface: UnitInterface, put_in: bool
+) -> tuple[UnitInterface, list[str]]:
+    """Return the interface with its sampled outputs, and sentences about them.
+
+    They are what the unit's key says, what the FMU tells, or those of the place in the `original` system that
+    a swap file, or an FMU that is `put_in`, takes.
+    """
+    wanted = system.file.units[unit].sampled
+    if wanted is not None and not put_in:
+        return told(interface, unit, wanted, system.keys_of(unit)), []
+    if (put_in or unit in system.swaps) and not interface.tells_sampled:
+        return inherited(interface, unit, sampled_in(of_place(original, unit)))
+    return interface, untold(unit, interface)
+
+
+def of_place(system: System, unit: str) -> UnitInterface:
+    """Return the interface of the FMU that a system has for a unit; an empty one where it is not there."""
+    entry, keys = system.file.units[unit], system.keys_of(unit)
+    try:
+        interface = present(read_fmu(fmu_file(entry.fmu, system.path)).interface, entry, keys)
+    except ConfigError:  # the place of an FMU that is not there is taken by another one
+        return UnitInterface(entry.fmu, {})
+    return interface if entry.sampled is None else told(interface, unit, entry.sampled, keys)
 
 
 def _check_one_fmu(swaps: Mapping[str, str | Path], fmus: Mapping[str, str | Path]) -> None:

@@ -106,7 +106,7 @@ class Unit(Protocol):
         """Wait until the steps that were begun are done."""
 
     def get_outputs(self) -> None:
-        """Read the discrete outputs into their slots, the continuous ones into their latest slots."""
+        """Read the sampled outputs into their slots, the others into their latest slots."""
 
     def terminate(self) -> None:
         """End the run orderly."""

@@ -294,8 +294,7 @@ def _message(
 ) -> MessagePlan:
     """Return the plan of one message. Raises ConfigError when its times are no multiples of the step.
 
-    Under `gauss_seidel` it is sent after the last of its senders, by `order`, with an output that is not
-    continuous.
+    Under `gauss_seidel` it is sent after the last of its senders, by `order`, with a sampled output.
     """
     message = work.databases[bus].require(name)
     settings = work.system.file.buses[bus]
@@ -310,7 +309,7 @@ def _message(
         sampled = [
             order.index(unit)
             for unit, variable in (sender.split(".", 1) for sender in senders.values())
-            if work.interfaces[unit].variables[variable].variability != "continuous"
+            if work.interfaces[unit].variables[variable].sampled
         ]
         after = max(sampled, default=None)
     return MessagePlan(

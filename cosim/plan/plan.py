@@ -1,11 +1,11 @@
 """The plan of a run, resolved to slots of one array: every engine runs it.
 
 All values of a run stand in one float64 array, `memory` of shape (memory_size,). Each input, and each output
-that is recorded or connected, has a slot; Integer, Boolean and Enumeration values are stored as floats. A
-continuous output has two slots: `valid` holds its value at the current communication point t_k, `latest` the
-one after the unit's last step (t_{k+1} once it has stepped). An input over a bus, or one that nothing drives,
-has a mailbox beside its slot: the value last received, or set by the user. An input slot is written from its
-route each step, so an override or a bias acts on what the unit receives and never on what was sent.
+that is recorded or connected, has a slot; Integer, Boolean and Enumeration values are stored as floats. An
+output that is not sampled has two: `valid` holds its value at the current communication point t_k, `latest`
+the one after the unit's last step (t_{k+1} once it has stepped). An input over a bus, or one that nothing
+drives, has a mailbox beside its slot: the value last received, or set by the user. An input slot is written
+from its route each step, so an override or a bias acts on what the unit receives and never on what was sent.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class MessagePlan:
     """A message that is sent at the steps k with k >= first and (k - first) % every == 0.
 
     It is sampled at the start of the step (`after` is None), or right after the turn of the unit with index
-    `after`, where signals of variability discrete come from that unit's step. `settings` are those of its
+    `after`, where sampled outputs come from that unit's step. `settings` are those of its
     bus; `every`, `delay` and the signals of `message` follow from them. `senders` are the variables behind
     the signals, for messages to the user.
 

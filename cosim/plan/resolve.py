@@ -115,7 +115,7 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
         unit=v.unit,
         type=v.type,
         causality=v.causality,
-        variability=v.variability,
+        variability="discrete" if v.sampled else v.variability,  # it holds until the next point
         description=v.description,
         items=v.items,
         difference=v.difference,

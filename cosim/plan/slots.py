@@ -116,11 +116,11 @@ def _outputs_by_kind(
     outputs: list[VariableInfo], inputs: set[str]
 ) -> list[tuple[str, list[VariableInfo], int]]:
     """Return slot groups to be made: kind, members, and how many members depend on an input at once."""
-    discrete = [v for v in outputs if v.variability != "continuous"]
-    continuous = [v for v in outputs if v.variability == "continuous"]
+    sampled = [v for v in outputs if v.sampled]
+    continuous = [v for v in outputs if not v.sampled]
     through = [v for v in continuous if v.depends and not inputs.isdisjoint(v.depends)]
     rest = [v for v in continuous if v not in through]
-    return [("discrete", discrete, 0), ("continuous", [*through, *rest], len(through))]
+    return [("sampled", sampled, 0), ("continuous", [*through, *rest], len(through))]
 
 
 def _slot_groups(

@@ -16,15 +16,16 @@ from ..units.measure import Affine
 if TYPE_CHECKING:
     from ..interface import Value
 
-SlotGroupKind = Literal["input", "discrete", "continuous"]
+SlotGroupKind = Literal["input", "sampled", "continuous"]
 
 
 @dataclasses.dataclass(frozen=True)
 class SlotGroup:
     """Variables of one unit, FMI type and kind, in consecutive slots from `slot` on.
 
-    `latest`: the first slot of a continuous group's values after the step. Of a continuous group the
-    first `feedthrough` variables depend on an input at the same instant.
+    An output that is not sampled is of the kind continuous, whatever its variability. `latest`: the first
+    slot of a continuous group's values after the step. Of such a group the first `feedthrough` variables
+    depend on an input at the same instant.
     """
 
     kind: SlotGroupKind

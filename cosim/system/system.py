@@ -155,6 +155,11 @@ class UnitEntry(FileModel):
     substeps: int = Field(default=1, ge=1, le=1_000_000)
     """FMU steps into which a period is divided, with the inputs held."""
 
+    sampled: bool | list[str] | None = None
+    """Outputs that the unit computes from the inputs of the same time and that hold from then on, as those of
+    a sampled controller do; true: all that the FMU declares discrete. Without it as the FMU tells (those that
+    evcosim built do), or as in the unit whose place it takes."""
+
     isolation: Isolation | None = None
     """Run it in a process of its own (process) or in the master's (none); without it FMUs that evcosim did
     not build have a process of their own."""

@@ -59,6 +59,7 @@ def check(
     checked = _checked(file, place, scenario, strict)
     if not as_json:
         _show_matches(place, checked.matches)
+        _show_sampled(checked)
     tried = None if duration is None else _tried(checked, duration)
     if tried is not None and not as_json:
         _show_trial(tried)
@@ -83,12 +84,15 @@ class _Checked:
     fmu: Path
     entry: SwapFile | None
     matches: list[Match]
+    sampled: list[str]
+    """The outputs that the FMU, which does not tell, has sampled since those of the place are."""
 
 
 def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.swap.matching import matches
     from ...cosim.swap.requirements import requirements
+    from ...cosim.swap.sampled import sampled_in
     from ...cosim.swap.swap_file import SwapFile
     from ...cosim.system.scenario import load_scenario
     from ...cosim.system.system import load_system
@@ -107,14 +111,18 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
     path = fmu_file(entry.fmu, Path(file), f"{file}: fmu") if entry else fmu_file(file)
     fmu = read_fmu(path, strict or (entry is not None and entry.strict))
     check_runnable(fmu)
-    needs = requirements(system, driven, unit, _there_now(system, unit))
-    return _Checked(place, system, driven, unit, path, entry, matches(needs, fmu.interface, entry))
+    there = _there_now(system, unit)
+    found = matches(requirements(system, driven, unit, there), fmu.interface, entry)
+    names = [m.need for m in found if m.variable and m.verdict != "missing" and m.need in sampled_in(there)]
+    silent = not fmu.interface.tells_sampled and (entry is None or entry.sampled is None)
+    return _Checked(place, system, driven, unit, path, entry, found, names if silent else [])
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:
     """Return the interface of the system's present unit. Raises ConfigError if it cannot be read."""
     from ...cosim.errors import ConfigError
     from ...cosim.swap.mapping import present
+    from ...cosim.swap.sampled import told
     from ..builtin import fmu_file
     from ..fmi.fmu import read_fmu
 
@@ -126,7 +134,8 @@ def _there_now(system: System, unit: str) -> UnitInterface:
             f"{keys}fmu = '{entry.fmu}' cannot be read, so that the interface of this unit, which its "
             f"place needs, is unknown:\n{error}\nput an FMU there that can be read, or a built-in one"
         ) from error
-    return present(interface, entry, keys)
+    interface = present(interface, entry, keys)
+    return interface if entry.sampled is None else told(interface, unit, entry.sampled, keys)
 
 
 def _tried(checked: _Checked, duration: float) -> Trial:
@@ -134,6 +143,8 @@ def _tried(checked: _Checked, duration: float) -> Trial:
     from ..studies.trial.trial import try_unit
 
     entry = entry_of(str(checked.fmu.resolve()), checked.matches, checked.entry)
+    if checked.sampled and entry.sampled is None:
+        entry = entry.model_copy(update={"sampled": checked.sampled})
     names = [match.need for match in checked.matches if match.need and match.role != "parameter"]
     return try_unit(checked.system, checked.scenario, checked.unit, entry, names, duration)
 
@@ -150,6 +161,7 @@ def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str
         "fmu": str(checked.fmu),
         "place": checked.place,
         "fits": complete,
+        "sampled": checked.sampled,
         "rows": list(map(dataclasses.asdict, checked.matches)),
     }
     if tried is not None:
@@ -169,6 +181,15 @@ def _show_matches(place: str, matches: Sequence[Match]) -> None:
     table = [(m.need or "-", m.role, m.variable or "-", m.verdict, _reason(m)) for m in matches]
     print_table((place, "role", "variable of the FMU", "verdict", "why"), table)
     print()
+
+
+def _show_sampled(checked: _Checked) -> None:
+    """Print which outputs are taken as sampled, since those of the place are."""
+    if checked.sampled:
+        print(
+            f"taken as sampled, as in {checked.place}: {', '.join(checked.sampled)}; they hold from the time "
+            "of the inputs on, and `sampled = false` in a swap file says otherwise\n"
+        )
 
 
 def _reason(match: Match) -> str:

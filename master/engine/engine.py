@@ -98,7 +98,7 @@ class Turn:
         self.check_finite()
 
     def publish(self, k: int) -> None:
-        """Make the continuous outputs after the step those valid at the next communication point."""
+        """Make the outputs after the step, but for the sampled ones, those valid at the next point."""
         for valid, latest in self.published:
             self.memory[valid] = latest
 
@@ -330,6 +330,6 @@ class Engine:
     def recorded(self) -> Table:
         """Return the rows so far, shape (k, columns), and unless the last step failed one more for now.
 
-        In that one the inputs and the discrete outputs are those of the last step.
+        In that one the inputs and the sampled outputs are those of the last step.
         """
         return self.store.table(self.memory[None, self.columns] if self.whole else None)

@@ -6,10 +6,11 @@ Time is a count k, of which `clock` makes the time t_k. The stages of step k, un
 2. the messages that are due and carry outputs valid at t_k are sent;
 3. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
    biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
-   once; the continuous ones of a unit whose period is longer than a step only from the communication
-   point on at which they are valid. A message with discrete signals is sent right after its sender's turn;
-4. row k is recorded: the inputs of this step, discrete outputs after it, continuous ones valid at t_k;
-5. the continuous outputs after the step become the valid ones.
+   once; those of a unit whose period is longer than a step, if they are not sampled, only from the
+   communication point on at which they are valid. A message with a sampled output is sent right after its
+   sender's turn;
+4. row k is recorded: the inputs of this step, sampled outputs after it, the others valid at t_k;
+5. the outputs after the step that are not sampled become the valid ones.
 
 On a bus with a delay the values sent that long ago arrive at the place where the message is sent.
 Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
@@ -40,7 +41,7 @@ class Action:
                   and begin the step
         end       wait for the step, read the outputs, and refuse NaN and infinity
         record    record the row of the step
-        publish   make the unit's continuous outputs after its step the valid ones
+        publish   make the unit's outputs after its step, but for sampled ones, the valid ones
     """
 
     kind: Kind
@@ -74,13 +75,13 @@ def _gauss_seidel(plan: Plan) -> list[Action]:
     for i in range(len(plan.units)):
         # the unit with the newest values of those before it
         actions += [_of_unit(plan, kind, i) for kind in ("take", "begin", "end")]
-        # messages of its discrete outputs
+        # messages of its sampled outputs
         actions += _messages(plan, i)
     return actions
 
 
 def _jacobi(plan: Plan) -> list[Action]:
-    # all messages, of outputs that are valid at t_k or discrete ones of the step before
+    # all messages, of outputs that are valid at t_k or sampled ones of the step before
     actions = [action for i in range(len(plan.messages)) for action in _message(plan, i)]
     # the inputs of all units; then all begin before any is waited for: isolated ones step side by side
     for kind in ("take", "begin", "end"):

@@ -16,14 +16,16 @@ from typing import Any
 from .archive import FmuError
 from .attributes import mend_attributes
 from .structure import mend_structure
-from .supplement import negated_aliases, supplement
+from .supplement import negated_aliases, sampled_outputs, supplement
 from .types import INTEGER, REAL, FmiType, Kind, fmi_type
 
 _VERSIONS = ("1.0", "2.0", "3.0")
 
 
-def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], frozenset[str]]:
-    """Return FMPy's ModelDescription, the defects that were mended, and the negated aliases.
+def read_description(
+    path: Path, xml: bytes
+) -> tuple[Any, tuple[str, ...], frozenset[str], frozenset[str] | None]:
+    """Return FMPy's ModelDescription, the defects that were mended, the negated aliases, the sampled outputs.
 
     Raises FmuError that names the place.
     """
@@ -41,7 +43,7 @@ def read_description(path: Path, xml: bytes) -> tuple[Any, tuple[str, ...], froz
     except Exception as error:  # FMPy raises five unrelated types for broken descriptions
         raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
     supplement(description, root)
-    return description, tuple(defects), negated_aliases(root)
+    return description, tuple(defects), negated_aliases(root), sampled_outputs(root)
 
 
 def parsed_xml(place: str, xml: bytes) -> Any:

@@ -30,6 +30,7 @@ class Fmu:
     `entries` are the names in the archive, `unpacked` their bytes in all; `defects` are those of the
     description that were tolerated, one sentence each with what was assumed;
     `negated` are the variables of FMI 1.0 whose value is that of their reference with the other sign;
+    `sampled` are the outputs that evcosim's annotation calls so (None: there is none);
     `wanted` is the interface to use, where it is not the default (see `using`).
     """
 
@@ -39,6 +40,7 @@ class Fmu:
     unpacked: int = 0
     defects: tuple[str, ...] = ()
     negated: frozenset[str] = frozenset()
+    sampled: frozenset[str] | None = None
     wanted: InterfaceType | None = None
 
     def using(self, interface: InterfaceType | None) -> Fmu:
@@ -137,10 +139,11 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
     names = tuple(entry.filename for entry in entries)
     if _DESCRIPTION not in names:
         raise FmuError(f"{path}: is not an FMU: it has no {_DESCRIPTION}{_elsewhere(names)}")
-    description, defects, negated = read_description(path, read_entry(path, _DESCRIPTION))
+    description, defects, negated, sampled = read_description(path, read_entry(path, _DESCRIPTION))
     if any("\\" in entry.orig_filename for entry in entries):
         defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
-    fmu = Fmu(path, description, names, sum(entry.file_size for entry in entries), defects, negated)
+    size = sum(entry.file_size for entry in entries)
+    fmu = Fmu(path, description, names, size, defects, negated, sampled)
     if strict and defects:
         raise FmuError(
             f"{path}: strict: {counted(len(defects), 'defect')}: " + "; ".join(defects[:_SHOWN_DEFECTS])
@@ -188,7 +191,10 @@ def _interface(fmu: Fmu) -> UnitInterface:
         if v.name not in unusable and (kind := fmi_type(md.fmiVersion, str(v.type))) is not None
     }
     units = {u.name: _unit_of_measure(u) for u in md.unitDefinitions}
-    return UnitInterface(str(fmu.path), variables, units, unusable)
+    for name in (fmu.sampled or frozenset()) & variables.keys():
+        variables[name] = dataclasses.replace(variables[name], sampled=True)
+    ours = str(md.generationTool or "").startswith("evcosim ")
+    return UnitInterface(str(fmu.path), variables, units, unusable, fmu.sampled is not None, ours)
 
 
 def _names(variables: Any) -> tuple[str, ...] | None:

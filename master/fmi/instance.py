@@ -223,7 +223,7 @@ class Instance:
         for group in plan.groups:
             if group.kind == "input":
                 self.inputs += binding.transfers("Set", enumerate(group.variables, group.slot))
-            elif group.kind == "discrete":
+            elif group.kind == "sampled":
                 self.outputs += binding.transfers("Get", enumerate(group.variables, group.slot))
             else:
                 self.outputs += binding.transfers("Get", enumerate(group.variables, group.latest))

@@ -1,5 +1,5 @@
 """The parts that FMPy's reader of descriptions leaves out: most of FMI 1.0, the limits of FMI 3.0's UInts,
-and which variables are differences (relativeQuantity)."""
+which variables are differences (relativeQuantity), and evcosim's own annotation of sampled outputs."""
 
 from __future__ import annotations
 
@@ -23,6 +23,16 @@ def supplement(description: Any, root: Any) -> None:
     else:
         _limits(description, root)
     _differences(description, root)
+
+
+def sampled_outputs(root: Any) -> frozenset[str] | None:
+    """Return the names of the sampled outputs that evcosim's annotation lists; None without one."""
+    for path, key in (("VendorAnnotations/Tool", "name"), ("Annotations/Annotation", "type")):
+        for annotation in root.iterfind(path):
+            found = annotation.find("Sampled") if annotation.get(key) == "evcosim" else None
+            if found is not None:
+                return frozenset(found.get("outputs", "").split())
+    return None
 
 
 def _capabilities(description: Any, root: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,12 @@ def real(name: str, causality: str, **more: Any) -> VariableInfo:
     return VariableInfo(name, "Real", causality, **more)
 
 
+def _as_ours(v: VariableInfo) -> VariableInfo:
+    """The variable as an FMU of evcosim's declares it: a discrete output is a sampled one."""
+    sampled = v.causality in ("output", "local") and v.variability != "continuous"
+    return dataclasses.replace(v, sampled=v.sampled or sampled)
+
+
 class MockUnit:
     """A unit whose behavior is functions of its values by name.
 
@@ -45,7 +52,8 @@ class MockUnit:
         **start: float,
     ) -> None:
         self.name = name
-        self.interface = UnitInterface(f"mock {name}", {v.name: v for v in variables})
+        shown = [_as_ours(v) for v in variables]
+        self.interface = UnitInterface(f"mock {name}", {v.name: v for v in shown}, tells_sampled=True)
         self.values: Values = {v.name: v.start if v.start is not None else 0.0 for v in variables} | start
         self._step, self._through = step, through
         self.steps: list[tuple[float, float]] = []
@@ -99,7 +107,7 @@ class MockUnit:
         pass
 
     def get_outputs(self) -> None:
-        for kind in ("discrete", "continuous"):
+        for kind in ("sampled", "continuous"):
             for group, i, slot in self._slots(kind):
                 self.memory[slot] = self.values[group.names[i]]
 

@@ -20,8 +20,8 @@ _VARIABLES = [
 ]
 
 
-def watch_fmu(path: Path, fmi: int = 2, annotations: str = "") -> Path:
-    """The unit at `path` in FMI 1.0, 2.0 or 3.0; `annotations` are the vendor's of its description."""
+def watch_fmu(path: Path, fmi: int = 2, annotations: str = "", tool: str = "cc") -> Path:
+    """The unit at `path` in FMI 1.0, 2.0 or 3.0; with vendors' `annotations`, and the `tool`."""
     variables, outputs = [], []
     for i, (name, reference, causality, variability, kind, start) in enumerate(_VARIABLES, 1):
         about = (
@@ -47,7 +47,7 @@ def watch_fmu(path: Path, fmi: int = 2, annotations: str = "") -> Path:
             "<Implementation><CoSimulation_StandAlone><Capabilities/></CoSimulation_StandAlone></Implementation>",
         )
     description = (
-        f'<fmiModelDescription fmiVersion="{fmi}.0" modelName="watch" {token}>{kind}'
+        f'<fmiModelDescription fmiVersion="{fmi}.0" modelName="watch" generationTool="{tool}" {token}>{kind}'
         f"{annotations}<ModelVariables>{''.join(variables)}</ModelVariables>{structure}</fmiModelDescription>"
     )
     return compile_fmu(path, SOURCES / "watch.c", description, "watch", fmi, [f"-DFMI={fmi}"])

@@ -104,7 +104,7 @@ def plan_of(*groups: tuple[SlotGroupKind, int]) -> UnitPlan:
 
 
 def test_a_unit_of_its_own_has_its_groups_side_by_side() -> None:
-    plan = plan_of(("input", 3), ("discrete", 2), ("continuous", 4), ("input", 1))
+    plan = plan_of(("input", 3), ("sampled", 2), ("continuous", 4), ("input", 1))
     private, size = shared.private(plan)
     assert private.routes == ()
     assert [group.variables for group in private.groups] == [group.variables for group in plan.groups]
@@ -116,5 +116,5 @@ def test_a_unit_of_its_own_has_its_groups_side_by_side() -> None:
 
 
 def test_outputs_stand_in_their_latest_slots_where_they_have_some() -> None:
-    discrete, continuous = plan_of(("discrete", 2), ("continuous", 4)).groups
+    discrete, continuous = plan_of(("sampled", 2), ("continuous", 4)).groups
     assert (shared.shown(discrete), shared.shown(continuous)) == (discrete.slot, continuous.latest)
