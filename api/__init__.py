@@ -16,8 +16,10 @@ name is imported on first use, so that `import evcosim` loads none of numpy, fmp
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = (
+    False  # a type checker takes it as true; importing typing is half the time that this module takes
+)
 if TYPE_CHECKING:
     from .cosim.analysis.bus_budget import Budget, Point, Series
     from .cosim.analysis.first_order import Estimate, FirstOrder, Fit, Prediction
@@ -162,7 +164,7 @@ _MODULES = {
 
 if not TYPE_CHECKING:  # a type checker that sees this would accept every misspelled name
 
-    def __getattr__(name: str) -> Any:
+    def __getattr__(name: str) -> object:
         if name == "__version__":
             from importlib.metadata import version
 

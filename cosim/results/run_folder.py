@@ -37,17 +37,20 @@ class RunFolder(FolderLock):
     saver: Callable[[], int] | None = None
     """Saves the rows of the run up to now at once, in any thread, and returns their number."""
 
-    def rescue(self, words: str) -> str:
+    def rescue(self, error: str = "") -> str:
         """Save the rows of a process that ends at once, and return what to say of them.
 
-        run.json says that it was interrupted.
+        run.json says that the run failed with an error, or was interrupted ("").
         """
         if (self.path / CSV_NAME).exists():
             return f"; results.csv is in {self.path}"
         count = self.saver() if self.saver is not None else 0
         about, variables = read_manifest(self.path / MANIFEST_NAME)
-        about |= {"status": "interrupted", "steps": count}
+        about |= {"status": "failed", "error": error} if error else {"status": "interrupted"}
+        about["steps"] = count
         write_manifest(self.path / MANIFEST_NAME, about, variables.values())
+        if count and error and (found := self.recover()) is not None:  # no one waits for the end
+            return f"; {len(found)} rows are in {self.path / CSV_NAME}"
         if not count:
             return f"; no row was saved in {self.path}"
         recover = f"evcosim results recover {self.path}"

@@ -6,6 +6,7 @@
     completion  the names that the Tab key offers
     failures    every error as plain text on stderr, and the exit code
     console     tables, JSON and the progress bar
+    early_exit  an FMU in this process that calls exit()
     interrupts  Ctrl-C, SIGTERM and SIGHUP, whatever the command is doing
     outputs     the folder of a run
     summary     the summary of a run at its end
@@ -26,9 +27,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from . import interrupts
 
         interrupts.install()  # before anything that takes time
+        from . import early_exit
+
+        early_exit.install()
         try:
             return _main(None)
         finally:
+            early_exit.leave()
             interrupts.leave()
     return _main(arguments)
 

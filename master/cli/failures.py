@@ -9,7 +9,7 @@ from typing import Any
 
 import typer
 
-from . import interrupts
+from . import interrupts, outputs
 
 _SCREEN = 20  # lines of a message at most
 
@@ -44,6 +44,8 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
         code, message = _judged(error)
         complain(message, whole=debug)
         return code
+    finally:
+        outputs.release()
 
 
 def open_closed_streams() -> None:

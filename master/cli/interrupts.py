@@ -30,6 +30,7 @@ from typing import NoReturn
 
 from ..isolation.waiting import waits
 
+_exit = os._exit  # `early_exit` puts another one in its place
 PATIENCE = 0.7  # s that the end of a run may take
 _GRACE = 0.25  # s until the thread ends a process whose handler has not come
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
@@ -120,6 +121,16 @@ def _watch(reader: int) -> None:
 
 
 def _end() -> NoReturn:
+    """End the process after a signal."""
+    _end_with(words(_state.number), 128 + _state.number)
+
+
+def end_failed(error: str, code: int) -> NoReturn:
+    """End the process at once with an error and an exit code, as after a signal."""
+    _end_with(error, code, failed=True)
+
+
+def _end_with(why: str, code: int, failed: bool = False) -> NoReturn:
     """End the process: save the rows, take away what it would leave, say why."""
     if not _state.ending.acquire(blocking=False):
         while True:  # another thread does it
@@ -127,17 +138,17 @@ def _end() -> NoReturn:
     said = _state.said
     if _state.keeping and _state.rescue is not None:
         with contextlib.suppress(Exception):  # whatever fails, the process ends
-            said = _state.rescue(words(_state.number))
+            said = _state.rescue(why if failed else "")
     for module in ("evcosim.cosim.leftovers", "evcosim.fmus.cache"):
         take_away = getattr(sys.modules.get(module), "take_away", None)  # None while it is being imported
         if take_away is not None:
             with contextlib.suppress(Exception):  # as above
                 take_away()
     cursor = "\r\x1b[K\x1b[?25h" if _is_terminal() else ""  # a progress bar hides it
-    text = f"{cursor}evcosim: {words(_state.number)}{said}\n"
+    text = f"{cursor}evcosim: {why}{said}\n"
     with contextlib.suppress(OSError):
         os.write(2, text.encode("utf-8", "replace"))
-    os._exit(128 + _state.number)
+    _exit(code)
 
 
 def _is_terminal() -> bool:
@@ -149,8 +160,8 @@ def _is_terminal() -> bool:
 class Interrupts:
     """A `with` block in which a signal is noted, and `check` raises Interrupted after it.
 
-    `rescue` saves what is there, when the process ends at once all the same; it is given the words for the
-    signal and returns what to say beyond them.
+    `rescue` saves what is there, when the process ends at once all the same; it is given the error of the run
+    ("": a signal) and returns what to say beyond that.
     """
 
     def __init__(self, rescue: Callable[[str], str] | None = None) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ...cosim.results.folder_lock import FolderLock
     from ...cosim.results.results import Results
     from ...cosim.results.run_folder import RunFolder
     from ...cosim.system.run_options import RunOptions
@@ -16,10 +17,7 @@ if TYPE_CHECKING:
 
 _LONGEST = 60  # characters of a suffix
 _MOST = 1000  # folders with a number
-
-
-_LONGEST = 60  # characters of a suffix
-_MOST = 1000  # folders with a number
+_held: list[FolderLock] = []
 
 
 def default_folder(*names: str) -> Path:
@@ -28,18 +26,24 @@ def default_folder(*names: str) -> Path:
 
 
 def output_folder(folder: Path) -> Path:
-    """Make the folder if needed, try to write into it, and return it. Raises ConfigError with the reason."""
+    """Make the folder if needed, try to write into it, and return it; this command has it until `release`.
+
+    Raises ConfigError with the reason, also if another command has it.
+    """
     from ...cosim.errors import ConfigError
-    from ...cosim.writing import reason, try_folder
+    from ...cosim.results.folder_lock import FolderLock
 
     try:
-        try_folder(folder)
-    except OSError as error:
-        said = reason(folder / "results.csv", error)
-        raise ConfigError(
-            f"output folder {folder}: cannot be written: {said}; --output names another one"
-        ) from error
+        _held.append(FolderLock(folder))
+    except ConfigError as error:
+        raise ConfigError(f"{error}; --output names another one") from error
     return folder
+
+
+def release() -> None:
+    """Give the folders free that this command has."""
+    while _held:
+        _held.pop().release()
 
 
 def run_folder(

@@ -105,6 +105,13 @@ class CrashReport:
         """
         self._root[0], self._root[1] = table, cell
 
+    def last(self) -> str:
+        """Return the unit that was called last, with its file; "" where none was."""
+        table, cell = self._root[0], self._root[1]
+        place = ctypes.c_int64.from_address(cell).value
+        address = ctypes.c_int64.from_address(table + 16 * place).value
+        return next((shown for shown, text in self._units.values() if text.row[0] == address), "")
+
     def rest(self) -> None:
         """Note that no unit is called."""
         self._root[0], self._root[1] = self._nothing.address, ctypes.addressof(self._first)

@@ -14,6 +14,7 @@ import pytest
 
 from evcosim.cosim import writing
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.folder_lock import FolderLock, lives
 from evcosim.cosim.results.results import Results
 from evcosim.master.cli import outputs
 from support.answers import refused
@@ -152,3 +153,14 @@ def test_the_names_of_folders_beside_the_working_folder_and_of_the_root(monkeypa
     assert second == [Path("."), Path(".."), Path("/")]
     assert list(outputs._candidates(Path("."), "a"))[1:3] == [tmp_path / "here-a", tmp_path / "here-a-2"]
     assert list(outputs._candidates(Path("/"), "a")) == [Path("/")]
+
+
+def test_a_folder_of_another_command_is_refused(evcosim, tmp_path):
+    with FolderLock(tmp_path / "out"):
+        refused(
+            evcosim("reproduce", "scooter", "-o", "out"), "another run is writing into it", "--output names"
+        )
+    outputs.output_folder(tmp_path / "out")
+    assert lives(tmp_path / "out")
+    outputs.release()
+    assert not lives(tmp_path / "out")
