@@ -107,8 +107,8 @@ class CompiledEngine(Engine):
         self._logs = np.zeros(max(1, len(program.logged)), dtype=np.int64)
         self._times = np.zeros(len(program.ops))
         clock = self.plan.clock
-        self._numbers[[L.CLOCK_FIRST, L.CLOCK_ADVANCE, L.CLOCK_STOP, L.SECONDS]] = (
-            clock.first, clock.advance, clock.numerator(clock.steps), CHUNK_SECONDS,
+        self._numbers[[L.CLOCK_FIRST, L.CLOCK_ADVANCE, L.CLOCK_STOP, L.CLOCK_DIVISOR, L.SECONDS]] = (
+            clock.first, clock.advance, clock.numerator(clock.steps), clock.divisor, CHUNK_SECONDS,
         )  # fmt: skip # beside their places
         self._state[L.STOP_STEP] = clock.steps
         self._state[L.PYTHON] = address(self._python)

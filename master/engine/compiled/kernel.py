@@ -130,12 +130,11 @@ def call(t, m, row):
 
 
 @inlined
-def step(t, c, k, now):
+def step(t, c, k, now, time):
     """Do the steps of the turn at step k of the unit in row c; return DONE or an error.
 
-    `now` is the numerator of t_k.
+    `time` [s] is t_k, where the first of them begins, and `now` its numerator.
     """
-    first, divisor = now * number(c, L.TIME_FACTOR), number(c, L.DIVISOR)
     advance, size = number(c, L.ADVANCE), number(c, L.STEP_SIZE)
     landing = size
     if k == word(c, L.LAST_TURN):
@@ -143,7 +142,8 @@ def step(t, c, k, now):
         landing = number(c, L.LANDING_SIZE)
     answers, count = word(c, L.ANSWERS), word(c, L.STEPS)
     for j in range(count):
-        time = (first + j * advance) / divisor
+        if j > 0:
+            time = (now * number(c, L.TIME_FACTOR) + j * advance) / number(c, L.DIVISOR)
         if j == count - 1:
             size = landing
         if answers:
@@ -257,8 +257,8 @@ def wait(t, m, o, k):
 
 
 @inlined
-def operate(t, m, o, s, k, now):
-    """Do the operation in row o, in step k, which is step s of the chunk; `now` is the numerator of t_k."""
+def operate(t, m, o, s, k, now, time):
+    """Do the operation in row o, in step k (s of the chunk) at `time` [s], whose numerator is `now`."""
     kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
     if kind == L.TAKE:
         r = word(t, L.ROUTES) + 8 * L.ROUTE * a
@@ -277,7 +277,7 @@ def operate(t, m, o, s, k, now):
             result = call(t, m, row)
             if result != L.DONE:
                 return result
-        return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, k, now)
+        return step(t, word(t, L.UNITS) + 8 * L.UNIT * a, k, now, time)
     elif kind == L.CHECK:
         return check(m, b, word(o, L.C))
     elif kind == L.COPY:
@@ -332,11 +332,12 @@ def follow(t, timed):
                 break
             interval = min(2 * interval, LOOK) if now - last < 0.001 else max(1, interval // 2)
             last, look = now, s + interval
-        # the numerator of the communication point t_k, from its count
+        # the communication point t_k and its numerator, from its count
         k = word(state, L.START_STEP) + s
         now = number(numbers, L.CLOCK_FIRST) + k * number(numbers, L.CLOCK_ADVANCE)
         if k == word(state, L.STOP_STEP):
             now = number(numbers, L.CLOCK_STOP)
+        time = now / number(numbers, L.CLOCK_DIVISOR)
         # the operations in order, each at the steps at which it is due
         o = word(t, L.OPS)
         if timed:
@@ -345,7 +346,7 @@ def follow(t, timed):
             if k == word(o, L.DUE):
                 put_word(state, L.AT, i)
                 put_word(o, L.DUE, k + word(o, L.EVERY))
-                result = operate(t, m, o, s, k, now)
+                result = operate(t, m, o, s, k, now, time)
                 if timed:
                     now = clock(t)
                     put_number(word(t, L.TIMES_OF_OPS), i, number(word(t, L.TIMES_OF_OPS), i) + now - moment)

@@ -86,8 +86,8 @@ STATE_SIZE = 14
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
 of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time."""
-CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, SECONDS, VALUE, TICK_0, TICK_1 = range(7)
-NUMBERS_SIZE = 7
+CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1 = range(8)
+NUMBERS_SIZE = 8
 """Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of
 a chunk, a value that Python converts, and the seconds in one unit of each number in TICKS."""
 
