@@ -1,12 +1,12 @@
 """What a process of its own costs a unit: python -m benchmarks.isolation, from the project's folder.
 
-A ring of equal units in C with ten signals each way is stepped with all units in the master's process and
-with each in its own, under both algorithms, in many short stretches that take turns. What is printed are
-microseconds for a unit and step: the median stretch of each, and the difference between the two, of the
-medians, of the 10th percentiles and of the fastest stretches. On a machine that does other things too the
-last two say more. Then, the share of a core that the processes take while nobody steps. Below the table: the
-processor time of a process from its start to its end, with an FMU that is loaded and initialized and not
-stepped. Needs a C compiler.
+A ring of equal units, in C with ten signals each way and in Python (pythonfmu) with one, is stepped with all
+units in the master's process and with each in its own, under both algorithms, in many short stretches that
+take turns. What is printed are microseconds for a unit and step: the median stretch of each, the difference
+between the two, of the medians, of the 10th percentiles and of the fastest stretches, and the ratio of the
+latter two. On a machine that does other things too these say more. Then, the share of a core that the
+processes take while nobody steps. Below the table: the processor time of a process from its start to its end,
+with an FMU that is loaded and initialized and not stepped. Needs a C compiler.
 """
 
 from __future__ import annotations
@@ -39,15 +39,19 @@ def main() -> None:
     )
     parser.add_argument("--stretches", type=int, default=400, help="of 25 steps (default: 400)")
     parser.add_argument("--starts", type=int, default=20, help="of processes (default: 20)")
-    parser.add_argument("--units", type=int, nargs="+", default=[1, 2, 4], help="units in the ring")
+    parser.add_argument("--units", type=int, nargs="+", default=[1, 2, 4], help="units in a ring in C")
+    parser.add_argument("--python-units", type=int, nargs="+", default=[1, 3, 6], help="in one in Python")
     arguments = parser.parse_args()
     machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
     print(f"{machine}, load {os.getloadavg()[0]:.1f}; us a unit and step\n")
-    print("| units | algorithm | in-process | isolated | cost, median | cost, p10 | cost, min | idle |")
-    print("|---" * 8 + "|")
-    for units in arguments.units:
+    heads = ("units", "algorithm", "in-process", "isolated", "cost, median", "cost, p10", "cost, min")
+    print("| " + " | ".join((*heads, "ratio, p10", "ratio, min", "idle")) + " |")
+    print("|---" * 10 + "|")
+    cases = [Case("c", units, 1, _SIGNALS, record=False) for units in arguments.units]
+    cases += [Case("python", units, 1, record=False) for units in arguments.python_units]
+    for case in cases:
         for algorithm in ("gauss_seidel", "jacobi"):
-            print(row(units, algorithm, arguments.stretches), flush=True)
+            print(row(case, algorithm, arguments.stretches), flush=True)
     in_c, in_python = start_time("c", arguments.starts), start_time("python", arguments.starts)
     print(
         f"\na process from start to end, with no step: {in_c:.0f} ms of processor time with an FMU in C, "
@@ -55,21 +59,22 @@ def main() -> None:
     )
 
 
-def row(units: int, algorithm: str, stretches: int) -> str:
+def row(case: Case, algorithm: str, stretches: int) -> str:
     """One line of the table."""
-    case = Case("c", units, 1, _SIGNALS, record=False)
     with tempfile.TemporaryDirectory() as folder:
         system = write_system(case, Path(folder), algorithm)
         with (
             Simulation(system, isolation="none") as here,
             Simulation(system, isolation="process") as apart,
         ):
-            times = np.array([[_stretch(s) for s in (here, apart)] for _ in range(stretches)]) / units
+            times = np.array([[_stretch(s) for s in (here, apart)] for _ in range(stretches)])
+            times /= case.units
             idle = _idle()
     medians, low = np.median(times, axis=0), np.percentile(times, 10, axis=0)
-    costs = [found[1] - found[0] for found in (medians, low, np.min(times, axis=0))]
-    cells = [f"{x:.1f}" for x in (*medians, *costs)]
-    return f"| {units} | {algorithm} | " + " | ".join(cells) + f" | {100 * idle:.1f} % |"
+    least = np.min(times, axis=0)
+    costs = [found[1] - found[0] for found in (medians, low, least)]
+    cells = [f"{x:.1f}" for x in (*medians, *costs, low[1] / low[0], least[1] / least[0])]
+    return f"| {case.units} {case.kind} | {algorithm} | " + " | ".join(cells) + f" | {100 * idle:.1f} % |"
 
 
 def start_time(kind: Kind, starts: int) -> float:

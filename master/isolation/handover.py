@@ -5,6 +5,10 @@ for a short time and gives its core away between two looks, so that more process
 other. Then it sets the flag that it sleeps and reads from the socket; a side that writes a number rings the
 bell of one that sleeps.
 
+Where looking is in vain, since others want the cores too and a side that gives its core away gets it back
+late, a side sleeps at once the next time, and 3, 7 ... times if it is in vain again: one that sleeps is woken
+before those that compute.
+
 Memory order: x86 makes the stores of one core visible in their order and does loads in theirs, so that
 whoever sees a number sees what was written before it. A store may pass a later load, though: each side,
 between writing (its number, or that it sleeps) and looking at what the other one wrote, takes a lock of
@@ -24,6 +28,7 @@ from . import framing
 
 _ORDERED = os.name == "posix" and os.uname().machine in ("x86_64", "amd64", "AMD64", "i386", "i686")
 _LOOKS = 20  # between two readings of the clock
+_MOST_PAUSES = 127  # times that a side sleeps at once after it looked in vain
 _give_way: Callable[[], None] = getattr(os, "sched_yield", lambda: time.sleep(0.0))  # macOS has none
 
 SPIN = 300e-6
@@ -54,6 +59,7 @@ class Side:
         self._mine, self._i_sleep = mine
         self._theirs, self._they_sleep = theirs
         self._lock = threading.Lock()
+        self._pause = self._pauses = 0  # how often more, and how often after the last look, to sleep at once
 
     def post(self, number: float) -> None:
         """Write a number, when all that belongs to it stands in the memory. Raises OSError."""
@@ -74,13 +80,24 @@ class Side:
             return False
         if slots[place] == number:
             return True
-        end = time.perf_counter() + self._spin
-        while time.perf_counter() < end:
+        if self._pause:  # looking was in vain lately
+            self._pause -= 1
+            return False
+        clock = time.perf_counter
+        end = clock() + self._spin
+        while clock() < end:
             for _ in range(_LOOKS):
                 give_way()
                 if slots[place] == number:
+                    self._judge(clock() < end)
                     return True
+        self._judge(False)
         return False
+
+    def _judge(self, in_time: bool) -> None:
+        """Choose how often to sleep at once: 0 times after a look that was in time, else 1, 3, 7 ...."""
+        self._pauses = 0 if in_time else min(2 * self._pauses + 1, _MOST_PAUSES)
+        self._pause = self._pauses
 
     def sleep_until(
         self, number: float, most: int, impatience: framing.Impatience = framing.nothing

@@ -100,3 +100,33 @@ def test_a_machine_that_promises_no_order_of_stores_only_sleeps(monkeypatch: pyt
     assert spin_time() == 0.0
     monkeypatch.setattr(handover, "_ORDERED", True)
     assert spin_time() == handover.SPIN > 0.0
+
+
+def test_a_side_that_looked_in_vain_sleeps_at_once_more_often(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    slots, looked = memoryview(bytearray(32)).cast("d"), []
+    monkeypatch.setattr(handover, "_give_way", lambda: looked.append(1))
+    one, other = socket.socketpair()
+    with one, other:
+        side = Side(one, slots, MINE, THEIRS, 1e-6)
+
+        def looks(times: int) -> list[bool]:
+            """Whether each of so many waits in vain looked."""
+            found = []
+            for _ in range(times):
+                looked.clear()
+                assert not side.comes(1.0)
+                found.append(bool(looked))
+            return found
+
+        assert looks(12) == [True, False, True, *[False] * 3, True, *[False] * 5]
+        assert sum(looks(2000)) < 25
+        slots[THEIRS[0]] = 1.0
+        assert side.comes(1.0)  # what is there is seen without a look
+        side._spin, side._pause = 10.0, 0
+        monkeypatch.setattr(handover, "_give_way", lambda: slots.__setitem__(THEIRS[0], 2.0))
+        assert side.comes(2.0)
+        side._spin = 1e-6
+        monkeypatch.setattr(handover, "_give_way", lambda: looked.append(1))
+        assert looks(3) == [True, False, True]  # a look that was worth it begins anew
