@@ -37,7 +37,10 @@ NAMES = {
         "fmi2EventInfo.valuesOfContinuousStatesChanged fmi2EventInfo.nominalsOfContinuousStatesChanged "
         "fmi2EventInfo.nextEventTimeDefined fmi2EventInfo.nextEventTime",
     ),
-    "fmpy.model_description": ("master/fmi/description.py", "read_model_description"),
+    "fmpy.model_description": (
+        "master/fmi/description.py, validation.py",
+        "ValidationError read_model_description",
+    ),
     "fmpy.sundials": ("master/fmi/cvode.py", "libraries"),
     "fmpy.sundials.libraries": (
         "master/fmi/cvode.py",
@@ -45,7 +48,6 @@ NAMES = {
         "sundials_sunlinsoldense._handle sundials_cvode._handle",
     ),
     "fmpy.sundials.nvector_serial": ("master/fmi/cvode.py", "_N_VectorContent_Serial.data.offset"),
-    "fmpy.validation": ("master/cli/info_fmu.py", "validate_fmu"),
     "can": (
         "cosim/can/frames.py",
         "Message BLFWriter.on_message_received BLFWriter.stop ASCWriter._format_header_datetime "

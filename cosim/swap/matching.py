@@ -24,7 +24,6 @@ Verdict = Literal["fits", "fits after conversion", "your choice", "missing", "un
 _WEAK = 0.45  # a lower score is of the unit of measure alone
 _MARGIN = 0.1  # by which a score is above all others of its need
 _CANDIDATES = 4  # variables that are named beside the one that is taken
-_NOTHING = VariableInfo("")
 _CAUSALITIES: dict[Role, tuple[str, ...]] = {
     "input": ("input",),
     "output": ("output", "local"),
@@ -90,8 +89,9 @@ def _of_role(
     absent: set[str],
 ) -> list[Match]:
     candidates = list(offer.of_causality(*_CAUSALITIES[role]))
-    given = [need for need in needs if need.name not in mapped and need.name not in absent]
-    chosen = _assigned(given, candidates, offer)
+    unmapped = [need for need in needs if need.name not in mapped and need.name not in absent]
+    scores = {need.name: [_score(need, v, offer) for v in candidates] for need in unmapped}
+    chosen = _assigned(scores, candidates, {need.name for need in unmapped if need.optional})
     found = []
     for need in needs:
         if need.name in absent:
@@ -102,7 +102,7 @@ def _of_role(
             reason = "optional: the FMU has no variable of this name"
             found.append(Match(need.name, role, "", "fits", reason, need.needed))
         else:
-            found.append(_judged(need, chosen.get(need.name), candidates, offer))
+            found.append(_judged(need, chosen.get(need.name), candidates, scores[need.name], offer))
     return found
 
 
@@ -137,23 +137,25 @@ def _as_written(entry: MapEntry) -> dict[str, Any]:
 
 
 def _assigned(
-    needs: Sequence[Requirement], candidates: Sequence[VariableInfo], offer: UnitInterface
+    scores: Mapping[str, Sequence[float]], candidates: Sequence[VariableInfo], optional: set[str]
 ) -> dict[str, VariableInfo]:
     """Return the variable for each need, by its name: that of the same name, else by the best assignment of
-    all needs together. A need that no variable can be for is left out."""
-    by_name = {v.name: v for v in candidates}
-    same = {n.name: by_name[n.name] for n in needs if _score(n, by_name.get(n.name, _NOTHING), offer) == 2.0}
-    # what may be missing is taken by its own name only: a guess would take another need's variable
-    needs = [need for need in needs if need.name not in same and not need.optional]
-    candidates = [v for v in candidates if v.name not in same]
-    if not needs or not candidates:
+    all needs together. A need that no variable can be for is left out.
+
+    `scores` has for each need that of every candidate. One of the `optional` needs is taken by its own name
+    only: a guess would take another need's variable.
+    """
+    same = {name: candidates[row.index(2.0)] for name, row in scores.items() if 2.0 in row}
+    names = [name for name in scores if name not in same and name not in optional]
+    left = [j for j, v in enumerate(candidates) if v.name not in same]
+    if not names or not left:
         return same
     import numpy as np
     from scipy.optimize import linear_sum_assignment  # 0.2 s, and a report alone needs it
 
-    scores = np.array([[_score(need, v, offer) for v in candidates] for need in needs])
-    pairs = zip(*linear_sum_assignment(scores, maximize=True), strict=True)
-    return same | {needs[i].name: candidates[j] for i, j in pairs if scores[i, j] > 0.0}
+    table = np.array([[scores[name][j] for j in left] for name in names])
+    pairs = zip(*linear_sum_assignment(table, maximize=True), strict=True)
+    return same | {names[i]: candidates[left[j]] for i, j in pairs if table[i, j] > 0.0}
 
 
 def _score(need: Requirement, v: VariableInfo, offer: UnitInterface) -> float:
@@ -196,10 +198,18 @@ def _converts(need: Requirement, v: VariableInfo, offer: UnitInterface) -> tuple
 
 
 def _judged(
-    need: Requirement, v: VariableInfo | None, candidates: Sequence[VariableInfo], offer: UnitInterface
+    need: Requirement,
+    v: VariableInfo | None,
+    candidates: Sequence[VariableInfo],
+    scores: Sequence[float],
+    offer: UnitInterface,
 ) -> Match:
-    """Return the match of a need with the variable that was assigned to it, or with none."""
-    scored = sorted(((_score(need, c, offer), c.name) for c in candidates), key=lambda pair: -pair[0])
+    """Return the match of a need with the variable that was assigned to it, or with none.
+
+    `scores` are those of the candidates for this need.
+    """
+    named_scores = zip(scores, (c.name for c in candidates), strict=True)
+    scored = sorted(named_scores, key=lambda pair: -pair[0])
     named = tuple(name for score, name in scored[:_CANDIDATES] if score > 0.0)
     if v is None:
         reason = "no variable is left that could be it"
@@ -207,7 +217,7 @@ def _judged(
             reason = f"nothing has a unit of measure for [{need.variable.unit}]"
         return Match(need.name, need.role, "", "missing", reason, need.needed, named)
     verdict, reason, unit = _converts(need, v, offer)
-    own = _score(need, v, offer)
+    own = scores[candidates.index(v)]
     rival = max((score for score, name in scored if name != v.name), default=0.0)
     if v.name != need.name and own < _WEAK:
         verdict, reason = "your choice", f"only the unit of measure speaks for it; {reason}"

@@ -76,8 +76,15 @@ def likeness(name: str, text: str, other: str, other_text: str) -> float:
     by_name = 0.6 * _agreement(own, last) + 0.4 * _agreement(own, path)
     words, other_words = (*own, *_meanings(text)), (*path, *_meanings(other_text))
     by_text = _agreement(tuple(dict.fromkeys(words)), tuple(dict.fromkeys(other_words)))
-    look = difflib.SequenceMatcher(None, name.lower(), _last(other).lower()).ratio()
-    return max(by_name, 0.9 * by_text, 0.8 * look)
+    by_words = max(by_name, 0.9 * by_text)
+    return max(by_words, 0.8 * _look(name.lower(), _last(other).lower(), by_words / 0.8))
+
+
+def _look(a: str, b: str, above: float) -> float:
+    """Return the likeness of two texts by their letters; 0.0 where it is not larger than `above`."""
+    if 2.0 * min(len(a), len(b)) <= above * (len(a) + len(b)):  # all letters of the shorter one are shared
+        return 0.0
+    return difflib.SequenceMatcher(None, a, b).ratio()
 
 
 def _agreement(a: tuple[Meanings, ...], b: tuple[Meanings, ...]) -> float:
@@ -108,14 +115,15 @@ def _meanings(text: str) -> tuple[Meanings, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _parts(word: str) -> list[str]:
+@functools.cache  # the names of a large FMU repeat a few words
+def _parts(word: str) -> tuple[str, ...]:
     """Return the known words in a compound (`bremskraft`: brems, kraft), else the word itself."""
     known = _vocabulary()
     if word in known or word in _EMPTY:
-        return [word]
+        return (word,)
     inside = [w for w in known if len(w) >= _COMPOUND and w in word]
     longest = [w for w in inside if not any(w != other and w in other for other in inside)]
-    return sorted(longest, key=word.index) or [word]
+    return tuple(sorted(longest, key=word.index)) or (word,)
 
 
 def _of_word(word: str) -> Meanings:

@@ -81,12 +81,12 @@ def _limitations(kinds: Iterable[Any], holds_python: bool) -> list[dict[str, str
 
 def _validated(path: Path) -> list[str]:
     """Return the messages of FMPy's validator about the description as it is in the file."""
-    from fmpy.validation import validate_fmu
+    from ..fmi.validation import validated
 
     def short(message: str) -> str:
         return re.sub(r"^ERROR \(line (\d+), column \d+\): ", r"line \1: ", " ".join(message.split()))
 
-    return [short(message) for message in validate_fmu(str(path))]
+    return [short(message) for message in validated(path)]
 
 
 def _experiment(experiment: Any) -> dict[str, float]:
