@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Iterable
 from typing import Literal
 
@@ -21,7 +22,8 @@ class VariableInfo:
     where none is declared).
     `depends` are the names of the inputs (for `depends_initially` also parameters) that reach an output
     at the same instant; None: not declared, so every input may.
-    `items` are the (value, name) pairs of an enumeration.
+    `items` are the (value, name) pairs of an enumeration; `limits` the least and the greatest number of the
+    variable's FMI type, None for one that has all of a double.
     `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
     `inverted`: the system's value is the FMU's with the other sign.
     `scaling` is the map of a value on its way between the two, beside the sign.
@@ -39,6 +41,7 @@ class VariableInfo:
     max: float | None = None
     description: str = ""
     items: tuple[tuple[int, str], ...] = ()
+    limits: tuple[float, float] | None = None
     depends: tuple[str, ...] | None = ()
     depends_initially: tuple[str, ...] | None = ()
     declared: str = ""
@@ -65,6 +68,26 @@ class VariableInfo:
         sign = -1.0 if self.inverted else 1.0
         map_ = self.scaling.inverse() if self.causality in ("input", "parameter") else self.scaling
         return Affine(sign) if self.scaling.identity else Affine(sign * map_.scale, map_.offset)
+
+    @functools.cached_property
+    def choices(self) -> tuple[int, ...]:
+        """The numbers that an enumeration may have, in order: its items', and its start; (): all whole ones.
+
+        A start that is no item is a defect of the FMU, which takes it all the same.
+        """
+        if not self.items:
+            return ()
+        own = {self.start} if isinstance(self.start, int) else set()
+        return tuple(sorted({number for number, _ in self.items} | own))
+
+    @property
+    def default(self) -> Value:
+        """The start value, else 0, false, "" or the first item of an enumeration without 0."""
+        if self.start is not None:
+            return self.start
+        if self.type == "String":
+            return ""
+        return 0 if not self.choices or 0 in self.choices else self.choices[0]
 
 
 @dataclasses.dataclass(frozen=True)

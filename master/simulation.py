@@ -24,7 +24,6 @@ from ..cosim.errors import ConfigError, RunError, counted, nearest
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
 from ..cosim.plan.plan import Plan
-from ..cosim.plan.resolve import checked
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
@@ -32,6 +31,7 @@ from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario
 from ..cosim.system.selection import figure_spec, metric_specs
 from ..cosim.system.system import Isolation, System
+from ..cosim.system.values import as_double, checked
 from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
@@ -204,10 +204,11 @@ class Simulation:
             )
         if plan.driver or plan.mailbox is None:
             raise ConfigError(f"{name} is driven by {plan.driver}; use override() to take its place")
-        number = checked(value, self._interfaces[unit].variables[variable], f"set {name}")
-        self._engine.memory[plan.mailbox] = float(number)
+        about = self._interfaces[unit].variables[variable]
+        number = checked(value, about, f"set {name}")
+        self._engine.memory[plan.mailbox] = as_double(about, number, f"set {name}")
 
-    def override(self, name: str, value: float) -> None:
+    def override(self, name: str, value: Value) -> None:
         """Let the input `name` receive `value` from now on, whatever drives it. Raises ConfigError."""
         self._do(Override.model_construct(time=self.time, action="override", variable=name, value=value))
 
@@ -222,8 +223,7 @@ class Simulation:
     def _do(self, event: Event) -> None:
         """Check and do an event that no file has: the messages name the call instead of the keys."""
         self._require_units()
-        check_event(event, self._interfaces, self.plan.inputs, event.action)
-        self._engine.effect(event)
+        self._engine.effect(check_event(event, self._interfaces, self.plan.inputs, event.action))
 
     def _split(self, name: str) -> tuple[str, str]:
         unit, _, variable = name.partition(".")

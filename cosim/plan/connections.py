@@ -16,10 +16,12 @@ from ..interface import UnitInterface, VariableInfo
 from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, System
 from ..system.toml import data_file
+from ..system.values import as_double, of_type
 from ..units.measure import Affine
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
+from .type_rules import check_boolean, check_types
 from .unit_maps import Definitions, End, check_texts, converts, scaled_map, with_unit
 from .unit_plan import Route
 
@@ -205,7 +207,7 @@ def _direct(
 ) -> None:
     """Resolve a connection without a bus: a route within the step."""
     sender, receiver = _variable(work, source), _variable(work, sink)
-    _check_types(source, sender, sink, receiver, place)
+    check_types(source, sender, sink, receiver, place)
     slot = work.slots.valid[sink]
     work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
     work.network.routes[sink[0]].append(Route(work.slots.source(*source, work.every[source[0]]), slot, map_))
@@ -234,6 +236,7 @@ def _over_bus(
     senders[signal.name] = connection.source
     to_bus, to_receivers = _bus_maps(work, connection, source, sinks, signal, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
+    settings = work.system.file.buses[bus]
     ends = []
     for sink, to_receiver in zip(sinks, to_receivers, strict=True):
         receiver = _variable(work, sink)
@@ -244,11 +247,13 @@ def _over_bus(
                 f"{place}: {'.'.join(sink)} is of type {receiver.type}, the signal has scale {signal.scale} "
                 f"and offset {signal.offset}"
             )
+        check_boolean(_variable(work, source), ".".join(sink), receiver, signal, settings.overflow, place)
         name = ".".join(sink)
         work.network.drive(name, InputPlan(work.slots.valid[sink], None, ""), place)
         mailbox = work.network.add_mailbox(*sink, work.slots, f"{connection.source} via {connection.via}")
         if connection.initial is not None:
-            work.network.initial[name] = connection.initial
+            initial = of_type(connection.initial, receiver, f"{place}: initial")
+            work.network.initial[name] = as_double(receiver, initial, f"{place}: initial")
         ends.append((mailbox, to_receiver))
     route = SignalRoute(signal=signal, source=work.slots.valid[source], to_bus=to_bus, sinks=tuple(ends))
     work.signal_routes.setdefault(key, []).append(route)
@@ -351,19 +356,3 @@ def _map(work: _Connector, source: End, target: End, scaling: Scaling, place: st
 
 def _definitions(work: _Connector) -> list[Definitions]:
     return [interface.units_of_measure for interface in work.interfaces.values()]
-
-
-def _check_types(
-    source: tuple[str, str], sender: VariableInfo, sink: tuple[str, str], receiver: VariableInfo, place: str
-) -> None:
-    """Raise ConfigError unless a direct connection can take the sender's FMI type to the receiver's."""
-    whole = ("Integer", "Enumeration")
-    fits = (
-        sender.type == receiver.type
-        or (receiver.type == "Real" and sender.type != "String")
-        or (receiver.type in whole and sender.type in (*whole, "Boolean"))
-    )
-    if not fits:
-        raise ConfigError(
-            f"{place}: {'.'.join(source)} is of type {sender.type}, {'.'.join(sink)} of type {receiver.type}"
-        )

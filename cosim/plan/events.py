@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from typing import assert_never
 
 from ..clock import Clock
 from ..errors import ConfigError, nearest
-from ..interface import UnitInterface
+from ..interface import UnitInterface, VariableInfo
 from ..system.scenario import Bias, Event, Override, Reset, Scenario
+from ..system.values import as_double, of_type
 from .plan import InputPlan
 
 
@@ -25,7 +27,7 @@ def scheduled(
     """
     events = []
     for number, event in enumerate(scenario.file.events, 1):
-        check_event(event, interfaces, inputs, f"{scenario.path}: event {number}", in_file=True)
+        event = check_event(event, interfaces, inputs, f"{scenario.path}: event {number}", in_file=True)
         events.append((max(clock.step_at(event.time), 0), event))
     return tuple(sorted(events, key=lambda event: event[0]))
 
@@ -36,33 +38,37 @@ def check_event(
     inputs: Mapping[str, InputPlan],
     place: str,
     in_file: bool = False,
-) -> None:
-    """Raise ConfigError, which starts with `place`, unless the event can act on what it names.
+) -> Event:
+    """Return the event with its value as a run keeps it: a double.
 
-    With `in_file` the event is a table at `place`, and the key in it follows. A value beyond the input's
-    minimum or maximum is allowed: faults are what events are for.
+    Raises ConfigError, which starts with `place`, unless it can act on what it names. With `in_file` the
+    event is a table at `place`, and the key in it follows. A value beyond the input's minimum or maximum is
+    allowed: faults are what events are for.
     """
 
     def at(key: str) -> str:
         return f"{place}.{key}" if in_file else place
 
-    kind = _type_of_input(event, interfaces, inputs, at("variable"))
+    variable = _input_of(event, interfaces, inputs, at("variable"))
     match event:
-        case Override() | Bias():
-            _check_value(event, kind, at)
+        case Override():
+            return _with_value(event, variable, at("value"))
+        case Bias():
+            _check_bias(event, variable, at)
+            return event
         case Reset():
-            pass
+            return event
         case _:
             assert_never(event)
 
 
-def _type_of_input(
+def _input_of(
     event: Override | Bias | Reset,
     interfaces: Mapping[str, UnitInterface],
     inputs: Mapping[str, InputPlan],
     place: str,
-) -> str:
-    """Return the FMI type of the event's input. Raises ConfigError when there is no such input."""
+) -> VariableInfo:
+    """Return the event's input. Raises ConfigError when there is none of its name."""
     name = event.variable
     if name not in inputs:
         raise ConfigError(
@@ -70,21 +76,23 @@ def _type_of_input(
             f"{event.action} acts on what a unit receives"
         )
     unit, _, variable = name.partition(".")
-    return interfaces[unit].variables[variable].type
+    return interfaces[unit].variables[variable]
 
 
-def _check_value(event: Override | Bias, kind: str, at: Callable[[str], str]) -> None:
-    """Raise ConfigError unless an input of the FMI type `kind` can receive the event's value.
+def _with_value(event: Override, variable: VariableInfo, place: str) -> Override:
+    """Return the event with its value as a double. Raises ConfigError for one that the input cannot have."""
+    if variable.type == "String":
+        raise ConfigError(f"{place}: {event.variable} is a String, which no event acts on")
+    value = of_type(event.value, dataclasses.replace(variable, name=event.variable), place)
+    return event.model_copy(update={"value": as_double(variable, value, place)})
 
-    `at` returns the place of a key of the event.
-    """
-    action, name, value = event.action, event.variable, event.value
+
+def _check_bias(event: Bias, variable: VariableInfo, at: Callable[[str], str]) -> None:
+    """Raise ConfigError unless a bias can act on the input. `at` returns the place of a key of the event."""
+    name, value, kind = event.variable, event.value, variable.type
+    if kind in ("Boolean", "String"):
+        raise ConfigError(f"{at('action')}: {name} is a {kind}, to which nothing can be added")
     if not math.isfinite(value):
         raise ConfigError(f"{at('value')}: {name} needs a finite number, not {value}")
-    if kind == "Boolean" and (isinstance(event, Bias) or value not in (0, 1)):
-        place = at("action" if isinstance(event, Bias) else "value")
-        raise ConfigError(
-            f"{place}: {name} is a Boolean; it can be overridden by 0 or 1, not {action} {value}"
-        )
     if kind != "Real" and value != int(value):
-        raise ConfigError(f"{at('value')}: {name} is an {kind}; {action} needs a whole number, not {value}")
+        raise ConfigError(f"{at('value')}: {name} is an {kind}; bias needs a whole number, not {value}")

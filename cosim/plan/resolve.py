@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 import math
-import sys
 from collections.abc import Mapping
-from typing import Any
-
-import numpy as np
 
 from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
-from ..system.problems import brief
+from ..system.held_stimuli import held_stimulus
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
+from ..system.values import as_double, checked
 from ..units.measure import Affine
 from .connections import Network, connect
 from .events import scheduled
@@ -209,49 +207,9 @@ def _starts(
     for name, (place, value) in given.items():
         variable = interface.require(unit, name, ("input",), place)
         starts[name] = checked(value, variable, place)
+        if variable.type != "String":
+            as_double(variable, starts[name], place)
     return starts
-
-
-def checked(value: Any, variable: VariableInfo, place: str) -> Value:
-    """Return the value, given in the variable's unit, in the variable's type.
-
-    Raises ConfigError, which starts with `place`, when it has another type or is out of range.
-    """
-    unit = f" {variable.unit}" if variable.unit else ""
-    value = value.item() if isinstance(value, np.generic) else value
-    if variable.type == "String":
-        if not isinstance(value, str):
-            raise ConfigError(f"{place}: {variable.name} is a String, not {brief(value)}")
-        return value
-    if variable.type == "Enumeration" and isinstance(value, str):
-        return _item(value, variable, place)
-    if variable.type == "Boolean":
-        if value not in (True, False):
-            raise ConfigError(f"{place}: {variable.name} is a Boolean, true or false, not {brief(value)}")
-        return bool(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
-        raise ConfigError(f"{place}: {variable.name} is a finite {variable.type} number, not {brief(value)}")
-    if variable.type != "Real" and value != int(value):
-        raise ConfigError(f"{place}: {variable.name} is an {variable.type}, not {brief(value)}")
-    if variable.min is not None and value < variable.min:
-        raise ConfigError(
-            f"{place}: {value}{unit} is below the minimum {variable.min}{unit} of {variable.name}"
-        )
-    if variable.max is not None and value > variable.max:
-        raise ConfigError(
-            f"{place}: {value}{unit} is above the maximum {variable.max}{unit} of {variable.name}"
-        )
-    return float(value) if variable.type == "Real" else int(value)
-
-
-def _item(name: str, variable: VariableInfo, place: str) -> int:
-    """Return the number of an enumeration's item. Raises ConfigError when there is no such item."""
-    values = {text: number for number, text in variable.items}
-    if name not in values:
-        raise ConfigError(
-            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {brief(list(values))}"
-        )
-    return values[name]
 
 
 def _drives(
@@ -278,7 +236,13 @@ def _drives(
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
         slot = slots.valid[unit, name]
         network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), f"{place}.to")
-        drives.append(Drive(entry.to, slot, stimulus(entry, place, scenario.path, clock), map_))
+        if variable.type == "Real":
+            signal = stimulus(entry, place, scenario.path, variable, clock)
+            drives.append(Drive(entry.to, slot, signal, map_))
+        else:
+            to_double = functools.partial(as_double, variable)
+            signal = held_stimulus(entry, place, scenario.path, variable, map_, clock, to_double)
+            drives.append(Drive(entry.to, slot, signal, Affine()))
     return tuple(drives)
 
 
@@ -300,14 +264,15 @@ def _initial(
     """Return the values of the inputs' slots and mailboxes before anything was computed or received.
 
     A value is that of the stimulus at the start time, else the connection's `initial`, else the start given
-    in a file, else the FMU's; 0 for a String.
+    in a file, else the FMU's; 0 for a String. Raises ConfigError for a whole number that no double holds.
     """
     values = {}
     for name, plan in network.inputs.items():
-        unit, _, variable = name.partition(".")
-        start = starts[unit].get(variable, interfaces[unit].variables[variable].start)
+        unit, _, of_unit = name.partition(".")
+        variable = interfaces[unit].variables[of_unit]
+        start = starts[unit].get(of_unit, variable.default)
         value = network.initial.get(name, start)
-        number = float(value) if isinstance(value, int | float) else 0.0
+        number = 0.0 if isinstance(value, str) else as_double(variable, value, interfaces[unit].place)
         values[plan.slot] = number
         if plan.mailbox is not None:
             values[plan.mailbox] = number

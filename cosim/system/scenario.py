@@ -12,7 +12,7 @@ from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
 from .system import LATEST, SHORTEST, Algorithm, System, VariableName
-from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, Pair, find, names_in, read_toml
+from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, GivenValue, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
 
@@ -74,10 +74,11 @@ class StimulusEntry(FiniteModel):
     unit: str | None = None
     """Unit of measure of the values; without it the input's own."""
 
-    constant: float | None = None
-    """One value for the whole run."""
+    constant: GivenValue | None = None
+    """One value for the whole run: a number, true or false for a Boolean, a text for a String, and for an
+    enumeration a number or the name of an item."""
 
-    table: list[Pair[float]] | None = None
+    table: list[Annotated[tuple[float, GivenValue], Field(strict=False)]] | None = None
     """Pairs of time in s and value, in rising time; two pairs of one time are a jump. Before the first pair
     its value holds, after the last that of the last."""
 
@@ -94,7 +95,8 @@ class StimulusEntry(FiniteModel):
     timestamps. A file without such a name is refused."""
 
     interpolation: Interpolation = "linear"
-    """Between the rows of `table` or `csv`: a straight line, or the earlier value held."""
+    """Between the rows of `table` or `csv`: a straight line, or the earlier value held. An input that is not
+    Real always holds."""
 
     sine: Sine | None = None
     """A sine around a mean."""
@@ -151,8 +153,9 @@ class Override(_InputEvent):
     action: Literal["override"]
     """The kind of event."""
 
-    value: float
-    """The value, in the input's own unit of measure."""
+    value: GivenValue
+    """The value, in the input's own unit of measure; true or false for a Boolean, for an enumeration a number
+    or the name of an item."""
 
 
 class Bias(_InputEvent):

@@ -14,35 +14,39 @@ from numpy.typing import NDArray
 from ..clock import Clock
 from ..csv_numbers import CsvFile
 from ..errors import ConfigError, nearest
+from ..interface import VariableInfo
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
 from .toml import data_file
+from .values import of_type
 
 TimeFunction = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values, shape (n,), of a stimulus at the times [s], shape (n,)."""
 
 
-def stimulus(entry: StimulusEntry, place: str, beside: Path | None, clock: Clock) -> TimeFunction:
-    """Return the signal that an entry describes, in the entry's own unit.
+def stimulus(
+    entry: StimulusEntry, place: str, beside: Path | None, variable: VariableInfo, clock: Clock
+) -> TimeFunction:
+    """Return the signal that an entry describes for a Real input `variable`, in the entry's own unit.
 
     `place` is the entry's in the scenario file `beside`, from which a csv path is looked up. A time that
     misses a communication point of `clock` by rounding alone is that point. Raises ConfigError naming
     `place` with the key, rule and values.
     """
     if entry.constant is not None:
-        return _table(np.zeros(1), np.array([entry.constant]), "hold", Rows(f"{place}.constant"))
+        value = float(of_type(entry.constant, variable, f"{place}.constant"))
+        return held(np.zeros(1), np.array([value]))
     if entry.sine is not None:
         return _sine(entry.sine, clock)
     if entry.ramp is not None:
         return _ramp(entry.ramp, f"{place}.ramp", clock)
     if entry.table is not None:
-        points = np.array(entry.table, dtype=float).reshape(-1, 2)
-        return _table(
-            clock.on_points(points[:, 0]), points[:, 1], entry.interpolation, Rows(f"{place}.table")
-        )
-    assert entry.csv is not None  # the entry has exactly one kind
-    path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
-    times, values, rows = read_columns(path, entry.column, entry.time_column)
-    return _table(clock.on_points(times), values, entry.interpolation, rows)
+        rows = Rows(f"{place}.table")
+        values = [float(of_type(value, variable, rows.at(k, 1))) for k, (_, value) in enumerate(entry.table)]
+        times = np.array([time for time, _ in entry.table], dtype=float)
+        return _table(clock.on_points(times), np.array(values), entry.interpolation, rows)
+    file, rows = csv_of(entry, place, beside)
+    table = file.numbers((rows.time, rows.value), empty_lines=True)
+    return _table(clock.on_points(table[:, 0]), table[:, 1].copy(), entry.interpolation, rows)
 
 
 def _sine(sine: Sine, clock: Clock) -> TimeFunction:
@@ -78,43 +82,49 @@ def _on_point(time: float, clock: Clock) -> float:
 
 
 class Rows:
-    """The place of each row of a table for messages: `place` of the table, and `file` it is read from."""
+    """The rows of a table for messages: the `place` of the table, and the CSV file that it is read from.
+
+    `time` and `value` are columns of the file.
+    """
 
     def __init__(self, place: str, file: CsvFile | None = None, time: int = 0, value: int = 0) -> None:
-        self._place, self._file, self._columns = place, file, (time, value)
+        self.place, self.time, self.value = place, time, value
+        self._file = file
 
     def at(self, row: int, column: Literal[0, 1]) -> str:
         """Return the place of the time (column 0) or the value (1) of a row."""
         if self._file is None:
-            return f"{self._place}: row {row + 1}"
-        name = self._file.names[self._columns[column]]
+            return f"{self.place}: row {row + 1}"
+        name = self._file.names[(self.time, self.value)[column]]
         return f"{self._file.path}: line {self._file.line_of(row)}, column '{name}'"
-
-    @property
-    def place(self) -> str:
-        """The place of the whole table."""
-        return self._place
 
 
 def _table(
     times: NDArray[np.float64], values: NDArray[np.float64], interpolation: Interpolation, rows: Rows
 ) -> TimeFunction:
     """Return the function of a table. Raises ConfigError naming the row that no function has."""
+    check_times(times, rows)
+    if interpolation == "hold":
+        return held(times, values)
+    _check_differences(times, 0, rows)
+    _check_differences(values, 1, rows)
+    return _Table(times, values, "linear")
+
+
+def held(times: NDArray[np.float64], values: NDArray[np.float64]) -> TimeFunction:
+    """Return the function that holds each value, shape (n,), until the next time [s], shape (n,)."""
+    return _Table(times, values, "hold")
+
+
+def check_times(times: NDArray[np.float64], rows: Rows) -> None:
+    """Raise ConfigError naming the row unless there are times [s], shape (n,), that never go back."""
     if len(times) == 0:
-        raise ConfigError(f"{rows.place}: the table is empty")
-    finite = np.isfinite(times) & np.isfinite(values)
-    if not finite.all():
-        row = int(np.argmin(finite))
-        raise ConfigError(f"{rows.at(row, 1)}: ({times[row]}, {values[row]}) are not two finite numbers")
+        raise ConfigError(f"{rows.place}: there is no row")
     # two equal times are a jump: the later row holds from that time on
     backward = np.flatnonzero(times[1:] < times[:-1])
     if len(backward):
         row = int(backward[0]) + 1
         raise ConfigError(f"{rows.at(row, 0)}: time goes back from {times[row - 1]} s to {times[row]} s")
-    if interpolation == "linear":
-        _check_differences(times, 0, rows)
-        _check_differences(values, 1, rows)
-    return _Table(times, values, interpolation)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -165,29 +175,33 @@ def _interpolate(
     return values[left] + np.clip(share, 0.0, 1.0) * (values[right] - values[left])
 
 
-def read_columns(
-    path: Path, column: str | None, time_column: str | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Rows]:
-    """Return the time [s] and one column of a CSV file, shapes (n,), and the places of the rows.
+def csv_of(entry: StimulusEntry, place: str, beside: Path | None) -> tuple[CsvFile, Rows]:
+    """Return the CSV file of an entry and its columns.
 
     The time is the column of the name `time_column`, else that whose name says so (`csv_text.time_column`);
     the values are in that of the name `column`, else in the first one beside the time. What stands in the
-    others counts for nothing, nor do empty lines. Raises ConfigError naming file, line, column and value
-    where a number is missing or is none, and where there is no such column or no row.
+    others counts for nothing, nor do empty lines. Raises ConfigError where there is no such file or column.
     """
+    assert entry.csv is not None  # the entry has exactly one kind
+    path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
     file = CsvFile.of(path)
+    every = range(len(file.names))
     if len(file.names) < 2:
         raise ConfigError(
             f"{path}: line {max(1, file.header_lines)}: a header of two or more column names is needed, not "
             f"{list(file.names)}"
         )
-    time = file.time_column() if time_column is None else _column(file, time_column, range(len(file.names)))
-    others = [j for j in range(len(file.names)) if j != time]
-    value = others[0] if column is None else _column(file, column, others)
-    table = file.numbers((time, value), empty_lines=True)
-    if not len(table):
-        raise ConfigError(f"{path}: there is no row below the header")
-    return table[:, 0].copy(), table[:, 1].copy(), Rows(str(path), file, time, value)
+    time = file.time_column() if entry.time_column is None else _column(file, entry.time_column, every)
+    others = [j for j in every if j != time]
+    value = others[0] if entry.column is None else _column(file, entry.column, others)
+    return file, Rows(f"{path}", file, time, value)
+
+
+def read_times(file: CsvFile, rows: Rows) -> NDArray[np.float64]:
+    """Return the times [s] of a CSV file, shape (n,). Raises ConfigError naming the row that has none."""
+    times = file.numbers((rows.time,), empty_lines=True)[:, 0]
+    check_times(times, rows)
+    return times
 
 
 def _column(file: CsvFile, name: str, among: Sequence[int]) -> int:

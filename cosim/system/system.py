@@ -19,6 +19,7 @@ from .toml import (
     FileModel,
     FileValue,
     FiniteModel,
+    GivenValue,
     OrText,
     find,
     names_in,
@@ -219,7 +220,7 @@ class _Ends(FiniteModel):
     via: SignalName | None = Field(default=None, examples=["can0.EMD_Status.EMD_VehicleSpeed"])
     """The bus signal that carries it; without it the connection is direct."""
 
-    initial: float | None = None
+    initial: GivenValue | None = None
     """Value at the receivers before the first message, in their own unit; without it their start values.
     It needs `via`."""
 

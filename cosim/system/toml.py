@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 import tomllib
@@ -15,6 +16,7 @@ from pydantic import (
     ConfigDict,
     Field,
     GetJsonSchemaHandler,
+    PlainValidator,
     ValidationError,
     WithJsonSchema,
     model_validator,
@@ -82,6 +84,16 @@ FileValue = Annotated[Value, BeforeValidator(_plain), WithJsonSchema(_VALUE_SCHE
 Number = TypeVar("Number", bound=float)
 Pair = Annotated[tuple[Number, Number], Field(strict=False)]
 """Two numbers, of which a file makes a list."""
+
+
+def _finite_plain(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("a finite number is needed")
+    return _plain(value)
+
+
+GivenValue = Annotated[Value, PlainValidator(_finite_plain), WithJsonSchema(_VALUE_SCHEMA)]
+"""A value of a stimulus or an event, of which the input says later what type it has."""
 
 
 def text_type(title: str, pattern: str) -> WithJsonSchema:

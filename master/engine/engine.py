@@ -236,7 +236,8 @@ class Engine:
     def _advance_chunk(self, count: int) -> None:
         """Do at most `count` steps and keep their rows, also those before an error."""
         first, begin = self.k, time.perf_counter()
-        drives = self._stimuli(count)
+        drives = self._finite(self._stimuli(count))
+        count = drives.shape[1]
         rows = np.empty((count, len(self.columns)))
         self.whole = False
         self.chunks += 1
@@ -257,7 +258,25 @@ class Engine:
         if not self.plan.drives:
             return np.empty((0, count))
         times = self.plan.clock.times(self.k, self.k + count)
-        return np.array([drive.at(times) for drive in self.plan.drives])
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+            return np.array([drive.at(times) for drive in self.plan.drives])
+
+    def _finite(self, drives: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the stimuli, shape (drives, n), up to the first step at which one is not finite.
+
+        Raises RunError where that is the next one.
+        """
+        good = np.isfinite(drives).all(axis=0)
+        if good.all():
+            return drives
+        steps = int(np.argmin(good))
+        if steps == 0:
+            number = int(np.argmin(np.isfinite(drives[:, 0])))
+            raise RunError(
+                f"at t = {self.time:.6g} s (step {self.k}): the stimulus of "
+                f"{self.plan.drives[number].variable} is {drives[number, 0]}: it must be finite"
+            )
+        return drives[:, :steps]
 
     def _adapt(self, count: int, done: int, seconds: float) -> None:
         """Set the steps of the next chunk: as many as this one's time allowed, more if it left time."""
@@ -311,7 +330,7 @@ class Engine:
         """Let an event act from now on, whatever its time; `plan.events.check_event` has accepted it."""
         match event:
             case Override():
-                self._affect(event.variable, Effect("replace", event.value))
+                self._affect(event.variable, Effect("replace", float(event.value)))
             case Bias():
                 self._affect(event.variable, Effect("add", event.value))
             case Reset():

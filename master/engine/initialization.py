@@ -120,8 +120,14 @@ def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
 
 
 def _typed(variable: VariableInfo, value: float) -> Value:
-    """Return a number of the memory as a value of the variable's type."""
-    return value if variable.type == "Real" else bool(value) if variable.type == "Boolean" else round(value)
+    """Return a number of the memory as a value of the variable's type; one that it has not, as it is.
+
+    A unit refuses that one.
+    """
+    if variable.type == "Boolean" and value in (0.0, 1.0):
+        return bool(value)
+    whole = math.isfinite(value) and value == int(value)
+    return int(value) if variable.type != "Real" and whole else value
 
 
 def _pass_on(units: Mapping[str, Unit], link: Link) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
+import math
 import os
 import sys
 from pathlib import Path
@@ -15,7 +16,7 @@ from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
 from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
-from .types import ENUMERATION, INTEGER, REAL, FmiType, Kind, fmi_type
+from .types import BOOLEAN, ENUMERATION, INTEGER, REAL, STRING, FmiType, fmi_type
 
 __all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
 
@@ -186,7 +187,7 @@ def _interface(fmu: Fmu) -> UnitInterface:
     initially = {u.variable.name: _names(u.dependencies) for u in md.initialUnknowns}
     unusable = _unusable(fmu)
     variables = {
-        v.name: _variable(v, kind.kind, depends, initially, v.name in fmu.negated)
+        v.name: _variable(v, kind, depends, initially, v.name in fmu.negated)
         for v in md.modelVariables
         if v.name not in unusable and (kind := fmi_type(md.fmiVersion, str(v.type))) is not None
     }
@@ -232,9 +233,9 @@ def _why_unusable(v: Any, kind: FmiType | None, negated: bool) -> str:
 
 
 def _variable(
-    v: Any, kind: Kind, depends: dict[str, Any], initially: dict[str, Any], negated: bool
+    v: Any, fmi: FmiType, depends: dict[str, Any], initially: dict[str, Any], negated: bool
 ) -> VariableInfo:
-    declared = v.declaredType
+    declared, kind = v.declaredType, fmi.kind
     items = (
         tuple((int(i.value), i.name) for i in (declared.items or ()))
         if kind is ENUMERATION and declared
@@ -254,6 +255,7 @@ def _variable(
         max=_limit(_inherited(v, "max")),
         description=v.description or "",
         items=items,
+        limits=None if kind in (BOOLEAN, STRING) or math.isinf(fmi.high) else (fmi.low, fmi.high),
         depends=depends.get((v.alias or v).name, ()),
         depends_initially=initially.get((v.alias or v).name, ()),
         inverted=negated,

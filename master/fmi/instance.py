@@ -38,8 +38,8 @@ from .refusal import why_refused
 from .state import States
 from .step_status import beside
 from .tolerance import tolerance_of
-from .transfer import Call, Copy, StepCall, Transfer, one_after_the_other
-from .types import BOOLEAN, FmiType, fmi_type
+from .transfer import Call, Copy, StepCall, Transfer, fits, one_after_the_other, rule
+from .types import REAL, FmiType, fmi_type
 
 _WARNING = 1
 _TROUBLE = ("warn", "discard", "error", "fatal", "pending")
@@ -255,8 +255,7 @@ class Instance:
             raise UnitError(f"unit '{self.name}': {name} = {value} is more than a double holds (2^53)")
         kind = self.type_of(variable)
         raise UnitError(
-            f"unit '{self.name}': {name} cannot be set to {value:.17g}: it is of type {kind.name}, "
-            f"from {kind.low:.17g} to {kind.high:.17g}"
+            f"unit '{self.name}': {name} cannot be set to {value:.17g}: {rule(value, kind, variable)}"
         )
 
     def type_of(self, variable: VariableInfo) -> FmiType:
@@ -288,15 +287,13 @@ class Instance:
         kind = self.type_of(variable)
         if isinstance(value, str):
             buffer = (kind.c_type * 1)(value.encode())
-        elif kind.kind is BOOLEAN:
-            buffer = (kind.c_type * 1)(bool(value))
         else:
             number = -value if variable.inverted else value
             if not variable.scaling.identity:
                 number = variable.to_fmu(value)
-            if not kind.low <= number <= kind.high:
+            if not fits(number, kind, variable):
                 self._refuse(variable, number, "Set")
-            buffer = (kind.c_type * 1)(number)
+            buffer = (kind.c_type * 1)(number if kind.kind is REAL else int(number))
         self._access("Set", kind, name, buffer)
 
     def _access(self, direction: str, kind: FmiType, name: str, buffer: Any) -> None:

@@ -1,7 +1,8 @@
 """The values of a turn between the run's memory, which holds doubles, and a unit, which has FMI types.
 
 Doubles that stand in the memory in order are given and taken in place. All others pass through a buffer of
-their C type: a number that the type does not hold is refused there, since C would make another one of it.
+their C type: a number that the type does not hold is refused there, since C would make another one of it, and
+so is one that is no item of an enumeration.
 """
 
 from __future__ import annotations
@@ -73,38 +74,54 @@ def moving(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Re
     """Return `call`, the C call of a transfer, with what moves its values between buffer and memory."""
     if not transfer.items:
         return call
-    if transfer.type.kind is BOOLEAN:
-        return (_getting_booleans if transfer.gets else _setting_booleans)(transfer, call, memory)
+    if transfer.type.kind is BOOLEAN and transfer.gets:
+        return _getting_booleans(transfer, call, memory)
     return (_getting if transfer.gets else _setting)(transfer, call, memory, refuse)
 
 
 def _setting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Refusal) -> Call:
-    """Fill the buffer from the memory, then call. A type of whole numbers gets no fraction: it is cut off."""
-    values, items = transfer.values, transfer.items
-    low, high = transfer.type.low, transfer.type.high
-    number = float if transfer.type.kind is REAL else int
+    """Fill the buffer from the memory, then call."""
+    values, items, kind = transfer.values, transfer.items, transfer.type
+    low, high = kind.low, kind.high
 
-    def set_values() -> None:
+    def set_reals() -> None:
         for place, slot, scale, offset, _ in items:
             value = scale * memory[slot] + offset
             if not low <= value <= high:
                 refuse(place, value)
-            values[place] = number(value)
+            values[place] = value
         call()
 
-    return set_values
-
-
-def _setting_booleans(transfer: Transfer, call: Call, memory: memoryview[float]) -> Call:
-    """Write Booleans: any number but 0 becomes true."""
-    values, items = transfer.values, transfer.items
-
-    def set_values() -> None:
-        for place, slot, *_ in items:
-            values[place] = memory[slot] != 0.0
+    def set_whole_numbers() -> None:
+        for place, slot, scale, offset, variable in items:
+            value = scale * memory[slot] + offset
+            if not fits(value, kind, variable):
+                refuse(place, value)
+            values[place] = int(value)
         call()
 
-    return set_values
+    return set_reals if kind.kind is REAL else set_whole_numbers
+
+
+def fits(value: float, kind: FmiType, variable: VariableInfo) -> bool:
+    """Return True if a number is one of the variable's type, and of its items where it is an enumeration.
+
+    A Boolean has 0 and 1.
+    """
+    if not kind.low <= value <= kind.high:
+        return False
+    return kind.kind is REAL or (value == int(value) and (not variable.items or value in variable.choices))
+
+
+def rule(value: float, kind: FmiType, variable: VariableInfo) -> str:
+    """Return the rule by which a number does not fit, as a clause."""
+    about = f"it is of type {kind.name}, "
+    if kind.kind is BOOLEAN:
+        return about + "0 (false) or 1 (true)"
+    if variable.choices and kind.low <= value <= kind.high:
+        return about + f"one of {', '.join(map(str, variable.choices))}"
+    whole = "" if kind.kind is REAL else "a whole number "
+    return about + f"{whole}from {kind.low:.17g} to {kind.high:.17g}"
 
 
 def _getting(transfer: Transfer, call: Call, memory: memoryview[float], refuse: Refusal) -> Call:

@@ -153,6 +153,6 @@ def fmi_type(version: str, name: str) -> FmiType | None:
 BUFFERS = {t.code: t for t in TYPES if t.code}
 """A type for each code: those of one code differ in nothing that a buffer shows."""
 
-BOOLEAN_CODES = tuple(sorted({t.code for t in TYPES if t.code and t.kind is BOOLEAN}))
+REAL_CODES = tuple(sorted({t.code for t in TYPES if t.code and t.kind is REAL}))
 WIDE_CODES = tuple(sorted({t.code for t in TYPES if t.code and t.wide}))
-"""The codes of Booleans, and of whole numbers that a double does not all hold, for the compiled kernel."""
+"""Codes for the compiled kernel: of real numbers, and of whole numbers that a double does not all hold."""

@@ -9,9 +9,10 @@ import numpy as np
 
 from ...cosim.clock import Clock
 from ...cosim.errors import ConfigError, nearest
+from ...cosim.system.held_stimuli import course
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...cosim.system.problems import shown
 from ...cosim.system.scenario import Scenario, StimulusEntry, load_scenario, scenario_names
-from ...cosim.system.stimuli import stimulus
 from ...cosim.system.system import (
     Experiment,
     System,
@@ -81,11 +82,12 @@ def held(scenario: Scenario, swept: str, clock: Clock) -> tuple[Scenario, tuple[
     times = np.linspace(clock.start, clock.stop, _LOOKS)
     stimuli, said = [], []
     for number, entry in enumerate(scenario.file.stimuli, 1):
-        values = stimulus(entry, f"{scenario.path}: stimulus {number}", scenario.path, clock)(times)
-        if entry.to != swept and np.ptp(values) > 0.0:
-            at = float(values[0])
+        values = course(entry, f"{scenario.path}: stimulus {number}", scenario.path, clock, times)
+        if entry.to != swept and len(set(values)) > 1:
+            at = values[0]
+            shown_at = f"{at:.6g}" if isinstance(at, float) else shown(at)
             said.append(
-                f"held at {at:.6g}{f' {entry.unit}' if entry.unit else ''}: the stimulus of {entry.to}"
+                f"held at {shown_at}{f' {entry.unit}' if entry.unit else ''}: the stimulus of {entry.to}"
             )
             entry = StimulusEntry(to=entry.to, unit=entry.unit, constant=at)
         stimuli.append(entry)

@@ -186,3 +186,56 @@ def vehicle_fmu(path: Path, fmi: int, *flags: str, **changed: str) -> Path:
         assert old in description
         description = description.replace(old, new)
     return compile_fmu(path, SOURCES / "vehicle.c", description, "vehicle", fmi, [f"-DFMI={fmi}", *flags])
+
+
+_ITEMS = (("off", 1), ("on", 2), ("broken", 4))
+
+
+def typed_fmu(path: Path, fmi: int) -> Path:
+    """The unit of sources/mixed.c with inputs of all types but Real, in FMI 2.0 or 3.0.
+
+    `flag` is the negation of `flag_in`, `text` after a step is `text_in`; `state_in` has the items off = 1,
+    on = 2 and broken = 4.
+    """
+    whole = ("state_in", 30 if fmi == 3 else 3, "input", "Enumeration", 'declaredType="State" start="1"')
+    count = ("count_in", 20 if fmi == 3 else 9, "input", "Int8" if fmi == 3 else "Integer", 'start="0"')
+    variables = [
+        ("flag_in", 5, "input", "Boolean", 'start="false"'),
+        ("flag", 6, "output", "Boolean", ""),
+        ("text_in", 7, "input", "String", 'start="some text"'),
+        ("text", 8, "output", "String", ""),
+        whole,
+        count,
+    ]
+    items = "".join(f'<Item name="{name}" value="{value}"/>' for name, value in _ITEMS)
+    lines, structure = [], ""
+    for i, (name, reference, causality, kind, rest) in enumerate(variables, 1):
+        about = f'name="{name}" valueReference="{reference}" causality="{causality}" variability="discrete"'
+        if fmi == 2:
+            lines.append(f"<ScalarVariable {about}><{kind} {rest}/></ScalarVariable>")
+        elif kind == "String" and rest:
+            lines.append(f'<String {about}><Start value="some text"/></String>')
+        else:
+            lines.append(f"<{kind} {about} {rest}/>")
+        if causality == "output":
+            structure += (
+                f'<Unknown index="{i}" dependencies=""/>'
+                if fmi == 2
+                else f'<Output valueReference="{reference}"/>'
+            )
+    definition = (
+        f'<SimpleType name="State"><Enumeration>{items}</Enumeration></SimpleType>'
+        if fmi == 2
+        else f'<EnumerationType name="State">{items}</EnumerationType>'
+    )
+    time = '<Float64 name="time" valueReference="63" causality="independent" variability="continuous"/>'
+    description = (
+        f'<?xml version="1.0"?><fmiModelDescription fmiVersion="{fmi}.0" modelName="typed" '
+        f'{"guid" if fmi == 2 else "instantiationToken"}="mixed"><CoSimulation modelIdentifier="mixed"/>'
+        f"<TypeDefinitions>{definition}</TypeDefinitions>"
+        f"<ModelVariables>{''.join(lines)}{time if fmi == 3 else ''}</ModelVariables>"
+        f"<ModelStructure>{f'<Outputs>{structure}</Outputs>' if fmi == 2 else structure}</ModelStructure>"
+        "</fmiModelDescription>"
+    )
+    flags = (f"-DFMI={fmi}", "-DBEHAVIOR=0", "-DMODEL=mixed")
+    return compile_fmu(path, SOURCES / "mixed.c", description, "mixed", fmi, flags)

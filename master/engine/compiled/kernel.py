@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ...fmi.types import BOOLEAN_CODES, LARGEST_WHOLE, WIDE_CODES
+from ...fmi.types import LARGEST_WHOLE, REAL_CODES, WIDE_CODES
 from . import tables as L
 from .call import (  # fmt: skip # names
     call_2,
@@ -52,13 +52,24 @@ def fill(t, m, c, kind):
     item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
     for j in range(word(c, L.COUNT)):
         value = number(m, word(item, L.SLOT))
-        if kind not in BOOLEAN_CODES:
-            value = number(item, L.FACTOR) * value + number(item, L.ADDEND)
-            if not number(item, L.LOW) <= value <= number(item, L.HIGH):
-                return j
+        value = number(item, L.FACTOR) * value + number(item, L.ADDEND)
+        if not number(item, L.LOW) <= value <= number(item, L.HIGH):
+            return j
+        if kind not in REAL_CODES and (value != np.floor(value) or not chosen(item, value)):
+            return j
         at += put_value(at, kind, value)
         item += 8 * L.ITEM
     return -1
+
+
+@inlined
+def chosen(item, value):
+    """Return True if a whole number is one of an enumeration's, where the item has gaps between them."""
+    count = word(item, L.CHOICES)
+    for j in range(count):
+        if number(word(item, L.NUMBERS_OF), j) == value:
+            return True
+    return count == 0
 
 
 @inlined

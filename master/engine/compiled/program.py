@@ -24,6 +24,7 @@ from ..profile import Part, part_of
 from ..schedule import Action
 from . import tables as L
 from .codes import effect_kind, raw_mode
+from .items import format_of, item_row
 
 KernelTable = NDArray[np.int64]
 """Rows of 8-byte numbers, int64 or the bits of float64, shape (rows, columns)."""
@@ -69,6 +70,7 @@ class Program:
         self.logged: list[Sender] = []
         self.called: list[Instance] = []  # the instance of each row of CALLS
         self.stepped: list[Instance] = []  # and of UNITS
+        self._kept: list[NDArray[np.float64]] = []  # arrays whose addresses are in the tables
         self._effect_rows = 0
         self._waiting: dict[int, int] = {}
         for at, action in enumerate(engine.schedule):
@@ -240,15 +242,11 @@ class Program:
                 L.COUNT: len(transfer.references),
                 L.VALUES: ctypes.addressof(transfer.values),
                 L.TWICE: int(instance.fmi == "fmi3"),
-                L.FORMAT: _format(transfer),
+                L.FORMAT: format_of(transfer),
                 L.FIRST_ITEM: self._count("items"),
             }
         )
-        low, high = transfer.type.doubles
-        self._rows["items"] += [
-            {L.SLOT: item.slot, L.FACTOR: item.scale, L.ADDEND: item.offset, L.LOW: low, L.HIGH: high}
-            for item in transfer.items
-        ]
+        self._rows["items"] += [item_row(transfer, item, self._kept) for item in transfer.items]
         self.called.append(instance)
 
     # ---- the channel
@@ -380,12 +378,6 @@ def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> 
     if operation.raw_below is not None and operation.raw_above is not None:
         row |= {L.BELOW: float(operation.raw_below), L.ABOVE: float(operation.raw_above)}
     return row
-
-
-def _format(transfer: Transfer) -> int:
-    if not transfer.items:
-        return L.IN_PLACE
-    return transfer.type.code + (L.GETS if transfer.gets else 0)
 
 
 def address(function: Any) -> int:

@@ -51,9 +51,10 @@ is the code of an FMI type in `fmi.types`."""
 IN_PLACE = 0  # no format: the values are a part of the memory
 GETS = 100  # added to the format where values are read
 
-FACTOR, ADDEND, LOW, HIGH = range(1, 5)
-ITEM = 5
-"""Columns of ITEMS, after SLOT: the map of a value, and the range that fits into the buffer."""
+FACTOR, ADDEND, LOW, HIGH, CHOICES, NUMBERS_OF = range(1, 7)
+ITEM = 7
+"""Columns of ITEMS, after SLOT: the map of a value, the range that fits into the buffer, and of an
+enumeration with gaps the count of its numbers and their address."""
 
 STEPS, ANSWERS, EVENT, ENDING, EARLY, REACHED = range(3, 9)
 TIME_FACTOR, DIVISOR, ADVANCE, STEP_SIZE, LAST_TURN, LAST_ADVANCE, LAST_SIZE, LANDING_SIZE = range(9, 17)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,8 @@ INPUTS = {
 }
 TYPES = {"level": "Real", "count": "Integer", "state": "Enumeration", "flag": "Boolean"}
 VARIABLES = {name: VariableInfo(name, kind, "input", max=9.0) for name, kind in TYPES.items()}
+VARIABLES["state"] = dataclasses.replace(VARIABLES["state"], items=((0, "off"), (1, "on")))
+VARIABLES["count"] = dataclasses.replace(VARIABLES["count"], limits=(-128, 127))
 INTERFACES = {"display": UnitInterface("display.fmu", VARIABLES)}
 
 
@@ -57,9 +60,9 @@ def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():
 @pytest.mark.parametrize(
     ("event", "said"),
     [
-        ({"action": "override", "variable": "display.state", "value": 1.5}, r"value: display.state is an Enumeration; .* not 1.5$"),
-        ({"action": "override", "variable": "display.flag", "value": 2}, r"value: display.flag is a Boolean; .* override 2.0$"),
-        ({"action": "bias", "variable": "display.flag", "value": 1}, r"action: display.flag is a Boolean; .* bias 1.0$"),
+        ({"action": "override", "variable": "display.state", "value": 1.5}, r"value: display.state is an Enumeration, not 1.5$"),
+        ({"action": "override", "variable": "display.flag", "value": 2}, r"value: display.flag is a Boolean, true or false, not 2$"),
+        ({"action": "bias", "variable": "display.flag", "value": 1}, r"action: display.flag is a Boolean, to which nothing can be added$"),
         ({"action": "bias", "variable": "x.y", "value": 1}, r"variable: there is no input 'x.y'; bias acts on"),
         ({"action": "reset", "variable": "display.levle"}, r"variable: there is no input 'display.levle' \(did you mean"),
     ],
@@ -71,7 +74,7 @@ def test_an_event_of_a_file_is_named_by_its_number_and_key(event, said):
         scheduled(scenario, INTERFACES, INPUTS, CLOCK)
 
 
-def override(name: str, value: float) -> Override:
+def override(name: str, value: float | str) -> Override:
     return Override.model_construct(time=0.0, action="override", variable=name, value=value)
 
 
@@ -84,11 +87,15 @@ def bias(name: str, value: float) -> Bias:
     [
         (override("display.levle", 1.0), "there is no input 'display.levle' (did you mean 'display.level'?); override acts on what a unit receives"),
         (Reset.model_construct(time=0.0, action="reset", variable="x.y"), "there is no input 'x.y'; reset acts on what a unit receives"),
-        (override("display.level", float("nan")), "display.level needs a finite number, not nan"),
+        (override("display.level", float("nan")), "display.level is a finite Real number, not nan"),
         (bias("display.level", float("inf")), "display.level needs a finite number, not inf"),
-        (override("display.flag", 2.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not override 2.0"),
-        (bias("display.flag", 1.0), "display.flag is a Boolean; it can be overridden by 0 or 1, not bias 1.0"),
-        (override("display.state", 1.5), "display.state is an Enumeration; override needs a whole number, not 1.5"),
+        (override("display.flag", 2.0), "display.flag is a Boolean, true or false, not 2.0"),
+        (bias("display.flag", 1.0), "display.flag is a Boolean, to which nothing can be added"),
+        (override("display.state", 1.5), "display.state is an Enumeration, not 1.5"),
+        (override("display.state", 3), "3 is no item of display.state: 0 off, 1 on"),
+        (override("display.state", "of"), "display.state has no item 'of' (did you mean 'off'?): ['off', 'on']"),
+        (override("display.count", 128), "128 is beyond the numbers of display.count, -128 to 127"),
+        (override("display.level", True), "display.level is a finite Real number, not true"),
         (bias("display.count", 0.5), "display.count is an Integer; bias needs a whole number, not 0.5"),
     ],
 )  # fmt: skip # one case a line
@@ -104,9 +111,13 @@ def test_an_event_that_cannot_act_is_refused(event, said):
         override("display.level", 1e6),  # beyond its maximum: faults are what events are for
         bias("display.level", -1e6),
         override("display.flag", 1),
+        override("display.flag", True),
+        override("display.state", "on"),
         override("display.count", 3.0),
         Reset.model_construct(time=0.0, action="reset", variable="display.flag"),
     ],
 )  # fmt: skip
 def test_an_event_that_can_act_is_taken(event):
-    check_event(event, INTERFACES, INPUTS, "here")
+    taken = check_event(event, INTERFACES, INPUTS, "here")
+    if isinstance(event, Override):
+        assert isinstance(taken.value, float) and taken.value == (1.0 if event.value == "on" else event.value)

@@ -76,7 +76,7 @@ BROKEN = [
     ("scenario", "[[stimulus]]\nto = 'a.b'\nsine = { amplitude = 1, period = 0 }\n", "stimulus 1.sine.period: Input should be greater than 0, not 0"),
     ("scenario", "[[event]]\ntime = 1\naction = 'bias'\nvariable = 'a.b'\n", "event 1.value: this key is needed with action = \"bias\""),
     ("scenario", "[[event]]\ntime = '1'\naction = 'bias'\nvariable = 'a.b'\nvalue = 1\n", "event 1.time: Input should be a valid number, not '1'"),
-    ("scenario", "[[stimulus]]\nto = 'a.b'\ntable = [[0, true], ['1', 0]]\n", "stimulus 1.table 1 2: Input should be a valid number, not true\nstimulus 1.table 2 1: Input should be a valid number, not '1'"),
+    ("scenario", "[[stimulus]]\nto = 'a.b'\ntable = [[0, []], ['1', 0]]\n", "stimulus 1.table 1 2: a value is a number, true, false or a text, not []\nstimulus 1.table 2 1: Input should be a valid number, not '1'"),
     ("scenario", "[parameters]\nmass = 1\n", "parameters.mass: a table is needed, not 1"),
     ("scenario", "[parameters.vehicle]\nmass = {}\n", "parameters.vehicle.mass: a value is a number, true, false or a text"),
     ("scenario", "[start]\n'my car'.x = []\n", "start.'my car'.x: a value is a number, true, false or a text, not []"),

@@ -217,7 +217,7 @@ MARKED = [
     ("[[event]]\ntime = 1\nvariable = 'ab'\naction = 'reset'\n", ["event 1.variable"], "does not match"),
     ("[[stimulus]]\nto = 'a.b'\n", ["stimulus 1"], "'constant' is a required property"),
     ("[[stimulus]]\nto = 'a.b'\nconstant = 1\ncsv = 'x'\n", ["stimulus 1.constant", "stimulus 1.csv"], "should not be valid"),
-    ("[[stimulus]]\nto = 'a.b'\nconstant = 'x'\n", ["stimulus 1.constant"], "is not of type 'number'"),
+    ("[[stimulus]]\nto = 'a.b'\nconstant = [1]\n", ["stimulus 1.constant"], "is not valid under any of the given schemas"),
     (METRIC + "reduce = 'maximum'\nthreshold = 1\n", ["metrics 1.reduce"], "'maximum' is not one of"),
     (METRIC + "reduce = 'settling'\n", ["metrics 1"], "'threshold' is a required property"),
     (METRIC + "reduce = 'max'\nthreshold = 1\n", ["metrics 1.threshold"], "should not be valid"),

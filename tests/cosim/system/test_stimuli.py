@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.scenario import StimulusEntry
 from evcosim.cosim.system.stimuli import initial_value, stimulus
 from evcosim.cosim.system.toml import validate
@@ -18,7 +19,7 @@ CLOCK = Clock.counted(0.0, 0.01, 3000)
 
 def values(times, **entry):
     described = StimulusEntry.model_validate({"to": "u.x"} | entry)
-    return stimulus(described, "here", None, CLOCK)(np.array(times, dtype=float))
+    return stimulus(described, "here", None, VariableInfo("x"), CLOCK)(np.array(times, dtype=float))
 
 
 def test_table_is_linear_between_its_points_and_constant_outside():
@@ -30,7 +31,7 @@ def test_table_is_linear_between_its_points_and_constant_outside():
 def test_a_jump_at_the_start_comes_after_the_initialization(interpolation):
     table = [[0.0, 1.0], [0.7, 2.0], [0.7, 3.0], [0.7, 5.0], [1.0, 6.0]]
     entry = StimulusEntry.model_validate({"to": "u.x", "table": table, "interpolation": interpolation})
-    signal = stimulus(entry, "here", None, CLOCK)
+    signal = stimulus(entry, "here", None, VariableInfo("x"), CLOCK)
     assert [initial_value(signal, t) for t in (-1.0, 0.0, 0.7, 1.0)] == [1.0, 1.0, 2.0, 6.0]
     assert signal(np.array([0.7])) == 5.0
 
@@ -38,7 +39,8 @@ def test_a_jump_at_the_start_comes_after_the_initialization(interpolation):
 @given(st.floats(-10.0, 10.0))
 def test_in_the_initialization_a_stimulus_without_a_jump_has_its_value(time):
     for entry in ({"constant": 3.0}, {"sine": {"amplitude": 1.0, "period": 2.0}}, {"ramp": {"slope": 2.0}}):
-        signal = stimulus(StimulusEntry.model_validate({"to": "u.x"} | entry), "here", None, CLOCK)
+        described = StimulusEntry.model_validate({"to": "u.x"} | entry)
+        signal = stimulus(described, "here", None, VariableInfo("x"), CLOCK)
         assert initial_value(signal, time) == signal(np.array([time]))[0]
 
 
@@ -83,7 +85,7 @@ def test_linear_is_numpys_where_times_differ(points):
         ("t,v\n0,1\n1\n", r"line 3 has 1 value, the header has 2"),
         ("t,v\n1,1\n0,2\n", r"line 3, column 't': time goes back from 1.0 s to 0.0 s"),
         ("# c\nt,v\n\n1,1\n#\n0,2\n", r"line 6, column 't': time goes back from 1.0 s to 0.0 s"),
-        ("t,v\n", r"no row below the header"),
+        ("t,v\n", r"there is no row"),
         ("a,b\n0,1\n", r"line 1: no column has a name of the time in s .*: 'a', 'b'"),
         ("time [ms],b\n0,1\n", r"line 1: no column has a name of the time in s .*: 'time \[ms\]', 'b'"),
         ("b,t,Time [s]\n0,1,2\n", r"line 1: 2 columns could be the time: 'b', 't', 'Time \[s\]'"),

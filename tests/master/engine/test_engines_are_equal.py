@@ -145,8 +145,11 @@ def test_a_step_of_fmi_3_that_ends_otherwise(tmp_path, behavior):
 
 
 def test_a_value_that_its_type_does_not_hold(tmp_path):
-    """200 t in an Int8: 128 comes first at t = 0.64 s."""
-    *_, error = same(*one(tmp_path, 3, to="int8_in", end=200.0))
+    """A bias takes the 100 of an Int8 beyond its greatest number at t = 0.64 s."""
+    system, scenario = one(tmp_path, 3, to="int8_in", end=0.0)
+    event = '[[event]]\ntime = {}\naction = "bias"\nvariable = "a.int8_in"\nvalue = {}\n'
+    scenario.write_text(scenario.read_text() + event.format(0.3, 100.0) + event.format(0.64, 128.0))
+    *_, error = same(system, scenario)
     assert error.startswith("at t = 0.64 s (step 64): unit 'a': int8_in cannot be set to 128: ")
 
 

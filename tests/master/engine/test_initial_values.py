@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from evcosim.cosim.errors import RunError
+from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.results import Results
 from evcosim.master.simulation import simulate
 from support.databases import write
@@ -109,9 +109,9 @@ def test_an_fmu_that_nothing_drives_is_asked_for_no_early_inputs(tmp_path: Path,
     assert first(results)["left"] == 7.0
 
 
-def test_an_error_within_the_initialization_stays_one(tmp_path: Path) -> None:
+def test_a_start_beyond_the_type_is_refused_at_load(tmp_path: Path) -> None:
     fmu = initial_fmu(tmp_path / "initial.fmu", 2)
-    with pytest.raises(RunError, match="n cannot be set to 3000000000"):
+    with pytest.raises(ConfigError, match=r"start.n: 3000000000 is beyond the numbers of n, -2147483648 to"):
         run(fmu, "start = { n = 3_000_000_000 }", scenario="", isolation="none")
 
 

@@ -160,9 +160,18 @@ def test_states_and_flags_cross_a_bus_every_100_ms():
 @pytest.mark.parametrize(
     ("event", "said"),
     [
-        ({"action": "override", "variable": "display.state", "value": 1.5}, "needs a whole number, not 1.5"),
-        ({"action": "override", "variable": "display.flag", "value": 2.0}, "overridden by 0 or 1"),
-        ({"action": "bias", "variable": "display.flag", "value": 1.0}, "overridden by 0 or 1, not bias"),
+        (
+            {"action": "override", "variable": "display.state", "value": 1.5},
+            "display.state is an Integer, not 1.5",
+        ),
+        (
+            {"action": "override", "variable": "display.flag", "value": 2.0},
+            "is a Boolean, true or false, not 2.0",
+        ),
+        (
+            {"action": "bias", "variable": "display.flag", "value": 1.0},
+            "action: .* a Boolean, to which nothing can be added",
+        ),
         ({"action": "override", "variable": "display.stat", "value": 1.0}, r"did you mean 'display.state'\?"),
     ],
 )

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.interface import VariableInfo
-from evcosim.master.fmi.transfer import Copy, Item, Transfer, copying, moving, one_after_the_other
-from evcosim.master.fmi.types import BOOLEAN, LARGEST_WHOLE, REAL, STRING, TYPES, FmiType
+from evcosim.master.fmi.transfer import Copy, Item, Transfer, copying, fits, moving, one_after_the_other
+from evcosim.master.fmi.types import BOOLEAN, ENUMERATION, LARGEST_WHOLE, REAL, STRING, TYPES, FmiType
 
 NUMBERS = [kind for kind in TYPES if kind.kind not in (BOOLEAN, STRING)]
 BOOLEANS = [kind for kind in TYPES if kind.kind is BOOLEAN]
@@ -97,9 +97,17 @@ def test_what_does_not_fit_is_refused_before_the_call(kind: FmiType) -> None:
 
 
 @pytest.mark.parametrize("kind", [kind for kind in NUMBERS if kind.kind is not REAL], ids=named)
-def test_a_fraction_is_cut_off(kind: FmiType) -> None:
-    values, found = through(kind, memory_of(1.9, 0.2), [1.0, 1.0])
-    assert (list(values), list(found)) == ([0, 1], [1.0, 0.0])
+def test_a_fraction_is_refused(kind: FmiType) -> None:
+    with pytest.raises(Refused, match=r"1, 0\.9"):
+        through(kind, memory_of(0.9, 1.0), [1.0, 1.0])
+
+
+@pytest.mark.parametrize("value", [0.0, 2.0, 3.0])
+def test_an_enumeration_has_its_items_and_its_start(value: float) -> None:
+    kind = next(t for t in TYPES if t.kind is ENUMERATION)
+    variable = VariableInfo("v", "Enumeration", start=3, items=((0, "off"), (2, "on")))
+    assert fits(value, kind, variable) and not fits(value + 5.0, kind, variable)
+    assert not fits(1.0, kind, variable) and not fits(0.5, kind, variable)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in NUMBERS if kind.wide], ids=named)
@@ -117,10 +125,19 @@ def test_an_integer_that_no_double_holds_is_refused(kind: FmiType) -> None:
 
 
 @pytest.mark.parametrize("kind", BOOLEANS, ids=named)
-def test_any_number_but_0_is_true(kind: FmiType) -> None:
-    values, found = through(kind, memory_of(0.0, -0.0, 0.3, math.nan, -2.0, 1.0), [1.0] * 6)
-    assert list(found) == [0.0, 0.0, 1.0, 1.0, 1.0, 1.0]
-    assert [bool(value) for value in values] == [True, True, True, True, False, False]
+def test_a_boolean_is_set_to_0_or_1_and_any_number_but_0_is_read_as_true(kind: FmiType) -> None:
+    values, found = through(kind, memory_of(0.0, -0.0, 1.0), [1.0] * 3)
+    assert list(found) == [0.0, 0.0, 1.0]
+    assert [bool(value) for value in values] == [True, False, False]
+    for wrong in (2.0, -1.0, 0.3, math.nan):
+        with pytest.raises(Refused):
+            through(kind, memory_of(wrong), [1.0])
+    if kind.c_type is not ctypes.c_bool:
+        made = moving(
+            transfer(kind, (kind.c_type * 1)(2), True, [1.0]), lambda: None, memory := memory_of(5.0), refuse
+        )
+        made()
+        assert memory[0] == 1.0
 
 
 def test_values_in_place_need_no_more_than_the_call() -> None:

@@ -13,11 +13,11 @@ import evcosim.master.engine
 import evcosim.master.fmi
 from evcosim.master.fmi.types import (
     BOOLEAN,
-    BOOLEAN_CODES,
     BUFFERS,
     ENUMERATION,
     INTEGER,
     REAL,
+    REAL_CODES,
     STRING,
     TYPES,
     WIDE_CODES,
@@ -72,7 +72,7 @@ def test_types_of_one_code_are_one_in_memory() -> None:
         if kind.code:
             other = BUFFERS[kind.code]
             assert (other.c_type, other.kind is BOOLEAN) == (kind.c_type, kind.kind is BOOLEAN)
-            assert (kind.code in BOOLEAN_CODES) == (kind.kind is BOOLEAN)
+            assert (kind.code in REAL_CODES) == (kind.kind is REAL)
             assert (kind.code in WIDE_CODES) == kind.wide
     assert len({(t.c_type, t.kind is BOOLEAN) for t in TYPES if t.code}) == len(BUFFERS)
 

@@ -1,0 +1,51 @@
+"""The types that a connection takes from a sender to a receiver.
+
+What is certain before a step is refused here; whether a number is one of the receiver's type, a unit checks
+when it is set.
+"""
+
+from __future__ import annotations
+
+from ..can.bus_settings import Overflow
+from ..can.database import Signal
+from ..errors import ConfigError
+from ..interface import VariableInfo
+
+
+def check_types(
+    source: tuple[str, str], sender: VariableInfo, sink: tuple[str, str], receiver: VariableInfo, place: str
+) -> None:
+    """Raise ConfigError unless a direct connection can take the sender's FMI type to the receiver's."""
+    whole = ("Integer", "Enumeration")
+    fits = (
+        sender.type == receiver.type
+        or (receiver.type == "Real" and sender.type != "String")
+        or (receiver.type in whole and sender.type in (*whole, "Boolean"))
+    )
+    if not fits:
+        raise ConfigError(
+            f"{place}: {'.'.join(source)} is of type {sender.type}, {'.'.join(sink)} of type {receiver.type}"
+        )
+
+
+def check_boolean(
+    sender: VariableInfo, name: str, receiver: VariableInfo, signal: Signal, overflow: Overflow, place: str
+) -> None:
+    """Raise ConfigError for a Boolean receiver of a signal that may carry another number than 0 and 1.
+
+    From a Boolean sender, or an enumeration of 0 and 1, it carries no other.
+    """
+    if receiver.type != "Boolean" or sender.type == "Boolean":
+        return
+    if sender.choices and set(sender.choices) <= {0, 1}:
+        return
+    low, high = signal.raw_type_range
+    least, most = sorted((low * signal.scale + signal.offset, high * signal.scale + signal.offset))
+    if overflow != "wrap":
+        least = least if signal.minimum is None else max(least, signal.minimum)
+        most = most if signal.maximum is None else min(most, signal.maximum)
+    if least < 0.0 or most > 1.0:
+        raise ConfigError(
+            f"{place}: {name} is a Boolean, 0 or 1, and the signal carries numbers from {least:g} to "
+            f"{most:g} of {sender.name}, which is of type {sender.type}"
+        )

@@ -1,0 +1,99 @@
+"""Values that files and calls give to variables: each in the type of its variable, or refused.
+
+Values of a run are kept as doubles, a text as its number in the run's table of texts: a whole number that no
+double holds exactly is refused, never rounded.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any
+
+import numpy as np
+
+from ..errors import ConfigError, nearest
+from ..interface import Value, VariableInfo
+from .problems import brief
+
+_SHOWN_ITEMS = 12
+
+
+def checked(value: Any, variable: VariableInfo, place: str) -> Value:
+    """Return the value, given in the variable's unit, in the variable's type.
+
+    Raises ConfigError, which starts with `place`, when it has another type or is out of range.
+    """
+    found = of_type(value, variable, place)
+    if isinstance(found, bool | str):
+        return found
+    unit = f" {variable.unit}" if variable.unit else ""
+    if variable.min is not None and found < variable.min:
+        raise ConfigError(
+            f"{place}: {value}{unit} is below the minimum {variable.min}{unit} of {variable.name}"
+        )
+    if variable.max is not None and found > variable.max:
+        raise ConfigError(
+            f"{place}: {value}{unit} is above the maximum {variable.max}{unit} of {variable.name}"
+        )
+    return found
+
+
+def of_type(value: Any, variable: VariableInfo, place: str) -> Value:
+    """Return the value in the variable's type; its minimum and maximum count for nothing.
+
+    An enumeration takes the name of an item too. Raises ConfigError, which starts with `place`, for a value
+    of another type, beyond its numbers, or that is no item.
+    """
+    name = variable.name
+    value = value.item() if isinstance(value, np.generic) else value
+    if variable.type == "String":
+        if not isinstance(value, str):
+            raise ConfigError(f"{place}: {name} is a String, not {brief(value)}")
+        return value
+    if variable.type == "Enumeration" and isinstance(value, str):
+        return _item(value, variable, place)
+    if variable.type == "Boolean":
+        if isinstance(value, str) or value not in (True, False):
+            raise ConfigError(f"{place}: {name} is a Boolean, true or false, not {brief(value)}")
+        return bool(value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
+        raise ConfigError(f"{place}: {name} is a finite {variable.type} number, not {brief(value)}")
+    if variable.type != "Real" and value != int(value):
+        raise ConfigError(f"{place}: {name} is an {variable.type}, not {brief(value)}")
+    found = float(value) if variable.type == "Real" else int(value)
+    low, high = variable.limits or (-math.inf, math.inf)
+    if not low <= found <= high:
+        raise ConfigError(f"{place}: {brief(found)} is beyond the numbers of {name}, {low} to {high}")
+    if variable.items and found not in [number for number, _ in variable.items]:
+        raise ConfigError(f"{place}: {brief(found)} is no item of {name}: {_items(variable)}")
+    return found
+
+
+def _item(name: str, variable: VariableInfo, place: str) -> int:
+    """Return the number of an enumeration's item. Raises ConfigError when there is no such item."""
+    values = {text: number for number, text in variable.items}
+    if name not in values:
+        raise ConfigError(
+            f"{place}: {variable.name} has no item '{name}'{nearest(name, values)}: {brief(list(values))}"
+        )
+    return values[name]
+
+
+def _items(variable: VariableInfo) -> str:
+    listed = [f"{number} {name}" for number, name in variable.items]
+    return ", ".join([*listed[:_SHOWN_ITEMS], *(["..."] if len(listed) > _SHOWN_ITEMS else [])])
+
+
+def as_double(variable: VariableInfo, value: Value, place: str) -> float:
+    """Return a number or truth value, in its variable's type, as the double in which a run keeps it.
+
+    Raises ConfigError, which starts with `place`, for a whole number beyond 2^53 that no double holds.
+    """
+    number = float(value)
+    if isinstance(value, int) and int(number) != value:
+        raise ConfigError(
+            f"{place}: {variable.name} = {value} is more than a double, in which a run keeps its values, "
+            "holds exactly (2^53)"
+        )
+    return number
