@@ -13,6 +13,7 @@ seconds longer.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 import os
 import random
@@ -23,6 +24,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 from evcosim import ConfigError, Results
@@ -32,7 +34,7 @@ LONG = [*COMMAND[:6], "udds", "-o", "out"]  # of which a killed run has rows tha
 COUNTS = {"SIGINT": 200, "SIGTERM": 20, "SIGHUP": 20, "SIGKILL": 20}
 _MARK = "EVCOSIM_CAMPAIGN"
 _FIRST = 0.06  # s: before, Python itself is starting, and no line of evcosim has run
-_GONE = 2.0  # s
+_GONE, _LAST = 2.0, 1.0  # s: for children to end; for Python to end when the command has done all
 
 
 @dataclasses.dataclass
@@ -59,12 +61,26 @@ def alive(mark: str) -> list[int]:
     return found
 
 
+@contextlib.contextmanager
+def not_ignored(number: signal.Signals) -> Iterator[None]:
+    """Let a process that is started within not ignore the signal, as a shell's background jobs do."""
+    before = signal.getsignal(number)
+    ignored = number != signal.SIGKILL and before == signal.SIG_IGN
+    if ignored:
+        signal.signal(number, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        if ignored:
+            signal.signal(number, signal.SIG_IGN)
+
+
 def ended(
     number: signal.Signals, moment: float, folder: Path, command: list[str] = COMMAND, cold: bool = False
 ) -> End | None:
     """Start the command in an empty folder, send the signal at a moment [s], and judge the end.
 
-    None where it had ended before by itself. `cold`: with an empty cache.
+    None where it had ended by itself. `cold`: with an empty cache.
     """
     mark = secrets.token_hex(8)
     scratch = folder / "tmp"
@@ -72,9 +88,10 @@ def ended(
     environment = os.environ | {"TMPDIR": str(scratch), _MARK: mark}
     if cold:
         environment["EVCOSIM_CACHE"] = str(folder / "cache")
-    process = subprocess.Popen(
-        command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
+    with not_ignored(number):
+        process = subprocess.Popen(
+            command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
     time.sleep(moment)
     if process.poll() is not None:
         process.communicate()
@@ -86,7 +103,9 @@ def ended(
     while alive(mark) and time.monotonic() - begin - seconds < _GONE:
         time.sleep(0.02)
     problems = [f"process {each} lives" for each in alive(mark)]
-    code = 0 if process.returncode == 0 else (-9 if number == signal.SIGKILL else 128 + number)
+    code = -9 if number == signal.SIGKILL else 128 + number
+    if process.returncode == 0 and seconds < _LAST:
+        return None  # it had done all when the signal came
     if process.returncode != code:
         problems.append(f"exit code {process.returncode}: {err.strip()[-200:]!r}")
     if "Traceback" in out + err or "unexpected error" in err:
