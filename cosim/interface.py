@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from fnmatch import fnmatchcase
 from typing import Literal
 
 from .errors import ConfigError, nearest
@@ -88,6 +89,19 @@ class VariableInfo:
         if self.type == "String":
             return ""
         return 0 if not self.choices or 0 in self.choices else self.choices[0]
+
+
+def fitting(pattern: str, names: Collection[str]) -> list[str]:
+    """Return the names that a pattern fits, in their order: the one that it is, else those it describes.
+
+    Brackets are choices of characters, or, where no name fits so, those of a name, as in `a.x[*]`.
+    """
+    if pattern in names:
+        return [pattern]
+    for each in (pattern, pattern.replace("[", "[[]")):
+        if fits := [name for name in names if fnmatchcase(name, each)]:
+            return fits
+    return []
 
 
 @dataclasses.dataclass(frozen=True)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from fnmatch import fnmatchcase
 
 from ..errors import ConfigError, nearest
-from ..interface import UnitInterface, VariableInfo
+from ..interface import UnitInterface, VariableInfo, fitting
 from .unit_plan import SlotGroup
 
 _NUMERIC = ("Real", "Integer", "Enumeration", "Boolean")
@@ -75,18 +74,19 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         for v in interface.variables.values()
         if v.type in _NUMERIC and v.causality in ("input", "output", "local")
     }
-    recorded = set()
+    public = [name for name, causality in shown.items() if causality != "local"]
+    recorded: set[str] = set()
     out = [pattern[1:] for pattern in patterns if pattern.startswith("!")]
     for pattern in patterns:
         if pattern.startswith("!"):
             continue  # it may fit nothing, as where an FMU that was put in has no such variable
         # a pattern means inputs and outputs; a local variable is recorded where it is named in full
-        fits = {n for n, c in shown.items() if n == pattern or (c != "local" and fnmatchcase(n, pattern))}
+        fits = {pattern} if pattern in shown else set(fitting(pattern, public))
         if not fits and pattern != "*":
             why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
             raise ConfigError(f"{place}: record: '{pattern}' {why}")
         recorded |= fits
-    return {name for name in recorded if not any(name == p or fnmatchcase(name, p) for p in out)}
+    return recorded.difference(*(fitting(pattern, recorded) for pattern in out))
 
 
 def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:

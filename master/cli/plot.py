@@ -45,21 +45,17 @@ def plot(
 def chosen(results: Results, patterns: list[str]) -> Results:
     """Return the results of variables that match a pattern. Raises ConfigError for one that matches none."""
     from ...cosim.errors import ConfigError, nearest
+    from ...cosim.interface import fitting
 
+    found: set[str] = set()
     for pattern in patterns:
-        if not any(_matches(name, pattern) for name in results.names):
+        fits = fitting(pattern, results.names)
+        if not fits:
             raise ConfigError(
                 f"--signals {pattern}: the results have no such variable{nearest(pattern, results.names)}"
             )
-    return results.part(
-        slice(None), [name for name in results.names if any(_matches(name, p) for p in patterns)]
-    )
-
-
-def _matches(name: str, pattern: str) -> bool:
-    from fnmatch import fnmatchcase
-
-    return name == pattern or fnmatchcase(name, pattern)  # FMI names may hold brackets, as in x[1]
+        found.update(fits)
+    return results.part(slice(None), [name for name in results.names if name in found])
 
 
 def spec_of(results: Results) -> FigureSpec | None:

@@ -26,6 +26,30 @@ def test_a_pattern_with_an_exclamation_mark_leaves_out_wherever_it_stands():
     assert not plan([], record=["car.*", "!*"]).columns
 
 
+BRACKETS = UnitInterface(
+    "u.fmu",
+    {
+        name: VariableInfo(name, causality=causality)
+        for name, causality in [("x[1]", "output"), ("x[2]", "output"), ("l[1]", "local"), ("x1", "output")]
+    },
+)
+
+
+@pytest.mark.parametrize(
+    ("record", "names"),
+    [
+        (["u.x[1]", "u.l[1]"], ["x[1]", "l[1]"]),
+        (["u.x[12]"], ["x1"]),
+        (["u.x[*]"], ["x[1]", "x[2]"]),
+        (["*", "!u.x[1]"], ["x[2]", "x1"]),
+        (["*", "!u.x[*]"], ["x1"]),
+    ],
+)
+def test_a_name_with_brackets_is_that_name_first(record: list[str], names: list[str]) -> None:
+    _, columns = allot({"u": BRACKETS}, record, set(), "here")
+    assert [v.name for _, v in columns] == names
+
+
 def test_no_two_values_share_a_slot():
     slots, _ = allot(INTERFACES, ["*"], set(), "here")
     taken = [*slots.valid.values(), *slots.latest.values()]
