@@ -80,8 +80,34 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
         raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
     for entry in found:  # some tools for Windows separate folders as no archive should
         entry.filename = entry.filename.replace("\\", "/")
+    found = _once(path, found)
     _check(path, found, archive_limits())
     return found
+
+
+def _once(path: Path, entries: tuple[zipfile.ZipInfo, ...]) -> tuple[zipfile.ZipInfo, ...]:
+    """Leave out an entry that was written twice under one name with one content, as some build tools do."""
+    kept: dict[str, zipfile.ZipInfo] = {}
+    found = []
+    for entry in entries:
+        first = kept.setdefault(entry.orig_filename, entry)
+        if first is entry or entry.is_dir() or not _equal(path, first, entry):
+            found.append(entry)
+    return tuple(found)
+
+
+def _equal(path: Path, a: zipfile.ZipInfo, b: zipfile.ZipInfo) -> bool:
+    """Return True if both entries have the same bytes, which are compared, not their checksums alone."""
+    if (a.CRC, a.file_size) != (b.CRC, b.file_size) or a.file_size > _DESCRIPTION:
+        return False
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open(a) as one, archive.open(b) as other:
+            while block := one.read(_BLOCK):
+                if block != other.read(_BLOCK):
+                    return False
+            return not other.read(1)
+    except Exception:  # zipfile raises unrelated types for damaged entries, which are not equal then
+        return False
 
 
 def _reason(path: Path, error: Exception) -> str:

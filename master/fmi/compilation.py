@@ -5,19 +5,20 @@ FMPy's own command needs CMake, a valid description and the list of its sources;
 
 from __future__ import annotations
 
-import contextlib
 import os
+import posixpath
 import shlex
 import shutil
-import signal
 import subprocess
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from ...cosim import leftovers
 from ...cosim.writing import replacing
 from .archive import FmuError, extract, read_entry
+from .built_library import exported, ran
 from .description import parsed_xml
 from .fmu import Fmu, read_fmu
 
@@ -54,17 +55,62 @@ def _interfaces(fmu: Fmu) -> list[Fmu]:
 
 
 def _library(fmu: Fmu, folder: Path) -> bytes:
-    """Compile the sources in `folder` and return the bytes of the library. Raises FmuError."""
+    """Compile the sources in `folder`, load the library once, and return its bytes.
+
+    Where its functions have another prefix than FMI's, it is made again with the definitions that leave it
+    out. Raises FmuError.
+    """
+    names = _functions(fmu)
+    identifier = fmu.kind.modelIdentifier
+    found: set[str] = set()
+    for definitions in ([], _NO_PREFIX):
+        target = _built(fmu, folder, definitions)
+        try:
+            found = exported(target, [*names, *(f"{identifier}_{name}" for name in names)])
+        except OSError as error:
+            raise FmuError(f"{fmu.path}: the library of its sources cannot be loaded: {error}") from error
+        if found.issuperset(names):
+            return target.read_bytes()
+    lacking = next(name for name in names if name not in found)
+    other = f"; it has {identifier}_{lacking}" if f"{identifier}_{lacking}" in found else ""
+    raise FmuError(f"{fmu.path}: the library of its sources lacks the function {lacking}{other}")
+
+
+_NO_PREFIX = [  # of 20-sim; of the headers of FMI
+    "-DNO_FUNCTION_PREFIX",
+    "-DFMI2_OVERRIDE_FUNCTION_PREFIX",
+    "-DFMI3_OVERRIDE_FUNCTION_PREFIX",
+]
+
+
+def _functions(fmu: Fmu) -> list[str]:
+    """Return two functions that the library of the interface must have."""
+    steps = fmu.interface_type == "co_simulation"
+    version = fmu.description.fmiVersion[0]
+    if version == "1":
+        what = ("InstantiateSlave", "DoStep") if steps else ("InstantiateModel", "GetDerivatives")
+        return [f"{fmu.kind.modelIdentifier}_fmi{name}" for name in what]
+    if version == "2":
+        return ["fmi2Instantiate", "fmi2DoStep" if steps else "fmi2GetDerivatives"]
+    if steps:
+        return ["fmi3InstantiateCoSimulation", "fmi3DoStep"]
+    return ["fmi3InstantiateModelExchange", "fmi3GetContinuousStateDerivatives"]
+
+
+def _built(fmu: Fmu, folder: Path, definitions: list[str]) -> Path:
+    """Compile the sources in `folder` to where the library belongs there, and return it. Raises FmuError."""
     sources, flags = _declared(fmu)
-    target = folder / "evcosim-library"
+    target = folder / fmu.binary
+    target.parent.mkdir(parents=True, exist_ok=True)
     headers = Path(_fmpy_folder()) / "c-code"
+    more = sorted({str(path.parent) for path in (folder / "sources").rglob("*.h")})
     command = [
-        *shlex.split(os.environ.get("CC", "cc")), "-O2", "-fPIC", "-shared", "-w", *flags,
-        f"-I{folder / 'sources'}", f"-I{headers}", *(str(folder / name) for name in sources),
-        "-o", str(target), "-lm",
+        *shlex.split(os.environ.get("CC", "cc")), "-O2", "-fPIC", "-shared", "-w", *flags, *definitions,
+        f"-I{folder / 'sources'}", f"-I{headers}", *(f"-idirafter{path}" for path in more),
+        *(str(folder / name) for name in sources), "-o", str(target), "-lm",
     ]  # fmt: skip # the order in which compilers want it
     try:
-        code, said = _ran(command, folder / "sources")
+        code, said = ran(command, folder / "sources", _TIME)
     except FileNotFoundError as error:
         raise FmuError(
             f"{fmu.path}: there is no C compiler '{command[0]}' here; install one (apt-get install gcc) or "
@@ -75,32 +121,7 @@ def _library(fmu: Fmu, folder: Path) -> bytes:
     if code:
         said = said.replace(f"{folder}{os.sep}", "")
         raise FmuError(f"{fmu.path}: {command[0]} cannot compile its sources:\n{said.strip()[:_SHOWN]}")
-    return target.read_bytes()
-
-
-def _ran(command: list[str], folder: Path) -> tuple[int, str]:
-    """Run a command in a folder; return its exit code and its messages. It ends with this process."""
-    running = subprocess.Popen(
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
-    )
-
-    def kill() -> None:  # a compiler starts processes of its own
-        if hasattr(os, "killpg"):
-            os.killpg(running.pid, signal.SIGKILL)
-        else:
-            running.kill()
-
-    leftovers.add_child(running.pid, kill)
-    try:
-        out, err = running.communicate(timeout=_TIME)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            kill()
-        running.communicate()
-        raise
-    finally:
-        leftovers.forget_child(running.pid)
-    return running.returncode, (err + out).decode("utf-8", "replace")
+    return target
 
 
 def _fmpy_folder() -> str:
@@ -127,7 +148,13 @@ def _root(fmu: Fmu, entry: str) -> Any:
 def _of_fmi_2(fmu: Fmu) -> tuple[list[str], list[str]]:
     tag = "CoSimulation" if fmu.interface_type == "co_simulation" else "ModelExchange"
     files = _root(fmu, "modelDescription.xml").findall(f"{tag}/SourceFiles/File")
-    return [f"sources/{file.get('name')}" for file in files], []
+    return _entries(files), []
+
+
+def _entries(files: Iterable[Any]) -> list[str]:
+    """Return the archive's entries for declared files, which tools write as ./util/a.c and util\\a.c too."""
+    names = [str(file.get("name")).replace("\\", "/") for file in files]
+    return list(dict.fromkeys(posixpath.normpath(f"sources/{name}") for name in names))
 
 
 def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
@@ -138,7 +165,7 @@ def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
     found = _root(fmu, entry).findall("BuildConfiguration")
     mine = [c for c in found if c.get("modelIdentifier") == fmu.kind.modelIdentifier]
     sets = mine[0].findall("SourceFileSet") if mine else []
-    names = [f"sources/{file.get('name')}" for each in sets for file in each.findall("SourceFile")]
+    names = _entries(file for each in sets for file in each.findall("SourceFile"))
     flags = []
     for definition in [d for each in sets for d in each.findall("PreprocessorDefinition")]:
         value = definition.get("value")

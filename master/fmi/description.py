@@ -10,9 +10,10 @@ from __future__ import annotations
 import contextlib
 import gc
 import io
+import os
 import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,8 @@ def read_description(
         with zipfile.ZipFile(packed, "w") as archive:
             archive.writestr("modelDescription.xml", etree.tostring(root))
         try:
-            description = read_model_description(packed, validate=False)
+            with from_a_readable_folder():
+                description = read_model_description(packed, validate=False)
         except Exception as error:  # FMPy raises five unrelated types for broken descriptions
             raise FmuError(f"{path}: modelDescription.xml cannot be read: {error}") from error
     supplement(description, root)
@@ -60,6 +62,22 @@ def no_collection() -> Iterator[None]:
     finally:
         if enabled:
             gc.enable()
+
+
+@contextlib.contextmanager
+def from_a_readable_folder() -> Iterator[None]:
+    """Leave a working folder whose name is no UTF-8: lxml refuses to parse there whatever it is given."""
+    here = os.getcwd()
+    try:
+        here.encode()
+    except UnicodeEncodeError:
+        os.chdir("/")
+        try:
+            yield
+        finally:
+            os.chdir(here)
+    else:
+        yield
 
 
 def parsed_xml(place: str, xml: bytes) -> Any:
@@ -113,7 +131,7 @@ def _mend(path: Path, root: Any) -> list[str]:
     scalar = version[0] in "12"
     types = {t.get("name") for t in root.iter("SimpleType", "Type")}
     types |= {t.get("name") for t in root.findall("TypeDefinitions/*")}
-    seen: set[str] = set()
+    seen: dict[str, tuple[int, Any]] = {}
     for index, v in enumerate(variables, 1):
         value = next((c for c in v if fmi_type(version, c.tag) is not None), None) if scalar else v
         name = v.get("name")
@@ -123,17 +141,39 @@ def _mend(path: Path, root: Any) -> list[str]:
                 f"line {v.sourceline}: a variable without {'a type' if name else 'a name'} is left out"
             )
             continue
-        places[index] = len(places) + 1
+        if name in seen and _alike(v, seen[name][1]):
+            places[index] = places[seen[name][0]]
+            v.getparent().remove(v)
+            defects.append(_said_twice(v, seen[name][1]))
+            continue
+        places[index] = len(seen) + 1
         _require(path, v, name, seen)
+        seen[name] = index, v
         defects += _mend_variable(v, value, name, types, fmi_type(version, value.tag))
     return defects + mend_attributes(root) + mend_structure(root, places)
 
 
-def _require(path: Path, v: Any, name: str, seen: set[str]) -> None:
+def _alike(v: Any, first: Any) -> bool:
+    """Return True if two declarations of one name differ in their value references at most."""
+
+    def content(element: Any, *without: str) -> Any:
+        own = {key: value for key, value in element.attrib.items() if key not in without}
+        return element.tag, own, (element.text or "").strip(), [content(child) for child in element]
+
+    return bool(content(v, "valueReference") == content(first, "valueReference"))
+
+
+def _said_twice(v: Any, first: Any) -> str:
+    one, other = (element.get("valueReference") for element in (first, v))
+    taken = "" if one == other else f"; that with valueReference {one} is taken, {other} is left out"
+    lines = f"lines {first.sourceline} and {v.sourceline}"
+    return f"{v.get('name')}: declared twice alike, in {lines}{taken}"
+
+
+def _require(path: Path, v: Any, name: str, seen: Collection[str]) -> None:
     place = f"{path}: modelDescription.xml: variable '{name}' (line {v.sourceline})"
     if name in seen:
         raise FmuError(f"{place} is declared twice")
-    seen.add(name)
     reference = v.get("valueReference")
     if reference is None or not re.fullmatch(r"\d+", reference) or int(reference) >= 2**32:
         raise FmuError(

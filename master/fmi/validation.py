@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .archive import entries_of, read_entry
-from .description import no_collection, parsed_xml
+from .description import from_a_readable_folder, no_collection, parsed_xml
 
 _BASIC = r"[A-Za-z_][A-Za-z_0-9]*"
 _IN_QUOTES = r"""[A-Za-z_0-9!#$%&()*+,\-./:;<>=?@[\]^{}|~ "\\\n\r\t\f]|\\'"""
@@ -41,8 +41,9 @@ def validated(path: Path) -> list[str]:
 
     problems: list[str] = []
     try:
-        with no_collection():
-            read_model_description(str(path), validate=True, validate_model_structure=True)
+        file = str(path.absolute())
+        with no_collection(), from_a_readable_folder():
+            read_model_description(file, validate=True, validate_model_structure=True)
     except ValidationError as error:
         problems = error.problems
         if problems and _OF_SCHEMA.match(problems[0]):

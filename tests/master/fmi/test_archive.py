@@ -81,6 +81,23 @@ def test_two_entries_that_are_one_file(tmp_path: Path) -> None:
         entries_of(tmp_path / "a.fmu")
 
 
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize(("content", "once"), [(b"a" * 100, True), (b"b" * 100, False), (b"a", False)])
+def test_an_entry_that_was_written_twice(tmp_path: Path, content: bytes, once: bool) -> None:
+    path = tmp_path / "a.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        for text in (b"a" * 100, content):
+            file.writestr("extra/manifest.xml", text)
+    if not once:
+        with pytest.raises(FmuError, match="are the same file"):
+            entries_of(path)
+        return
+    assert [entry.filename for entry in entries_of(path)] == ["extra/manifest.xml"]
+    folder = extract(path)
+    assert (folder / "extra/manifest.xml").read_bytes() == content
+    shutil.rmtree(folder)
+
+
 def test_what_is_no_archive(tmp_path: Path) -> None:
     (tmp_path / "empty.fmu").write_bytes(b"")
     (tmp_path / "text.fmu").write_text("hello")

@@ -99,3 +99,84 @@ def test_the_command_says_that_there_is_no_compiler(evcosim, tmp_path: Path, mon
     monkeypatch.delenv("CC")
     assert "bare.fmu" in evcosim("compile", "bare.fmu").out
     assert answer(tmp_path / "bare.fmu") == answer(tmp_path / "full.fmu")
+
+
+PREFIXED = """
+#define PASTE(a, b) a##b
+#define FULL(a, b) PASTE(a, b)
+#if {condition}
+#define fmi2Instantiate FULL(PREFIX, fmi2Instantiate)
+#define fmi2DoStep FULL(PREFIX, fmi2DoStep)
+#endif
+#define PREFIX mixed_
+"""
+
+
+@pytest.mark.parametrize(
+    "condition", ["!defined NO_FUNCTION_PREFIX", "!defined FMI2_OVERRIDE_FUNCTION_PREFIX"]
+)
+def test_a_prefix_of_the_functions_is_left_out(tmp_path: Path, condition: str) -> None:
+    made = compile_fmu(
+        bare(tmp_path / "bare.fmu", 2, {"mixed.c": PREFIXED.format(condition=condition) + source(2)})
+    )
+    assert answer(made) == answer(tmp_path / "full.fmu")
+
+
+CLOSED = [
+    (PREFIXED.format(condition=1), "lacks the function fmi2Instantiate; it has mixed_fmi2Instantiate$"),
+    ("#define fmi2DoStep other\n", "lacks the function fmi2DoStep$"),
+    (
+        'char *_strdup(const char *); char *copy(void) { return _strdup(""); }\n',
+        r'undefined symbol: _strdup, which strdup is here: CC="cc -D_strdup=strdup" evcosim compile',
+    ),
+    ("void gone(void); void call(void) { gone(); }\n", "undefined symbol: gone: its sources call a function"),
+    ("__attribute__((constructor)) void ends(void) { __builtin_trap(); }\n", "loading it ended with SIGILL"),
+    ("void _exit(int); __attribute__((constructor)) void ends(void) { _exit(3); }\n", "no reason was given"),
+]
+
+
+@pytest.mark.parametrize(("more", "message"), CLOSED)
+def test_a_library_that_is_of_no_use_is_not_put_in(tmp_path: Path, more: str, message: str) -> None:
+    path = bare(tmp_path / "bare.fmu", 2, {"mixed.c": more + source(2)})
+    content = path.read_bytes()
+    with pytest.raises(FmuError, match=rf"{path}: the library of its sources .*{message}"):
+        compile_fmu(path)
+    assert path.read_bytes() == content
+
+
+def test_the_advice_for_a_function_of_windows_works(tmp_path: Path, monkeypatch) -> None:
+    use = 'char *_strdup(const char *); char *copy(void) { return _strdup(""); }\n'
+    path = bare(tmp_path / "bare.fmu", 2, {"mixed.c": use + source(2)})
+    monkeypatch.setenv("CC", "cc -D_strdup=strdup")
+    assert answer(compile_fmu(path)) == answer(tmp_path / "full.fmu")
+
+
+@pytest.mark.parametrize("written", ["./deep/mixed.c", "deep\\mixed.c", "deep/../deep//mixed.c"])
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_source_paths_as_tools_write_them(tmp_path: Path, fmi: int, written: str) -> None:
+    """Their headers are found in other folders of the sources too."""
+    sources = {
+        "deep/mixed.c": '#include "about.h"\n'
+        + source(fmi).partition("#define BEHAVIOR")[2].partition("\n")[2],
+        "include/about.h": DEFINED.format(fmi=fmi),
+        "other.c": "#error not this",
+    }
+    if fmi == 3:
+        build = BUILD.partition("<PreprocessorDefinition")[0].replace('"mixed.c"', f'"{written}"')
+        sources["buildDescription.xml"] = (
+            f"{build}</SourceFileSet></BuildConfiguration></fmiBuildDescription>"
+        )
+    path = bare(tmp_path / "bare.fmu", fmi, sources)
+    if fmi == 2:
+        files = f'<SourceFiles><File name="{written}"/></SourceFiles>'
+        with zipfile.ZipFile(path) as old:
+            entries = {name: old.read(name) for name in old.namelist()}
+        text = entries["modelDescription.xml"].decode()
+        begin = '<CoSimulation modelIdentifier="mixed"'
+        entries["modelDescription.xml"] = text.replace(
+            f"{begin}/>", f"{begin}>{files}</CoSimulation>"
+        ).encode()
+        with zipfile.ZipFile(path, "w") as new:
+            for name, content in entries.items():
+                new.writestr(name, content)
+    assert answer(compile_fmu(path)) == answer(tmp_path / "full.fmu")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import zipfile
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from evcosim.master.fmi.description import _mend, parsed_xml
 from evcosim.master.fmi.fmu import FmuError, read_fmu
+from evcosim.master.fmi.validation import validated
 from support.descriptions import GOOD, changed, described
 
 
@@ -79,6 +81,33 @@ def test_what_has_no_sensible_reading_is_refused(
     assert text != GOOD
     with pytest.raises(FmuError, match=rf"a.fmu: modelDescription.xml.*{reason}"):
         read_fmu(described(tmp_path, text))
+
+
+def test_a_variable_that_is_declared_twice_alike_is_taken_once(tmp_path: Path) -> None:
+    """The places that the structure counts are those of the file, the left out one's is that of the first."""
+    u, y = (line for line in GOOD.splitlines(keepends=True) if 'name="u"' in line or 'name="y"' in line)
+    again = u.replace('valueReference="0"', 'valueReference="7"')
+    text = GOOD.replace(y, again + y).replace('index="2" dependencies="1"', 'index="3" dependencies="2"')
+    found = read_fmu(described(tmp_path, text))
+    said = "u: declared twice alike, in lines 6 and 7; that with valueReference 0 is taken, 7 is left out"
+    assert found.defects == (said,)
+    assert found.interface.variables == read_fmu(described(tmp_path, GOOD)).interface.variables
+    assert [v.valueReference for v in found.description.modelVariables] == [0, 1, 2]
+    assert read_fmu(described(tmp_path, GOOD.replace(y, u + y))).defects[0].endswith("lines 6 and 7")
+    for change in (("1.5", "1.6"), ("input", "local"), ("Real", "Integer")):
+        with pytest.raises(FmuError, match=r"variable 'u' \(line 7\) is declared twice"):
+            read_fmu(described(tmp_path, GOOD.replace(y, again.replace(*change) + y)))
+
+
+def test_a_working_folder_whose_name_is_no_utf_8(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / os.fsdecode(b"f\xfcr")
+    folder.mkdir()
+    described(folder, GOOD)
+    monkeypatch.chdir(folder)
+    path = Path("a.fmu")
+    assert "y" in read_fmu(path).interface.variables
+    assert not [message for message in validated(path) if "codec" in message]
+    assert Path.cwd() == folder
 
 
 def test_a_document_type_in_another_encoding(tmp_path: Path) -> None:
