@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Unpack
 
@@ -12,7 +12,7 @@ from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
 from ..cosim.plan.plan import Plan
 from ..cosim.plan.resolve import participating, resolve
-from ..cosim.swap.mapping import present, without_absent, without_untaken
+from ..cosim.swap.mapping import present, without_absent, without_open, without_untaken
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.sampled import inherited, sampled_in, told, untold
 from ..cosim.swap.swap_file import swapped
@@ -54,7 +54,8 @@ def prepare(
     # the files: system and scenario, with varied buses and swapped units, without absent variables
     read, driven = _files(system, scenario, options)
     original = read
-    read, driven, left_out = without_absent(swapped(read, swaps), driven)
+    read, opened = without_open(swapped(read, swaps), options.get("allow_open", False))
+    read, driven, left_out = without_absent(read, driven)
     # the FMUs, and the interfaces that they present to the system
     loaded = _read_fmus(read, driven, fmus, options.get("strict", False), runnable)
     interfaces, sampling = {}, []
@@ -71,7 +72,8 @@ def prepare(
     read, untaken = without_untaken(read, interfaces)
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
-    plan = dataclasses.replace(plan, warnings=(*left_out, *untaken, *sampling, *plan.warnings))
+    undriven = _undriven(plan, opened)
+    plan = dataclasses.replace(plan, warnings=(*left_out, *undriven, *untaken, *sampling, *plan.warnings))
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)
@@ -101,6 +103,16 @@ def of_place(system: System, unit: str) -> UnitInterface:
     except ConfigError:  # the place of an FMU that is not there is taken by another one
         return UnitInterface(entry.fmu, {})
     return interface if entry.sampled is None else told(interface, unit, entry.sampled, keys)
+
+
+def _undriven(plan: Plan, opened: Sequence[str]) -> list[str]:
+    """Return a sentence on the inputs that nothing drives, for each of the units with `open` names."""
+    said = []
+    for unit in opened:
+        names = [n for n, p in plan.inputs.items() if n.startswith(f"{unit}.") and not p.driver]
+        if names:
+            said.append(f"open: nothing drives {', '.join(names)}, which keep their start values")
+    return said
 
 
 def _check_one_fmu(swaps: Mapping[str, str | Path], fmus: Mapping[str, str | Path]) -> None:

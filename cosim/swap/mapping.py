@@ -129,6 +129,29 @@ def _with_names(v: VariableInfo, names: Mapping[str, str]) -> VariableInfo:
     return dataclasses.replace(v, depends=known(v.depends), depends_initially=known(v.depends_initially))
 
 
+def without_open(system: System, allowed: bool) -> tuple[System, tuple[str, ...]]:
+    """Return the system with the `open` names of its units as absent ones, and the units that have any.
+
+    Raises ConfigError that names them, unless they are `allowed`.
+    """
+    units, found = dict(system.file.units), []
+    for unit, entry in system.file.units.items():
+        mapped = {name for table in entry.map.by_causality.values() for name in table}
+        left = [name for name in entry.open if name not in mapped and name not in entry.absent]
+        if left and not allowed:
+            raise ConfigError(
+                f"{system.keys_of(unit)}open: no variable of {entry.fmu} is chosen for {', '.join(left)}; "
+                "map each (its guess may stand in the file as a comment), or allow it (--allow-open, in "
+                "Python allow_open=True): then what needs them is left out"
+            )
+        if left:
+            units[unit] = entry.model_copy(update={"absent": [*entry.absent, *left], "open": []})
+            found.append(unit)
+    if not found:
+        return system, ()
+    return dataclasses.replace(system, file=system.file.model_copy(update={"units": units})), tuple(found)
+
+
 def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario, tuple[str, ...]]:
     """Return system and scenario without what needs absent variables, and a sentence for each loss."""
     absent = {f"{unit}.{name}" for unit, entry in system.file.units.items() for name in entry.absent}

@@ -21,7 +21,9 @@ from .requirements import ROLES, Requirement, Role
 
 Verdict = Literal["fits", "fits after conversion", "your choice", "missing", "unused"]
 
-_WEAK = 0.45  # a lower score is of the unit of measure alone
+LIKENESS = 0.45
+"""The score of a guess below which the unit of measure alone speaks for it."""
+
 _MARGIN = 0.1  # by which a score is above all others of its need
 _CANDIDATES = 4  # variables that are named beside the one that is taken
 _CAUSALITIES: dict[Role, tuple[str, ...]] = {
@@ -39,6 +41,7 @@ class Match:
     gives, takes or sets it in the system. `candidates` are the variables that could be chosen, best first.
     `unit` is the unit of measure that stands in for one that the FMU does not declare ("": its own counts);
     `invert` is true where an existing mapping turns the sign, and `factor`, `offset` and `convert` are its.
+    `likeness` is the score of a guess, from 0 to 1; None: a variable of the same name, or as mapped.
     """
 
     need: str
@@ -53,6 +56,7 @@ class Match:
     factor: float | None = None
     offset: float | None = None
     convert: bool | None = None
+    likeness: float | None = None
 
     @property
     def others(self) -> list[str]:
@@ -219,13 +223,22 @@ def _judged(
     verdict, reason, unit = _converts(need, v, offer)
     own = scores[candidates.index(v)]
     rival = max((score for score, name in scored if name != v.name), default=0.0)
-    if v.name != need.name and own < _WEAK:
-        verdict, reason = "your choice", f"only the unit of measure speaks for it; {reason}"
+    if v.name != need.name and own < LIKENESS:
+        verdict, reason = (
+            "your choice",
+            f"only the unit of measure speaks for it (likeness {own:.2f}); {reason}",
+        )
     elif v.name != need.name and own - rival < _MARGIN:
         verdict, reason = "your choice", f"others are as likely; {reason}"
     if v.causality == "local":
         reason += "; a local variable, read as an output"
-    return Match(need.name, need.role, v.name, verdict, reason, need.needed, named, unit)
+    guessed = None if v.name == need.name else own
+    return Match(need.name, need.role, v.name, verdict, reason, need.needed, named, unit, likeness=guessed)
+
+
+def is_open(match: Match, likeness: float = LIKENESS) -> bool:
+    """Return True for a guess of a lower likeness, which is the user's to confirm."""
+    return bool(match.need and match.variable) and match.likeness is not None and match.likeness < likeness
 
 
 def fits(found: Sequence[Match]) -> bool:

@@ -14,15 +14,21 @@ from ..errors import ConfigError, nearest
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
 from ..writing import write_text
-from .matching import Match
+from .matching import LIKENESS, Match, is_open
 from .requirements import ROLES, Role
 
 if TYPE_CHECKING:
     from tomlkit import TOMLDocument
     from tomlkit.items import Comment, InlineTable, Item, Table
 
-_WRITTEN_APART = ("fmu", "absent", "map", "parameters", "start")
+_WRITTEN_APART = ("fmu", "absent", "open", "map", "parameters", "start")
 """The keys of a unit that have a place of their own in a swap file that is written."""
+
+
+_ABOUT_OPEN = (
+    "names of the system with no choice yet: guesses of a likeness below {:g} stand below as comments; take "
+    "one, map another variable, or run with --allow-open, which leaves out what needs them"
+)
 
 
 class SwapFile(UnitEntry):
@@ -78,12 +84,17 @@ def entry_of(fmu: str, matches: Sequence[Match], entry: UnitEntry | None = None)
                 convert=match.convert,
             )
     return (entry or UnitEntry(fmu=fmu)).model_copy(
-        update={"fmu": fmu, "map": MapTables.model_validate(tables), "absent": _absent(matches)}
+        update={"fmu": fmu, "map": MapTables.model_validate(tables), "absent": _absent(matches), "open": []}
     )
 
 
 def _absent(matches: Sequence[Match]) -> list[str]:
     return [m.need for m in matches if m.need and (m.verdict == "missing" or not m.variable)]
+
+
+def open_names(matches: Sequence[Match], likeness: float = LIKENESS) -> list[str]:
+    """Return the names of the system for which a swap file that is written has a commented guess only."""
+    return [match.need for match in matches if is_open(match, likeness)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -107,20 +118,27 @@ def write(
     matches: Sequence[Match],
     entry: UnitEntry | None = None,
     proposal: Proposal | None = None,
+    likeness: float = LIKENESS,
 ) -> None:
     """Write a swap file of matches, with the reason beside each; the other keys of `entry` are kept.
 
-    `place` is "system.unit". What a trial proposes stands in it, marked as proposed. Raises ConfigError when
+    Guesses of a lower `likeness` stand in it as comments, and their names as `open`. `place` is
+    "system.unit". What a trial proposes stands in it, marked as proposed. Raises ConfigError when
     the file cannot be written.
     """
     from tomlkit import dumps
 
     relative = os.path.relpath(fmu, path.parent or Path("."))
-    write_text(path, dumps(_document(relative, place, matches, entry, proposal or Proposal())))
+    write_text(path, dumps(_document(relative, place, matches, entry, proposal or Proposal(), likeness)))
 
 
 def _document(
-    fmu: str, place: str, matches: Sequence[Match], entry: UnitEntry | None, proposal: Proposal
+    fmu: str,
+    place: str,
+    matches: Sequence[Match],
+    entry: UnitEntry | None,
+    proposal: Proposal,
+    likeness: float,
 ) -> TOMLDocument:
     import tomlkit
 
@@ -133,13 +151,16 @@ def _document(
         document.add(name, item)
     document.add(_comment("names of the system that the FMU does not have; what needs them is left out"))
     document.add("absent", tomlkit.item(_absent(matches)))
+    if left := open_names(matches, likeness):
+        document.add(_comment(_ABOUT_OPEN.format(likeness)))
+        document.add("open", tomlkit.item(left))
     if proposal.remarks:
         document.add(tomlkit.nl())
     for remark in proposal.remarks:
         document.add(_comment(remark))
     tables = tomlkit.table(is_super_table=True)
     for role in ROLES:
-        tables.add(f"{role}s", _map_table([m for m in matches if m.role == role], role, proposal))
+        tables.add(f"{role}s", _map_table([m for m in matches if m.role == role], role, proposal, likeness))
     document.add("map", tables)
     for name in ("parameters", "start"):
         if values := getattr(entry, name, {}):
@@ -158,8 +179,8 @@ def _kept(entry: UnitEntry | None, proposal: Proposal) -> dict[str, Item]:
     return kept
 
 
-def _map_table(matches: Sequence[Match], role: Role, proposal: Proposal) -> Table:
-    """Return the table `[map.ROLEs]`; what is missing or unused stands in it as a comment."""
+def _map_table(matches: Sequence[Match], role: Role, proposal: Proposal, likeness: float) -> Table:
+    """Return the table `[map.ROLEs]`; what is missing, unused or open stands in it as a comment."""
     import tomlkit
 
     table = tomlkit.table()
@@ -171,7 +192,14 @@ def _map_table(matches: Sequence[Match], role: Role, proposal: Proposal) -> Tabl
             name = tomlkit.key(match.need).as_string()
             table.add(_comment(f"{name} = ?  # {match.reason}{others}"))
         else:
-            table.add(match.need, _mapped(match, proposal.invert.get((f"{role}s", match.need))))
+            item = _mapped(match, proposal.invert.get((f"{role}s", match.need)))
+            if is_open(match, likeness):
+                name = tomlkit.key(match.need).as_string()
+                table.add(
+                    _comment(f"{name} = {item.as_string()}{item.trivia.comment_ws}{item.trivia.comment}")
+                )
+            else:
+                table.add(match.need, item)
     return table
 
 

@@ -26,6 +26,9 @@ class RunOptions(TypedDict, total=False):
     swaps: Mapping[str, str | Path] | None
     """Paths of swap files by unit: FMUs with other names, units and signs in the place of a unit."""
 
+    allow_open: bool
+    """Run although a swap file has `open` names: what needs them is left out (default: False)."""
+
     ideal: bool
     """Leave the buses out: unit conversion only (default: False)."""
 
@@ -85,6 +88,7 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "parameters": _BY_NAME,
     "fmus": _BY_NAME,
     "swaps": _BY_NAME,
+    "allow_open": _FLAG,
     "ideal": _FLAG,
     "bus": (lambda value: isinstance(value, BusVariation), "must be a BusVariation"),
     "algorithm": _one_of(Algorithm),

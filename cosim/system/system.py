@@ -193,6 +193,10 @@ class UnitEntry(FileModel):
     absent: list[str] = []
     """Names of the system that the FMU does not have; what needs them is left out."""
 
+    open: list[str] = []
+    """Names of the system for which no variable of the FMU is chosen yet; a run needs `--allow-open`, and
+    leaves out what needs them. A name that is mapped is no longer open."""
+
 
 class _BusFile(FileModel):
     """The key of a bus that is no setting; a base of its own, so that it comes first."""

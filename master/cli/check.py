@@ -43,6 +43,10 @@ def check(
     write: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a swap file, ready to edit.")
     ] = None,
+    likeness: Annotated[
+        float,
+        typer.Option(metavar="X", min=0.0, max=1.0, help="Write guesses of a lower likeness as comments."),
+    ] = 0.45,
     strict: StrictOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
@@ -64,12 +68,12 @@ def check(
     if tried is not None and not as_json:
         _show_trial(tried)
     if write is not None:
-        _write(checked, write, tried)
+        _write(checked, write, tried, likeness)
     complete = fits(checked.matches)
     if as_json:
         print_json(_as_data(checked, complete, tried))
     else:
-        _conclude(complete, checked, file, write, tried)
+        _conclude(complete, checked, file, write, tried, likeness)
     return 0 if complete and (tried is None or tried.passed) else 1
 
 
@@ -149,11 +153,11 @@ def _tried(checked: _Checked, duration: float) -> Trial:
     return try_unit(checked.system, checked.scenario, checked.unit, entry, names, duration)
 
 
-def _write(checked: _Checked, path: Path, tried: Trial | None) -> None:
+def _write(checked: _Checked, path: Path, tried: Trial | None, likeness: float) -> None:
     from ...cosim.swap.swap_file import write
 
     proposal = tried.proposal if tried else None
-    write(path, str(checked.fmu), checked.place, checked.matches, checked.entry, proposal)
+    write(path, str(checked.fmu), checked.place, checked.matches, checked.entry, proposal, likeness)
 
 
 def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str, object]:
@@ -206,8 +210,16 @@ def _show_trial(tried: Trial) -> None:
     print()
 
 
-def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, tried: Trial | None) -> None:
+def _conclude(
+    complete: bool,
+    checked: _Checked,
+    file: str,
+    write: Path | None,
+    tried: Trial | None,
+    likeness: float,
+) -> None:
     from ...cosim.errors import counted
+    from ...cosim.swap.swap_file import open_names
 
     counts: dict[str, int] = {}
     for match in checked.matches:
@@ -220,7 +232,11 @@ def _conclude(complete: bool, checked: _Checked, file: str, write: Path | None, 
     print(", ".join(f"{n} {verdict}" for verdict, n in counts.items()))
     conclusion = " and ".join(remaining) or "it fits"
     if write is not None:
-        print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}")
+        left_open = open_names(checked.matches, likeness)
+        allowed = " --allow-open" if left_open else ""
+        print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}{allowed}")
+        if left_open:
+            print(f"open, each with its guess as a comment in {write}: {', '.join(left_open)}")
     elif complete and file.endswith(".toml"):
         print(f"{conclusion}: evcosim run {system} --swap {unit}={file}")
     else:

@@ -77,6 +77,10 @@ SwapsOption = Annotated[
     list[str] | None,
     typer.Option("--swap", metavar="UNIT=FILE", help="Put an FMU in by its swap file; can be given again."),
 ]
+AllowOpenOption = Annotated[
+    bool,
+    typer.Option("--allow-open", help="Run although a swap file leaves names open; say what is undriven."),
+]
 IdealOption = Annotated[bool, typer.Option("--ideal", help="Leave the buses out: unit conversion only.")]
 AlgorithmOption = Annotated[
     AlgorithmChoice | None,
@@ -100,6 +104,7 @@ def _run_options(
     settings: SettingsOption = None,
     fmus: FmusOption = None,
     swaps: SwapsOption = None,
+    allow_open: AllowOpenOption = False,
     ideal: IdealOption = False,
     algorithm: AlgorithmOption = None,
     isolation: IsolationOption = None,
@@ -114,6 +119,7 @@ def _run_options(
         "parameters": parse_settings(settings or []),
         "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
         "swaps": parse_files("--swap", swaps or [], "my/swap.toml"),
+        "allow_open": allow_open,
         "ideal": ideal,
         "algorithm": algorithm.value if algorithm else None,
         "isolation": isolation.value if isolation else None,

@@ -8,7 +8,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.swap.mapping import present, without_absent, without_untaken
+from evcosim.cosim.swap.mapping import present, without_absent, without_open, without_untaken
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile
 from evcosim.cosim.system.system import System, SystemFile, UnitEntry
 from evcosim.cosim.units.measure import Affine
@@ -234,3 +234,14 @@ def test_a_unit_of_measure_beside_a_factor_is_the_systems() -> None:
 def test_what_cannot_be_scaled_is_named_with_its_key(tables: dict[str, object], said: str) -> None:
     with pytest.raises(ConfigError, match=rf"^s.toml: units.u.map\.\w+\.\w+: .*{said}"):
         shown(**tables)
+
+
+def test_open_names_stop_a_run_unless_they_are_allowed() -> None:
+    entry = {"fmu": "V.fmu", "open": ["throttle", "speed", "mass"], "map": {"outputs": {"speed": "v"}}}
+    system = System(Path("s.toml"), SystemFile.model_validate({"name": "s", "units": {"u": entry}}))
+    with pytest.raises(ConfigError, match=r"s.toml: units.u.open: .*V.fmu is chosen for throttle, mass; map"):
+        without_open(system, False)
+    allowed, units = without_open(system, True)
+    assert units == ("u",)  # a name that is mapped is open no longer
+    assert (allowed.file.units["u"].absent, allowed.file.units["u"].open) == (["throttle", "mass"], [])
+    assert without_open(allowed, False) == (allowed, ())

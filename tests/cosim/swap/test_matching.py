@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from evcosim.cosim.interface import UnitInterface, VariableInfo
-from evcosim.cosim.swap.matching import Match, Verdict, fits, matches
+from evcosim.cosim.swap.matching import Match, Verdict, fits, is_open, matches
 from evcosim.cosim.swap.requirements import Requirement, requirements
 from evcosim.cosim.system.scenario import load_scenario, scenario_names
 from evcosim.cosim.system.system import UnitEntry, load_system, system_names
@@ -180,3 +180,13 @@ def test_what_is_optional_is_taken_by_its_own_name_or_not_at_all() -> None:
     assert "optional" in without["available_power"].reason
     own = found("scooter.vehicle", PLAIN + " | input available_power kW")["available_power"]
     assert (own.variable, own.verdict) == ("available_power", "fits after conversion")
+
+
+def test_a_guess_of_a_low_likeness_is_open() -> None:
+    matched = found("scooter.vehicle", "input xyz %\noutput speed m/s\noutput s m")
+    assert matched["throttle"].verdict == "your choice" and is_open(matched["throttle"])
+    assert f"(likeness {matched['throttle'].likeness:.2f})" in matched["throttle"].reason
+    assert matched["speed"].likeness is None and not is_open(matched["speed"], 1.0)
+    assert not is_open(matched["throttle"], 0.0) and not is_open(matched["brake_force"], 1.0)  # missing
+    mapped = UnitEntry.model_validate({"fmu": "V.fmu", "map": {"inputs": {"throttle": "xyz"}}})
+    assert not is_open(found("scooter.vehicle", "input xyz %", mapped)["throttle"], 1.0)

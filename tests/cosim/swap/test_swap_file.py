@@ -107,7 +107,7 @@ entries = st.builds(
     isolation=st.sampled_from([None, "process", "none"]),
     step_timeout=st.floats(1e-3, 1e3),
     load_timeout=st.floats(1e-3, 1e3),
-    memory_limit=st.floats(1.0, exclude_min=True),
+    memory_limit=st.floats(256e6),
     file_limit=st.floats(1.0, exclude_min=True),
     interface=st.sampled_from([None, "co_simulation", "model_exchange"]),
     tolerance=st.none() | st.floats(1e-12, 0.5),
@@ -203,3 +203,27 @@ def test_a_factor_is_kept_and_turned_by_a_proposal(tmp_path: Path) -> None:
         assert (entry.unit, entry.invert) == ("%", False)
     assert "proposed: the other sign, since it falls" in path.read_text(encoding="utf-8")
     assert entry_of("V.fmu", [match]).map.inputs["throttle"].factor == 0.45
+
+
+def test_a_guess_of_a_low_likeness_stands_as_a_comment(tmp_path: Path) -> None:
+    found = [
+        dataclasses.replace(MATCHES[0], likeness=0.31, verdict="your choice"),
+        dataclasses.replace(MATCHES[1], likeness=0.4),
+        dataclasses.replace(MATCHES[4], likeness=0.6),
+    ]
+    path = tmp_path / "swap.toml"
+    write(path, "V.fmu", "scooter.vehicle", found)
+    text = path.read_text(encoding="utf-8")
+    assert '# throttle = "pedal"  # [%]; others: brake\n' in text
+    assert '# brake_force = { variable = "F_b", unit = "N" }  # declares no unit' in text
+    assert "guesses of a likeness below 0.45 stand below as comments" in text
+    read = read_toml(path, SwapFile)
+    assert (read.open, list(read.map.inputs), list(read.map.outputs)) == (
+        ["throttle", "brake_force"], [], ["speed"],
+    )  # fmt: skip # one line a thing
+    path.write_text(text.replace("# throttle = ", "throttle = "), encoding="utf-8")
+    assert list(read_toml(path, SwapFile).map.inputs) == ["throttle"]
+    for likeness, names in ((0.0, []), (0.35, ["throttle"]), (1.0, ["throttle", "brake_force", "speed"])):
+        write(path, "V.fmu", "scooter.vehicle", found, None, None, likeness)
+        assert read_toml(path, SwapFile).open == names
+    assert list(entry_of("V.fmu", found).map.inputs) == ["throttle", "brake_force"]  # a trial tries them

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
+import zipfile
 from pathlib import Path
 
 import pytest
 
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.swap.matching import LIKENESS
 from evcosim.cosim.swap.swap_file import SwapFile
 from evcosim.cosim.system.system import load_system
 from evcosim.cosim.system.toml import read_toml
@@ -59,7 +62,7 @@ def test_what_stands_in_a_swap_file_stays_when_it_is_written_again(evcosim, tmp_
 fmu = "Vehicle.fmu"
 substeps = 4
 isolation = "process"
-absent = ["power"]
+absent = ["available_power", "power"]
 [map.inputs]
 throttle = "pedal"
 brake_force = { variable = "F_brake", invert = true }
@@ -223,3 +226,50 @@ def test_a_swap_of_no_unit(evcosim, tmp_path: Path) -> None:
     found = evcosim("run", "scooter", "--swap", f"vehicel={tmp_path}/swap.toml")
     assert found.code == 2
     assert "there is no unit 'vehicel' in system 'scooter' (did you mean 'vehicle'?)" in found.err
+
+
+NEUTRAL = {"F_brake": "u2", "slope": "u3"}
+
+
+def unlike(path: Path) -> Path:
+    """The vehicle in C with inputs whose names say nothing."""
+    source = vehicle_fmu(path.with_name("source.fmu"), 2)
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(path, "w") as new:
+        for name in old.namelist():
+            data = old.read(name)
+            if name == "modelDescription.xml":
+                for known, neutral in NEUTRAL.items():
+                    data = data.replace(f'name="{known}"'.encode(), f'name="{neutral}"'.encode())
+                data = re.sub(rb'(name="u\d"[^>]*) description="[^"]*"', rb"\1", data)
+            new.writestr(name, data)
+    return path
+
+
+def test_a_swap_with_open_rows_runs_only_where_that_is_allowed(evcosim, tmp_path: Path) -> None:
+    fmu, swap = unlike(tmp_path / "Vehicle.fmu"), tmp_path / "swap.toml"
+    written = check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
+    assert written.code == 1
+    entry = read_toml(swap, SwapFile)
+    assert (entry.open, list(entry.map.inputs)) == (["brake_force"], ["throttle"])
+    assert f"--swap vehicle={swap} --allow-open" in written.out
+    assert "open, each with its guess as a comment in" in written.out
+    options = ("--swap", f"vehicle={swap}", "--stop-time", "1", "-o", tmp_path / "out", "--no-plot")
+    refused = evcosim("run", "scooter", *options)
+    assert refused.code == 2
+    assert f"{swap}: open: no variable of" in refused.err and "--allow-open" in refused.err
+    allowed = evcosim("run", "scooter", *options, "--allow-open")
+    assert allowed.code == 0, allowed
+    said = " ".join((allowed.out + allowed.err).split())
+    assert "open: nothing drives vehicle.u2, vehicle.u3, which keep their start values" in said
+    assert "left out, since it is absent: rider.brake_force -> vehicle.brake_force" in said
+    with pytest.raises(ConfigError, match="allow_open=True"):
+        simulate("scooter", swaps={"vehicle": swap}, stop_time=0.1)
+    assert simulate("scooter", swaps={"vehicle": swap}, stop_time=0.1, allow_open=True).time[-1] == 0.1
+
+
+def test_the_likeness_below_which_a_guess_is_open_is_stated(evcosim, tmp_path: Path) -> None:
+    fmu, swap = unlike(tmp_path / "Vehicle.fmu"), tmp_path / "swap.toml"
+    check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap, "--likeness", "0")
+    assert read_toml(swap, SwapFile).open == []
+    check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
+    assert f"guesses of a likeness below {LIKENESS:g} stand below" in swap.read_text()
