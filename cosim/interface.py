@@ -25,6 +25,8 @@ class VariableInfo:
     at the same instant; None: not declared, so every input may.
     `items` are the (value, name) pairs of an enumeration; `limits` the least and the greatest number of the
     variable's FMI type, None for one that has all of a double.
+    `initial` is "exact" or "approx" where the value before the first step is given and not computed: that of
+    the variable itself, or a guess of it.
     `declared` is the FMU's own name of a variable that the system knows under another one ("": the same);
     `inverted`: the system's value is the FMU's with the other sign.
     `scaling` is the map of a value on its way between the two, beside the sign.
@@ -45,6 +47,7 @@ class VariableInfo:
     limits: tuple[float, float] | None = None
     depends: tuple[str, ...] | None = ()
     depends_initially: tuple[str, ...] | None = ()
+    initial: str = ""
     declared: str = ""
     inverted: bool = False
     difference: bool = False
@@ -89,6 +92,12 @@ class VariableInfo:
         if self.type == "String":
             return ""
         return 0 if not self.choices or 0 in self.choices else self.choices[0]
+
+    @property
+    def takes_start(self) -> bool:
+        """True of an input, and of a local variable or output whose initial value, or a guess, is given."""
+        given = self.initial in ("exact", "approx") and self.variability != "constant"
+        return self.causality == "input" or (self.causality in ("local", "output") and given)
 
 
 def fitting(pattern: str, names: Collection[str]) -> list[str]:

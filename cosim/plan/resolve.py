@@ -70,8 +70,9 @@ def resolve(
     network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
     drives = _drives(scenario, interfaces, network, slots, clock)
     _mailboxes_of_the_rest(interfaces, network, slots)
-    parameters = _parameters(system, scenario, entries, interfaces, options)
-    starts = {u: _starts(system, scenario, u, entries[u], interfaces[u]) for u in entries}
+    named, started = _by_kind(options.get("parameters") or {}, interfaces, network)
+    parameters = _parameters(system, scenario, entries, interfaces, named)
+    starts = {u: _starts(system, scenario, u, entries[u], interfaces[u], started.get(u, {})) for u in entries}
     return Plan(
         system=system.file.name,
         scenario=scenario.name,
@@ -173,7 +174,7 @@ def _parameters(
     scenario: Scenario,
     entries: Mapping[str, UnitEntry],
     interfaces: Mapping[str, UnitInterface],
-    options: RunOptions,
+    named: Mapping[str, Value],
 ) -> dict[str, dict[str, Value]]:
     """Return every unit's parameters by name: the user's, else the scenario's, else the system's.
 
@@ -184,7 +185,7 @@ def _parameters(
         given += [(unit, k, f"{system.keys_of(unit)}parameters.{k}", x) for k, x in entry.parameters.items()]
     for unit, values in scenario.file.parameters.items():
         given += [(unit, k, f"{scenario.path}: parameters.{unit}.{k}", x) for k, x in values.items()]
-    for name, value in (options.get("parameters") or {}).items():
+    for name, value in named.items():
         unit, _, parameter = name.partition(".")
         given.append((unit, parameter, f"parameter {name}", value))
     result: dict[str, dict[str, Value]] = {unit: {} for unit in entries}
@@ -196,16 +197,47 @@ def _parameters(
     return result
 
 
+def _by_kind(
+    given: Mapping[str, Value], interfaces: Mapping[str, UnitInterface], network: Network
+) -> tuple[dict[str, Value], dict[str, dict[str, Value]]]:
+    """Return the parameters among the values by "unit.variable", and by unit the start values.
+
+    Raises ConfigError for an input that something drives, in which a start value would not stay.
+    """
+    named, started = dict(given), dict[str, dict[str, Value]]()
+    for name in given:
+        unit, _, variable = name.partition(".")
+        known = interfaces[unit].variables.get(variable) if unit in interfaces else None
+        if known is None or not known.takes_start:
+            continue
+        if name in network.inputs and network.inputs[name].driver:
+            raise ConfigError(f"parameter {name}: the input is driven by {network.inputs[name].driver}")
+        started.setdefault(unit, {})[variable] = named.pop(name)
+    return named, started
+
+
 def _starts(
-    system: System, scenario: Scenario, unit: str, entry: UnitEntry, interface: UnitInterface
+    system: System,
+    scenario: Scenario,
+    unit: str,
+    entry: UnitEntry,
+    interface: UnitInterface,
+    started: Mapping[str, Value],
 ) -> dict[str, Value]:
-    """Return the start values of a unit's inputs by name: the scenario's, else the system's."""
+    """Return the start values of a unit's variables by name: the option's, scenario's or system's."""
     starts = {}
     given = {name: (f"{system.keys_of(unit)}start.{name}", value) for name, value in entry.start.items()}
     for name, value in scenario.file.start.get(unit, {}).items():
         given[name] = (f"{scenario.path}: start.{unit}.{name}", value)
+    given |= {name: (f"parameter {unit}.{name}", value) for name, value in started.items()}
     for name, (place, value) in given.items():
-        variable = interface.require(unit, name, ("input",), place)
+        variable = interface.require(unit, name, ("input", "output", "local"), place)
+        if not variable.takes_start:
+            raise ConfigError(
+                f"{place}: {unit}.{name} is a {variable.variability} {variable.causality} whose initial "
+                "value the FMU computes or fixes; a start is given to an input, or where the FMU declares "
+                'initial = "exact" or "approx"'
+            )
         starts[name] = checked(value, variable, place)
         if variable.type != "String":
             as_double(variable, starts[name], place)

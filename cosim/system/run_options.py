@@ -18,7 +18,8 @@ class RunOptions(TypedDict, total=False):
     """Keyword arguments of `Simulation`, `simulate`, `budget` and `identify`; each may be left out."""
 
     parameters: Mapping[str, Value] | None
-    """Values of parameters by "unit.parameter", each in the parameter's own unit; they override the files."""
+    """Values by "unit.variable" of parameters, initial states and inputs that nothing drives, each in the
+    variable's own unit; they override the files."""
 
     fmus: Mapping[str, str | Path] | None
     """Paths or built-in names of FMUs by unit; each takes the place of the one that the system names."""

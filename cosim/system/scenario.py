@@ -212,7 +212,7 @@ class ScenarioFile(FileModel):
     """Values of parameters in place of the system's: a table `[parameters.UNIT]` for each unit."""
 
     start: dict[str, dict[str, FileValue]] = {}
-    """Start values of inputs in place of the system's: a table `[start.UNIT]` for each unit."""
+    """Start values of inputs and states in place of the system's: a table `[start.UNIT]` for each unit."""
 
     stimuli: list[StimulusEntry] = Field(default=[], alias="stimulus")
     """The signals that drive free inputs: a table `[[stimulus]]` for each."""

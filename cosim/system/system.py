@@ -148,7 +148,8 @@ class UnitEntry(FileModel):
     """Values of parameters by name, in the units of measure that the FMU declares."""
 
     start: dict[str, FileValue] = {}
-    """Start values of inputs by name; an input that nothing drives keeps its own."""
+    """Start values by name: of inputs, of which one that nothing drives keeps its own, and of local variables
+    and outputs whose initial value the FMU lets be given (initial = "exact" or "approx"), as states."""
 
     period: float | None = Field(default=None, gt=0.0, le=LATEST)
     """Time in s from one step of the unit to the next, a multiple of `step_size`; without it that itself."""

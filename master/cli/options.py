@@ -67,7 +67,9 @@ IsolationOption = Annotated[
 ]
 SettingsOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter; can be given again."),
+    typer.Option(
+        "--set", metavar="UNIT.PARAMETER=VALUE", help="Set a parameter or initial state; can be repeated."
+    ),
 ]
 FmusOption = Annotated[
     list[str] | None,

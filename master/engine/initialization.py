@@ -73,7 +73,10 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
     # parameters, start values and the inputs that no output reaches, then initialization mode
     notices = [
         units[p.name].enter_initialization(
-            experiment.start_time, plan.clock.told_stop, p.parameters, _first_inputs(plan, p)
+            experiment.start_time,
+            plan.clock.told_stop,
+            p.parameters | _initial_states(p),
+            _first_inputs(plan, p),
         )
         for p in plan.units
     ]
@@ -88,6 +91,12 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
     for unit in units.values():
         unit.exit_initialization()
     return tuple(notice for notice in notices if notice)
+
+
+def _initial_states(unit: UnitPlan) -> dict[str, Value]:
+    """Return the start values that are given to local variables and outputs."""
+    known = unit.interface.variables
+    return {name: value for name, value in unit.start.items() if known[name].causality != "input"}
 
 
 def _first_inputs(plan: Plan, unit: UnitPlan) -> dict[str, Value]:

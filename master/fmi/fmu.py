@@ -258,6 +258,7 @@ def _variable(
         limits=None if kind in (BOOLEAN, STRING) or math.isinf(fmi.high) else (fmi.low, fmi.high),
         depends=depends.get((v.alias or v).name, ()),
         depends_initially=initially.get((v.alias or v).name, ()),
+        initial=v.initial or "",
         inverted=negated,
         difference=bool(_inherited(v, "relativeQuantity")),
     )

@@ -20,6 +20,7 @@ def supplement(description: Any, root: Any) -> None:
     if root.get("fmiVersion") == "1.0":
         _capabilities(description, root)
         _causalities(description)
+        _initial(description, root)
     else:
         _limits(description, root)
     _differences(description, root)
@@ -51,6 +52,15 @@ def _causalities(description: Any) -> None:
     for variable in description.modelVariables:
         if variable.causality in ("none", "internal"):
             variable.causality = "local"
+
+
+def _initial(description: Any, root: Any) -> None:
+    """Give variables with a start value the `initial` of FMI 2.0: `fixed` is true unless it says false."""
+    typed = [(v.get("name"), c) for v in root.iter("ScalarVariable") for c in v if isinstance(c.tag, str)]
+    guesses = {name for name, value in typed if value.get("fixed") in ("false", "0")}
+    for variable in description.modelVariables:
+        if variable.start is not None and variable.causality in ("output", "local"):
+            variable.initial = "approx" if variable.name in guesses else "exact"
 
 
 def _limits(description: Any, root: Any) -> None:

@@ -144,7 +144,10 @@ def test_all_that_a_swap_lacks_is_told_at_once(evcosim, tmp_path: Path) -> None:
     [
         ("period = 0.015\n", "swap.toml: period = 0.015 s is not a multiple of the communication step"),
         ("[parameters]\nmas = 1.0\n", "swap.toml: parameters.mas: unit 'vehicle' has no variable 'mas'"),
-        ("[start]\nspeed = 1.0\n", "swap.toml: start.speed: vehicle.speed is of causality output, not input"),
+        (
+            "[start]\nspeed = 1.0\n",
+            "swap.toml: start.speed: vehicle.speed is a continuous output whose initial value",
+        ),
         ("[map.inputs]\nx = 'throtle'\n", "swap.toml: map.inputs.x: "),
         ("absent = ['speed']\n", "swap.toml: absent: "),
         ("substep = 1\n", "swap.toml: substep: unknown key (did you mean 'substeps'?)"),

@@ -20,6 +20,10 @@ FIRST = """<fmiModelDescription fmiVersion="1.0" modelName="m" modelIdentifier="
 <ScalarVariable name="mass" valueReference="2" causality="internal" variability="parameter">
 <Real start="2"/></ScalarVariable>
 <ScalarVariable name="rest" valueReference="3"><Real/></ScalarVariable>
+<ScalarVariable name="x" valueReference="4"><!-- a state --><Real start="1"/></ScalarVariable>
+<ScalarVariable name="guess" valueReference="5" causality="output"><Real start="1" fixed="false"/>
+</ScalarVariable>
+<ScalarVariable name="always" valueReference="6" variability="constant"><Real start="1"/></ScalarVariable>
 </ModelVariables>
 <Implementation>{}</Implementation></fmiModelDescription>"""
 
@@ -42,6 +46,13 @@ def test_a_slave_of_a_tool_needs_it(tmp_path: Path) -> None:
     kind = read_fmu(described(tmp_path, FIRST.format(WITH_TOOL))).kind
     assert is_true(kind, "needsExecutionTool")
     assert kind.maxOutputDerivativeOrder == 0
+
+
+def test_a_start_value_of_fmi_1_is_exact_unless_it_is_a_guess(tmp_path: Path) -> None:
+    variables = read_fmu(described(tmp_path, FIRST.format(ALONE))).interface.variables
+    given = {name: v.initial for name, v in variables.items() if v.causality in ("output", "local")}
+    assert given == {"y": "", "back": "", "rest": "", "x": "exact", "guess": "approx", "always": "exact"}
+    assert [name for name, v in variables.items() if v.takes_start] == ["x", "guess"]
 
 
 def test_what_fmi_1_calls_internal_is_local(tmp_path: Path) -> None:
