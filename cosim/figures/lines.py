@@ -56,6 +56,6 @@ def is_band(values: Array) -> bool:
 
     Drawn thin, it shows what lies behind.
     """
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         way, span = float(np.sum(np.abs(np.diff(values)))), float(np.ptp(values)) if len(values) else 0.0
     return span > 0.0 and way > 60.0 * span

@@ -16,7 +16,7 @@ class IdentificationSpec(FiniteModel):
     output: str
     """The variable that responds, written `unit.variable`: any recorded Real variable."""
 
-    amplitude: float = Field(gt=0.0)
+    amplitude: float = Field(gt=0.0, le=1e12)
     """Amplitude of the sweep around the working point, above 0, in the input's unit."""
 
     unit: str | None = None

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
 _WHOLE = r"\s*[+-]?\d+\s*"
 _COUNTED = ("numberOfEventIndicators", "numberOfContinuousStates")
+_TIMES = ("startTime", "stopTime", "tolerance", "stepSize")
 _CAPABILITIES = {
     "maxOutputDerivativeOrder": _WHOLE,
     "recommendedIntermediateInputSmoothness": _WHOLE,
@@ -32,6 +34,11 @@ def mend_attributes(root: Any) -> list[str]:
             if not _is_number(kind.get(name), pattern):
                 defects.append(f"{kind.tag}: {name} = {kind.get(name)!r} is no number; it is ignored")
                 del kind.attrib[name]
+    for experiment in root.findall("DefaultExperiment"):
+        for name in _TIMES:
+            if (given := experiment.get(name)) is not None and not _is_number(given):
+                defects.append(f"DefaultExperiment: {name} = {given!r} is no finite number; it is ignored")
+                del experiment.attrib[name]
     return defects + _mend_units(root) + _mend_types(root)
 
 
@@ -70,6 +77,7 @@ def _mend_types(root: Any) -> list[str]:
 
 def _is_number(text: str, pattern: str = "") -> bool:
     try:
-        return float(text) == float(text) and (not pattern or re.fullmatch(pattern, text) is not None)
+        finite = math.isfinite(float(text)) and "_" not in text
+        return finite and (not pattern or re.fullmatch(pattern, text) is not None)
     except ValueError:
         return False

@@ -21,6 +21,7 @@ from ...cosim.system.system import (
     load_system,
     system_names,
 )
+from ...cosim.system.toml import validate
 from ..builtin import builtin_names, fmu_file
 from ..fmi.fmu import read_fmu
 
@@ -53,16 +54,17 @@ def is_fmu(target: str) -> bool:
 def one_unit_system(target: str, step_size: float | None = None) -> System:
     """Return a system of one FMU (a built-in name or a path) as the unit `fmu`.
 
-    `step_size` [s]: default that of the FMU's DefaultExperiment, else 0.01.
+    `step_size` [s]: default that of the FMU's DefaultExperiment, else 0.01. Raises ConfigError for what is
+    no step.
     """
     path = fmu_file(target)
     experiment = getattr(read_fmu(path).description, "defaultExperiment", None)
     declared = getattr(experiment, "stepSize", None)
-    step = step_size or (float(declared) if declared else 0.01)
+    step = step_size if step_size is not None else float(declared) if declared else 0.01
     name = path.stem if target.endswith(".fmu") else target
     file = SystemFile(
         name=name if name.isidentifier() else UNIT,
-        experiment=Experiment(step_size=step),
+        experiment=validate({"step_size": step}, Experiment, target),
         units={UNIT: UnitEntry(fmu=str(path.resolve()))},
     )
     return System(Path(target), file)

@@ -47,6 +47,15 @@ def test_command_as_json(evcosim):
         ([*FMU, "--amplitude", "2", "--input", "speed"], ["input speed: it is of causality output"]),
         ([*FMU, "--amplitude", "2", "--unit", "N"], ["[m/s] and [N] measure different quantities"]),
         ([*FMU, "--amplitude", "0"], ["Scooter: amplitude: Input should be greater than 0, not 0.0"]),
+        (
+            [*FMU, "--amplitude", "1e308"],
+            ["Scooter: amplitude: Input should be less than"],
+        ),
+        (
+            [*FMU, "--amplitude", "2", "--step-size", "0"],
+            ["step_size: Input should be greater"],
+        ),
+        ([*FMU, "--amplitude", "2", "--step-size", "nan"], ["step_size: Input should be a finite"]),
         ([*FMU, "--amplitude", "nan"], ["Scooter: amplitude: Input should be a finite number, not nan"]),
         ([*FMU, "--amplitude", "2", "--repeats", "0"], ["Scooter: repeats: Input should be greater than or"]),
         ([*FMU, "--amplitude", "2", "--sweep", "0,1"], ["Scooter: sweep 1: Input should be greater than 0"]),

@@ -23,6 +23,22 @@ DEFECTS = [
         "CoSimulation: fixedInternalStepSize = 'nan' is no number; it is ignored",
     ),
     (
+        ("<ModelVariables>", '<DefaultExperiment startTime="0" stepSize="a.b.c.d"/><ModelVariables>'),
+        "DefaultExperiment: stepSize = 'a.b.c.d' is no finite number; it is ignored",
+    ),
+    (
+        ("<ModelVariables>", '<DefaultExperiment stopTime="1e400"/><ModelVariables>'),
+        "DefaultExperiment: stopTime = '1e400' is no finite number; it is ignored",
+    ),
+    (
+        ("<TypeDefinitions>", UNIT.format('<BaseUnit factor="INF"/>')),
+        "unit of measure 'km/h': factor = 'INF' is no number; its definition is ignored",
+    ),
+    (
+        ("<TypeDefinitions>", UNIT.format('<BaseUnit factor="1_0"/>')),
+        "unit of measure 'km/h': factor = '1_0' is no number; its definition is ignored",
+    ),
+    (
         ('guid="g"', 'guid="g" numberOfEventIndicators="1.5"'),
         "numberOfEventIndicators = '1.5' is no number; 0 is assumed",
     ),
