@@ -28,10 +28,9 @@ from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
 from ..cosim.system.run_options import RunOptions
-from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario
+from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..cosim.system.selection import figure_spec, metric_specs
 from ..cosim.system.system import Isolation, System
-from ..cosim.system.values import as_double, checked
 from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
@@ -190,23 +189,12 @@ class Simulation:
         return float(value)
 
     def set(self, name: str, value: Value) -> None:
-        """Set an input that nothing drives; it keeps the value until it is set again.
+        """Set an input that nothing drives, or a parameter that its FMU declares tunable, from now on.
 
         Raises ConfigError for any other variable, and for a value of the wrong type or out of range; RunError
-        after the simulation was closed.
+        if the FMU refuses it, after which the run is over, and after the simulation was closed.
         """
-        self._require_units()
-        unit, variable = self._split(name)
-        plan = self.plan.inputs.get(name)
-        if plan is None:
-            raise ConfigError(
-                f"{name} is no input{nearest(name, self.plan.inputs)}; only inputs can be set in a run"
-            )
-        if plan.driver or plan.mailbox is None:
-            raise ConfigError(f"{name} is driven by {plan.driver}; use override() to take its place")
-        about = self._interfaces[unit].variables[variable]
-        number = checked(value, about, f"set {name}")
-        self._engine.memory[plan.mailbox] = as_double(about, number, f"set {name}")
+        self._do(Set.model_construct(time=self.time, action="set", variable=name, value=value))
 
     def override(self, name: str, value: Value) -> None:
         """Let the input `name` receive `value` from now on, whatever drives it. Raises ConfigError."""

@@ -10,8 +10,8 @@ from typing import assert_never
 from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
-from ..system.scenario import Bias, Event, Override, Reset, Scenario
-from ..system.values import as_double, of_type
+from ..system.scenario import Bias, Event, Override, Reset, Scenario, Set
+from ..system.values import as_double, checked, of_type
 from .plan import InputPlan
 
 
@@ -39,25 +39,27 @@ def check_event(
     place: str,
     in_file: bool = False,
 ) -> Event:
-    """Return the event with its value as a run keeps it: a double.
+    """Return the event with its value as a run keeps it: a double, or that of a parameter in its type.
 
     Raises ConfigError, which starts with `place`, unless it can act on what it names. With `in_file` the
     event is a table at `place`, and the key in it follows. A value beyond the input's minimum or maximum is
-    allowed: faults are what events are for.
+    allowed, for faults are what events are for, but not what is set.
     """
 
     def at(key: str) -> str:
         return f"{place}.{key}" if in_file else place
 
-    variable = _input_of(event, interfaces, inputs, at("variable"))
     match event:
         case Override():
-            return _with_value(event, variable, at("value"))
+            return _with_value(event, _input_of(event, interfaces, inputs, at("variable")), at("value"))
         case Bias():
-            _check_bias(event, variable, at)
+            _check_bias(event, _input_of(event, interfaces, inputs, at("variable")), at)
             return event
         case Reset():
+            _input_of(event, interfaces, inputs, at("variable"))
             return event
+        case Set():
+            return _with_set_value(event, _settable(event, interfaces, inputs, at("variable")), at("value"))
         case _:
             assert_never(event)
 
@@ -85,6 +87,46 @@ def _with_value(event: Override, variable: VariableInfo, place: str) -> Override
         raise ConfigError(f"{place}: {event.variable} is a String, which no event acts on")
     value = of_type(event.value, dataclasses.replace(variable, name=event.variable), place)
     return event.model_copy(update={"value": as_double(variable, value, place)})
+
+
+def _settable(
+    event: Set, interfaces: Mapping[str, UnitInterface], inputs: Mapping[str, InputPlan], place: str
+) -> VariableInfo:
+    """Return the tunable parameter or free input that is set. Raises ConfigError for any other variable."""
+    name = event.variable
+    unit, _, of_unit = name.partition(".")
+    if unit not in interfaces:
+        raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
+    known = interfaces[unit].variables.get(of_unit)
+    settable = ("input", "parameter") if known is None else (known.causality,)
+    variable = interfaces[unit].require(unit, of_unit, settable, place)
+    if variable.causality == "input" and inputs[name].driver:
+        raise ConfigError(
+            f"{place}: {name} is driven by {inputs[name].driver}; use override to take its place"
+        )
+    if variable.causality == "parameter" and variable.variability != "tunable":
+        raise ConfigError(
+            f"{place}: {name} is a {variable.variability} parameter, which no run changes; inputs that "
+            "nothing drives and parameters that the FMU declares tunable can be set in a run"
+        )
+    if variable.causality not in ("input", "parameter"):
+        raise ConfigError(
+            f"{place}: {name} is of causality {variable.causality}; inputs that nothing drives and tunable "
+            "parameters can be set in a run"
+        )
+    return variable
+
+
+def _with_set_value(event: Set, variable: VariableInfo, place: str) -> Set:
+    """Return the event with its value, an input's as a double. Raises ConfigError for one out of range."""
+    if variable.type == "String" and variable.causality == "input":
+        raise ConfigError(
+            f"{place}: {event.variable} is a String, and no input of that type can be set in a run"
+        )
+    value = checked(event.value, dataclasses.replace(variable, name=event.variable), place)
+    if variable.causality == "input":
+        value = as_double(variable, value, place)
+    return event.model_copy(update={"value": value})
 
 
 def _check_bias(event: Bias, variable: VariableInfo, at: Callable[[str], str]) -> None:

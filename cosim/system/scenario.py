@@ -175,7 +175,26 @@ class Reset(_InputEvent):
     """The kind of event."""
 
 
-Event = Annotated[Override | Bias | Reset, Field(discriminator="action")]
+class Set(_EventRecord):
+    """Set a tunable parameter, or an input that nothing drives, to `value` from then on."""
+
+    action: Literal["set"]
+    """The kind of event."""
+
+    variable: VariableName
+    """The parameter, which the FMU declares tunable, or the input."""
+
+    value: GivenValue
+    """The value within its limits, in its own unit of measure; true or false for a Boolean, a text for a
+    String, for an enumeration a number or the name of an item."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The parameter or input."""
+        return (self.variable,)
+
+
+Event = Annotated[Override | Bias | Reset | Set, Field(discriminator="action")]
 """An event, by its `action`. Code that acts on one ends its `match` with `assert_never`: mypy then names each
 place that a new action must be added to."""
 

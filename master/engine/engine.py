@@ -24,7 +24,7 @@ from ...cosim.plan.plan import MessagePlan, Plan
 from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
 from ...cosim.row_store import RowStore, Table
-from ...cosim.system.scenario import Bias, Event, Override, Reset
+from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ..unit import Unit, floats
 from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
@@ -171,6 +171,7 @@ class Engine:
 
     def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
         self.plan = plan
+        self._units = dict(units)
         self.k = 0
         self.whole = True
         self.schedule = schedule(plan)
@@ -335,6 +336,8 @@ class Engine:
                 self._affect(event.variable, Effect("add", event.value))
             case Reset():
                 self._affect(event.variable, None)
+            case Set():
+                self._set(event)
             case _:
                 assert_never(event)
 
@@ -345,6 +348,20 @@ class Engine:
             effects.pop(slot, None)
         else:
             effects[slot] = effect
+
+    def _set(self, event: Set) -> None:
+        """Set a free input or a tunable parameter. Raises RunError if the unit refuses: the run is over."""
+        unit, _, variable = event.variable.partition(".")
+        received = self.plan.inputs.get(event.variable)
+        if received is not None and received.mailbox is not None:
+            self.memory[received.mailbox] = event.value
+            return
+        self.whole = False
+        try:
+            self._units[unit].set(variable, event.value)
+        except RunError as error:
+            raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
+        self.whole = True
 
     def recorded(self) -> Table:
         """Return the rows so far, shape (k, columns), and unless the last step failed one more for now.

@@ -82,7 +82,11 @@ def test_a_sensor_that_is_overridden_biased_and_reset():
     [
         ("vehicle.road_grad", 0.0, r"no input \(did you mean|no variable 'road_grad'"),
         ("vehicel.road_grade", 0.0, r"no unit 'vehicel' \(did you mean 'vehicle'\?\)"),
-        ("vehicle.speed", 1.0, "only inputs can be set in a run"),
+        (
+            "vehicle.speed",
+            1.0,
+            "speed is of causality output; inputs that nothing drives and tunable parameters",
+        ),
         (
             "vehicle.throttle",
             1.0,

@@ -12,7 +12,7 @@ from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan.events import check_event, scheduled
 from evcosim.cosim.plan.plan import InputPlan
-from evcosim.cosim.system.scenario import Bias, Override, Reset, Scenario, ScenarioFile
+from evcosim.cosim.system.scenario import Bias, Override, Reset, Scenario, ScenarioFile, Set
 
 CLOCK = Clock.counted(0.0, 0.01, 1000)
 INPUTS = {
@@ -121,3 +121,55 @@ def test_an_event_that_can_act_is_taken(event):
     taken = check_event(event, INTERFACES, INPUTS, "here")
     if isinstance(event, Override):
         assert isinstance(taken.value, float) and taken.value == (1.0 if event.value == "on" else event.value)
+
+
+SETTABLE = {
+    "gain": VariableInfo("gain", "Real", "parameter", "tunable", unit="N", min=0.0),
+    "title": VariableInfo("title", "String", "parameter", "tunable"),
+    "mass": VariableInfo("mass", "Real", "parameter", "fixed"),
+    "speed": VariableInfo("speed", "Real", "output"),
+    "driven": VariableInfo("driven", "Real", "input"),
+    "label": VariableInfo("label", "String", "input"),
+}
+OF_PLANT = {"plant": UnitInterface("plant.fmu", SETTABLE | VARIABLES)}
+PLANT_INPUTS = {
+    "plant.driven": InputPlan(0, None, "ecu.torque"), "plant.label": InputPlan(4, None, ""),
+    **{f"plant.{name}": InputPlan(i, i, "") for i, name in enumerate(VARIABLES, 1)},
+}  # fmt: skip # beside each other
+
+
+def set_to(name: str, value: object) -> Set:
+    """The event as it is done, or what is wrong with it."""
+    event = Set.model_construct(time=0.0, action="set", variable=name, value=value)
+    found = check_event(event, OF_PLANT, PLANT_INPUTS, "event 1", in_file=True)
+    assert isinstance(found, Set)
+    return found
+
+
+def test_tunable_parameters_and_free_inputs_are_set_in_their_types():
+    assert set_to("plant.gain", 3).value == 3.0
+    assert set_to("plant.title", "a").value == "a"
+    assert set_to("plant.level", 2).value == 2.0
+    assert set_to("plant.flag", True).value == 1.0
+    assert set_to("plant.state", "on").value == 1.0
+    assert set_to("plant.gain", 3).needs == ("plant.gain",)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("plant.gain", -1.0, r"value: -1.0 N is below the minimum 0.0 N of plant.gain$"),
+        ("plant.gain", "much", r"value: plant.gain is a finite Real number, not 'much'$"),
+        ("plant.title", 3, r"value: plant.title is a String, not 3$"),
+        ("plant.level", 10.0, r"value: 10.0 is above the maximum 9.0 of plant.level$"),
+        ("plant.mass", 1.0, r"variable: plant.mass is a fixed parameter, which no run changes; "),
+        ("plant.speed", 1.0, r"variable: plant.speed is of causality output; "),
+        ("plant.driven", 1.0, r"variable: plant.driven is driven by ecu.torque; use override to take its place$"),
+        ("plant.label", "a", r"value: plant.label is a String, and no input of that type can be set in a run$"),
+        ("plant.gian", 1.0, r"variable: unit 'plant' has no variable 'gian' \(did you mean 'gain'"),
+        ("plnat.gain", 1.0, r"variable: there is no unit 'plnat' \(did you mean 'plant'"),
+    ],
+)  # fmt: skip # one case a line
+def test_what_cannot_be_set_says_why(name, value, said):
+    with pytest.raises(ConfigError, match=rf"^event 1\.{said}"):
+        set_to(name, value)

@@ -53,15 +53,15 @@ def test_the_action_chooses_the_record():
 
 def test_every_record_is_found_by_its_action():
     schema = TypeAdapter(Event).json_schema()
-    assert set(schema["discriminator"]["mapping"]) == {"override", "bias", "reset"}
+    assert set(schema["discriminator"]["mapping"]) == {"override", "bias", "reset", "set"}
 
 
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ({"action": "overide", "value": 1}, "event 1.action: Input should be 'override', 'bias' or 'reset', not 'overide' (did you mean 'override'?)"),
-        ({"action": 5}, "event 1.action: Input should be 'override', 'bias' or 'reset', not 5"),
-        ({"action": ["reset"]}, "event 1.action: Input should be 'override', 'bias' or 'reset', not ['reset']"),
+        ({"action": "overide", "value": 1}, "event 1.action: Input should be 'override', 'bias', 'reset' or 'set', not 'overide' (did you mean 'override'?)"),
+        ({"action": 5}, "event 1.action: Input should be 'override', 'bias', 'reset' or 'set', not 5"),
+        ({"action": ["reset"]}, "event 1.action: Input should be 'override', 'bias', 'reset' or 'set', not ['reset']"),
         ({"value": 1}, "event 1.action: this key is needed"),
         ({"acton": "reset"}, "event 1.acton: unknown key (did you mean 'action'?)"),
         ({"action": "override"}, 'event 1.value: this key is needed with action = "override"'),

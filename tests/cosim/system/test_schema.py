@@ -239,7 +239,7 @@ def test_an_editor_marks_the_key_that_is_wrong(text: str, places: list[str], sai
 def test_an_editor_completes_the_keys_of_an_event_before_its_action() -> None:
     event = SCHEMAS["scenario"]["properties"]["event"]["items"]
     assert set(event["properties"]) == {"time", "variable", "action", "value"}
-    assert set(event["properties"]["action"]["enum"]) == {"override", "bias", "reset"}
+    assert set(event["properties"]["action"]["enum"]) == {"override", "bias", "reset", "set"}
     assert all(about["description"] for about in event["properties"].values())
 
 
