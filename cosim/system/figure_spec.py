@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .toml import FileModel, FiniteModel, OrText, Pair, text_as
+from .toml import FileModel, FiniteModel, OrText, text_as
 
 _FARTHEST, _FINEST = 1e100, 1e-9  # ends of an axis, and its length as a share of them
 
@@ -43,7 +43,7 @@ class PanelSpec(FiniteModel):
     signals: list[Annotated[SignalSpec, text_as("name"), OrText()]] = Field(min_length=1)
     """The lines: names of variables, or tables of a name and how it is drawn."""
 
-    limits: Pair[float] | None = None
+    limits: tuple[float, float] | None = Field(default=None, strict=False)
     """Lower and upper end of the axis, in `unit`; without them the axis fits the data."""
 
     @model_validator(mode="after")

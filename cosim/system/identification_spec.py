@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field, PositiveFloat
 
-from .toml import FiniteModel, Pair
+from .toml import FiniteModel
 
 
 class IdentificationSpec(FiniteModel):
@@ -28,7 +28,7 @@ class IdentificationSpec(FiniteModel):
     at_input: list[float] = []
     """Working points of the input, in its own unit; without these and `at` the input stays where it is."""
 
-    sweep: Pair[PositiveFloat] = (0.008, 0.6)
+    sweep: tuple[PositiveFloat, PositiveFloat] = Field(default=(0.008, 0.6), strict=False)
     """Lowest and highest frequency of the sweep in Hz."""
 
     duration: float = Field(default=900.0, gt=0.0)
@@ -37,7 +37,7 @@ class IdentificationSpec(FiniteModel):
     repeats: int = Field(default=1, ge=1)
     """Number of sweeps, from 1 on."""
 
-    band: Pair[PositiveFloat] | None = None
+    band: tuple[PositiveFloat, PositiveFloat] | None = Field(default=None, strict=False)
     """The fit's frequencies in Hz; without it from 1.5 times the lowest to half the highest of `sweep`."""
 
     @property

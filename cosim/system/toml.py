@@ -14,7 +14,6 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
-    Field,
     GetJsonSchemaHandler,
     PlainValidator,
     ValidationError,
@@ -79,11 +78,6 @@ _VALUE_SCHEMA = {"anyOf": [{"type": kind} for kind in ("number", "string", "bool
 
 FileValue = Annotated[Value, BeforeValidator(_plain), WithJsonSchema(_VALUE_SCHEMA)]
 """A value that a file gives to a variable, of which the FMU says later what type it has."""
-
-
-Number = TypeVar("Number", bound=float)
-Pair = Annotated[tuple[Number, Number], Field(strict=False)]
-"""Two numbers, of which a file makes a list."""
 
 
 def _finite_plain(value: Any) -> Any:

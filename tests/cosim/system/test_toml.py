@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.system import SystemFile, load_system
@@ -19,7 +19,6 @@ from evcosim.cosim.system.toml import (
     FileModel,
     FileValue,
     FiniteModel,
-    Pair,
     data_file,
     find,
     is_built_in,
@@ -40,7 +39,7 @@ class Numbers(FiniteModel):
 class Many(FiniteModel):
     """Numbers of several types."""
 
-    pair: Pair[float]
+    pair: tuple[float, float] = Field(strict=False)
     count: int = 0
 
 

@@ -32,7 +32,7 @@ def offered(process, monkeypatch):
 
 def test_names_for_a_line(offered):
     assert offered("evcosim run sc") == ["scooter"]
-    assert offered("evcosim re") == ["reproduce"]
+    assert offered("evcosim re") == ["reproduce", "results"]
     assert offered("evcosim run scooter --scenario f") == ["fig8", "fig9"]
     assert offered("evcosim info Sl") == ["SlipController"]
     assert offered("evcosim check my.fmu --as scooter.v") == ["scooter.vehicle"]
