@@ -143,7 +143,9 @@ def test_without_states_both_interfaces_are_the_same(
     fmu = shipped / f"{name}.fmu"
     simulated, exchanged = (run(tmp_path, fmu, 0.01, more=more) for more in ("", EXCHANGED))
     assert exchanged.manifest["units"]["unit"]["interface"] == "model_exchange"
-    assert np.array_equal(simulated[f"unit.{output}"], exchanged[f"unit.{output}"])
+    # by Co-Simulation the FMU computes at t + h, which may miss the next time by its last bit
+    one_bit = np.spacing(np.abs(exchanged[f"unit.{output}"]))
+    assert np.all(np.abs(simulated[f"unit.{output}"] - exchanged[f"unit.{output}"]) <= one_bit)
 
 
 def test_by_model_exchange_too_the_process_changes_no_bit(shipped: Path, tmp_path: Path) -> None:
