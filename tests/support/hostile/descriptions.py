@@ -150,7 +150,7 @@ DESCRIPTIONS = [
     borne(
         "experiment_of_nonsense",
         "a default experiment of negative steps and no numbers",
-        "",
+        "startTime = 'x' is no finite number; it is ignored",
         (
             "<ModelVariables>",
             '<DefaultExperiment startTime="x" stopTime="-1" stepSize="-0.01"/><ModelVariables>',
