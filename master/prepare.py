@@ -12,6 +12,7 @@ from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
 from ..cosim.plan.plan import Plan
 from ..cosim.plan.resolve import participating, resolve
+from ..cosim.plan.turns import TurnTimes
 from ..cosim.swap.mapping import present, without_absent, without_open, without_untaken
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.sampled import inherited, sampled_in, told, untold
@@ -23,6 +24,7 @@ from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
 from .builtin import fmu_file
 from .engine.initialization import ordered_links
+from .fmi.doubts import doubts
 from .fmi.fmu import Fmu, check_runnable, read_fmu
 
 
@@ -73,10 +75,22 @@ def prepare(
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
     undriven = _undriven(plan, opened)
-    plan = dataclasses.replace(plan, warnings=(*left_out, *undriven, *untaken, *sampling, *plan.warnings))
+    doubtful = _doubts(plan, loaded)
+    warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
+    plan = dataclasses.replace(plan, warnings=warnings)
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
     return Prepared(read, driven, loaded, plan)
+
+
+def _doubts(plan: Plan, fmus: Mapping[str, Fmu]) -> list[str]:
+    """Return a sentence for each declaration of an FMU that the steps of this run do not respect."""
+    found = []
+    for unit in plan.units:
+        times = TurnTimes(plan.clock, unit.every, unit.substeps)
+        sizes = [times.size] if times.last is None else [times.size, times.last.size]
+        found += [f"unit '{unit.name}' {doubt}" for doubt in doubts(fmus[unit.name], sizes)]
+    return found
 
 
 def _sampled(

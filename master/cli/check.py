@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from ...cosim.swap.matching import Match
     from ...cosim.swap.swap_file import SwapFile
     from ...cosim.system.scenario import Scenario
-    from ...cosim.system.system import System
+    from ...cosim.system.system import System, UnitEntry
+    from ..fmi.fmu import Fmu
     from ..studies.trial.trial import Trial
 
 
@@ -64,6 +65,7 @@ def check(
     if not as_json:
         _show_matches(place, checked.matches)
         _show_sampled(checked)
+        _show_doubts(checked)
     tried = None if duration is None else _tried(checked, duration)
     if tried is not None and not as_json:
         _show_trial(tried)
@@ -90,6 +92,8 @@ class _Checked:
     matches: list[Match]
     sampled: list[str]
     """The outputs that the FMU, which does not tell, has sampled since those of the place are."""
+    doubts: list[str]
+    """Clauses about declarations of the FMU that the steps of the place do not respect."""
 
 
 def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
@@ -119,7 +123,17 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
     found = matches(requirements(system, driven, unit, there), fmu.interface, entry)
     names = [m.need for m in found if m.variable and m.verdict != "missing" and m.need in sampled_in(there)]
     silent = not fmu.interface.tells_sampled and (entry is None or entry.sampled is None)
-    return _Checked(place, system, driven, unit, path, entry, found, names if silent else [])
+    doubtful = _doubts(fmu, entry or system.file.units[unit], system, driven, unit)
+    return _Checked(place, system, driven, unit, path, entry, found, names if silent else [], doubtful)
+
+
+def _doubts(fmu: Fmu, entry: UnitEntry, system: System, scenario: Scenario, unit: str) -> list[str]:
+    """Return clauses about declarations that the FMU's steps, by its entry or the place's, do not respect."""
+    from ..fmi.doubts import doubts
+
+    step_size = scenario.file.experiment.step_size or system.file.experiment.step_size
+    period = entry.period or system.file.units[unit].period or step_size
+    return doubts(fmu, [period / entry.substeps])
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:
@@ -166,6 +180,7 @@ def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str
         "place": checked.place,
         "fits": complete,
         "sampled": checked.sampled,
+        "warnings": checked.doubts,
         "rows": list(map(dataclasses.asdict, checked.matches)),
     }
     if tried is not None:
@@ -194,6 +209,14 @@ def _show_sampled(checked: _Checked) -> None:
             f"taken as sampled, as in {checked.place}: {', '.join(checked.sampled)}; they hold from the time "
             "of the inputs on, and `sampled = false` in a swap file says otherwise\n"
         )
+
+
+def _show_doubts(checked: _Checked) -> None:
+    """Print what the FMU declares and its steps in this place do not respect."""
+    for doubt in checked.doubts:
+        print(f"warning: the FMU {doubt}")
+    if checked.doubts:
+        print()
 
 
 def _reason(match: Match) -> str:

@@ -1,0 +1,67 @@
+"""Declarations of an FMU that a run may not respect: the tool that it needs, the step that it can take."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from .fmu import Fmu, is_true
+
+_SAME = 1e-9  # of a step: what differs by rounding alone
+
+
+def doubts(fmu: Fmu, steps: Sequence[float]) -> list[str]:
+    """Return a clause for each declaration that the FMU's steps in a run, of these sizes [s], do not respect.
+
+    The first of `steps` is that of all but the last. Only an interface for Co-Simulation has such.
+    """
+    if fmu.interface_type != "co_simulation":
+        return [*_needs_tool(fmu)]
+    return [*_needs_tool(fmu), *_other_step(fmu, steps[0]), *_changing_step(fmu, steps)]
+
+
+def _needs_tool(fmu: Fmu) -> list[str]:
+    if not is_true(fmu.kind, "needsExecutionTool") or fmu.holds_python:
+        return []
+    tool = fmu.description.generationTool or "its tool"
+    return [f"needs {tool} on the machine where it runs (needsExecutionTool)"]
+
+
+def _other_step(fmu: Fmu, step: float) -> list[str]:
+    """Return what is said of a step that is not the declared one."""
+    internal = _size(getattr(fmu.kind, "fixedInternalStepSize", None))
+    if internal is not None and abs(step / internal - round(step / internal)) > _SAME * step / internal:
+        return [
+            f"has internal steps of {internal:g} s (fixedInternalStepSize), of which its steps here, "
+            f"{step:g} s, are no multiple{_ADVICE}"
+        ]
+    declared = _size(getattr(fmu.description.defaultExperiment, "stepSize", None))
+    if internal is not None or declared is None or abs(step - declared) <= _SAME * declared:
+        return []
+    if is_true(fmu.kind, "canHandleVariableCommunicationStepSize"):
+        return []
+    return [f"takes steps of {declared:g} s{_FIXED}, and its steps here are of {step:g} s{_ADVICE}"]
+
+
+def _changing_step(fmu: Fmu, steps: Sequence[float]) -> list[str]:
+    """Return what is said of a last step that is shorter than the others."""
+    if is_true(fmu.kind, "canHandleVariableCommunicationStepSize"):
+        return []
+    if all(math.isclose(step, steps[0], rel_tol=_SAME) for step in steps):
+        return []
+    return [
+        f"takes steps of one size{_FIXED}, and its last step is of {steps[-1]:g} s, not of {steps[0]:g} s"
+    ]
+
+
+_FIXED = " only (canHandleVariableCommunicationStepSize is not true)"
+_ADVICE = "; `step_size`, `period` and `substeps` make them"
+
+
+def _size(text: object) -> float | None:
+    """Return a declared step size [s]; None for none, and for what is none: FMPy leaves text as it is."""
+    try:
+        size = float(str(text))
+    except ValueError:
+        return None
+    return size if 0.0 < size < math.inf else None
