@@ -26,6 +26,7 @@ from .builtin import fmu_file
 from .engine.initialization import ordered_links
 from .fmi.doubts import doubts
 from .fmi.fmu import Fmu, check_runnable, read_fmu
+from .single_fmu import check_alone, names_fmu, one_fmu
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +55,7 @@ def prepare(
     swaps, fmus = options.get("swaps") or {}, options.get("fmus") or {}
     _check_one_fmu(swaps, fmus)
     # the files: system and scenario, with varied buses and swapped units, without absent variables
-    read, driven = _files(system, scenario, options)
+    read, driven, options = _files(system, scenario, options)
     original = read
     read, opened = without_open(swapped(read, swaps), options.get("allow_open", False))
     read, driven, left_out = without_absent(read, driven)
@@ -141,8 +142,14 @@ def _check_one_fmu(swaps: Mapping[str, str | Path], fmus: Mapping[str, str | Pat
 
 def _files(
     system: str | Path | System, scenario: str | Path | Scenario | None, options: RunOptions
-) -> tuple[System, Scenario]:
-    """Read system and scenario, unless they were made in memory, and vary the buses as `bus` says."""
+) -> tuple[System, Scenario, RunOptions]:
+    """Read system and scenario, unless they were made in memory, and vary the buses as `bus` says.
+
+    An FMU is a system of itself, for which some options are used up.
+    """
+    if names_fmu(system):
+        return one_fmu(str(system), scenario, options)
+    check_alone(options)
     read = system if isinstance(system, System) else load_system(str(system))
     if isinstance(scenario, Scenario):
         driven = scenario
@@ -153,7 +160,7 @@ def _files(
         if options.get("ideal", False):
             raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
         read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
-    return read, driven
+    return read, driven, options
 
 
 def _check_absent(system: System, unit: str, interface: UnitInterface) -> None:

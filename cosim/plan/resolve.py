@@ -257,7 +257,7 @@ def _drives(
     """
     drives = []
     for number, entry in enumerate(scenario.file.stimuli, 1):
-        place = f"{scenario.path}: stimulus {number}"
+        place = f"{scenario.path}: stimulus {number}" if scenario.path else f"input {entry.to}"
         unit, name = network.input_of(entry.to, interfaces, f"{place}.to")
         variable, interface = interfaces[unit].variables[name], interfaces[unit]
         map_ = Affine()
@@ -267,7 +267,9 @@ def _drives(
             target = End(entry.to, variable.unit, known, variable.difference)
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
         slot = slots.valid[unit, name]
-        network.drive(entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path}"), f"{place}.to")
+        network.drive(
+            entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"
+        )
         if variable.type == "Real":
             signal = stimulus(entry, place, scenario.path, variable, clock)
             drives.append(Drive(entry.to, slot, signal, map_))

@@ -119,7 +119,8 @@ def _outputs_by_kind(
     sampled = [v for v in outputs if v.sampled]
     continuous = [v for v in outputs if not v.sampled]
     through = [v for v in continuous if v.depends and not inputs.isdisjoint(v.depends)]
-    rest = [v for v in continuous if v not in through]
+    early = {v.name for v in through}
+    rest = [v for v in continuous if v.name not in early]
     return [("sampled", sampled, 0), ("continuous", [*through, *rest], len(through))]
 
 

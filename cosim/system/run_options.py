@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Mapping
 from numbers import Real
 from pathlib import Path
-from typing import Any, TypedDict, get_args
+from typing import Any, Literal, TypedDict, get_args
 
 from ..can.bus_settings import BusVariation
 from ..errors import ConfigError, nearest
 from ..interface import Value
-from .system import LATEST, Algorithm, EngineName, Isolation
+from .system import LATEST, SHORTEST, Algorithm, EngineName, Isolation
 
 
 class RunOptions(TypedDict, total=False):
@@ -19,7 +19,11 @@ class RunOptions(TypedDict, total=False):
 
     parameters: Mapping[str, Value] | None
     """Values by "unit.variable" of parameters, initial states and inputs that nothing drives, each in the
-    variable's own unit; they override the files."""
+    variable's own unit; they override the files. Of an FMU by itself by its own names."""
+
+    inputs: Mapping[str, Value | Path] | None
+    """Of an FMU by itself: what its inputs receive by name, a constant or a table "FILE.csv" with the input's
+    name, or "FILE.csv:COLUMN"."""
 
     fmus: Mapping[str, str | Path] | None
     """Paths or built-in names of FMUs by unit; each takes the place of the one that the system names."""
@@ -41,6 +45,15 @@ class RunOptions(TypedDict, total=False):
 
     stop_time: float | None
     """The time [s] at which the run ends (default: the scenario's, else the system's)."""
+
+    step_size: float | None
+    """Of an FMU by itself: the communication step [s] (default: that of its default experiment)."""
+
+    interface: Literal["co_simulation", "model_exchange"] | None
+    """Of an FMU by itself that has both: "co_simulation" (the default) or "model_exchange"."""
+
+    tolerance: float | None
+    """Of an FMU by itself: the relative tolerance of its solver (default: as it declares)."""
 
     isolation: Isolation | None
     """Run every unit in a process of its own ("process"), or none ("none"; default: the system's)."""
@@ -83,10 +96,19 @@ def _is_time(value: Any) -> bool:
     return abs(seconds) <= LATEST or not math.isfinite(seconds)  # which is refused with its place
 
 
+def _is_positive(value: Any) -> bool:
+    return _is_time(value) and SHORTEST <= float(value) <= LATEST
+
+
+def _is_share(value: Any) -> bool:
+    return _is_time(value) and 0.0 < float(value) < 1.0
+
+
 _FLAG = (lambda value: isinstance(value, bool), "must be True or False")
 _BY_NAME = (lambda value: isinstance(value, Mapping), "must be a mapping of names")
 _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "parameters": _BY_NAME,
+    "inputs": _BY_NAME,
     "fmus": _BY_NAME,
     "swaps": _BY_NAME,
     "allow_open": _FLAG,
@@ -94,6 +116,9 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "bus": (lambda value: isinstance(value, BusVariation), "must be a BusVariation"),
     "algorithm": _one_of(Algorithm),
     "stop_time": (_is_time, f"must be a number of seconds, up to {LATEST:g}"),
+    "step_size": (_is_positive, "must be a number of seconds above 0"),
+    "interface": _one_of(Literal["co_simulation", "model_exchange"]),
+    "tolerance": (_is_share, "must be a number between 0 and 1"),
     "isolation": _one_of(Isolation),
     "engine": _one_of(EngineName),
     "strict": _FLAG,

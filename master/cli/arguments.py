@@ -4,19 +4,41 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from ...cosim.errors import ConfigError
 from ...cosim.interface import Value
 
 
-def parse_settings(options: Sequence[str]) -> dict[str, Value]:
-    """Return `--set` options as "unit.parameter" to value; the last of a name counts. Raises ConfigError."""
+def parse_settings(options: Sequence[str], of_fmu: bool = False) -> dict[str, Value]:
+    """Return `--set` options as "unit.parameter" to value; the last of a name counts.
+
+    Those `of_fmu` by itself have its own names of variables. Raises ConfigError.
+    """
     values = {}
     for option in options:
         name, equals, text = (part.strip() for part in option.partition("="))
-        unit, _, parameter = name.partition(".")
+        unit, _, parameter = ("fmu", ".", name) if of_fmu else name.partition(".")
         if not (equals and unit and parameter and text):
-            raise ConfigError(f"--set {option}: it is written unit.parameter=value, as in vehicle.mass=180")
+            written = (
+                "parameter=value, as in mass=180"
+                if of_fmu
+                else "unit.parameter=value, as in vehicle.mass=180"
+            )
+            raise ConfigError(f"--set {option}: it is written {written}")
+        values[name] = scalar(text)
+    return values
+
+
+def parse_inputs(options: Sequence[str]) -> dict[str, Value | Path]:
+    """Return `--input` options as name to value, or to the text of a CSV file. Raises ConfigError."""
+    values: dict[str, Value | Path] = {}
+    for option in options:
+        name, _, text = (part.strip() for part in option.partition("="))
+        if not (name and text):
+            raise ConfigError(f"--input {option}: it is written NAME=X, as in u=3.5 or u=table.csv")
+        if name in values:
+            raise ConfigError(f"--input {option}: '{name}' is given already: {values[name]}")
         values[name] = scalar(text)
     return values
 
@@ -56,9 +78,12 @@ def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, st
 
 
 @contextlib.contextmanager
-def as_typed(settings: Sequence[str], fmus: Sequence[str] = ()) -> Iterator[None]:
+def as_typed(settings: Sequence[str], fmus: Sequence[str] = (), inputs: Sequence[str] = ()) -> Iterator[None]:
     """Put the option that was typed into an error: `--set` for its parameter, `--fmu` for its unit."""
     places = {f"parameter {_name(option)}:": f"--set {option}:" for option in settings}
+    places |= {f"parameter fmu.{_name(option)}:": f"--set {option}:" for option in settings}
+    places |= {f"input {_name(option)}:": f"--input {option}:" for option in inputs}
+    places |= {f"input fmu.{_name(option)}.constant:": f"--input {option}:" for option in inputs}
     for option in fmus:
         unknown = f"there is no unit '{_name(option)}'"
         places |= {f"fmus: {unknown}": f"--fmu {option}: {unknown}"}

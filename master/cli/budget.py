@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import ScenarioOption, SystemArgument, WorkersOption, takes_run_options
+from .options import ALONE, ScenarioOption, SystemArgument, WorkersOption, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.analysis.bus_budget import Budget
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
 
 
-@takes_run_options("ideal")
+@takes_run_options("ideal", *ALONE)
 def budget(
     system: SystemArgument,
     scenario: ScenarioOption = None,

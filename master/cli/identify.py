@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import completion
-from .options import QuietOption, scenario_option, takes_run_options
+from .options import ALONE, QuietOption, scenario_option, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.analysis.first_order import Estimate
@@ -68,7 +68,7 @@ FolderOption = Annotated[
 ]
 
 
-@takes_run_options("settings", "stop_time")
+@takes_run_options("settings", "stop_time", *ALONE)
 def identify(
     target: TargetArgument,
     scenario: ScenarioOption = None,
@@ -182,7 +182,7 @@ def _measure(
     prefix = f"{UNIT}." if is_fmu(target) else ""
     typed = [prefix + setting for setting in settings]
     parameters = {name.removeprefix(prefix): value for name, value in parse_settings(typed).items()}
-    options = {**options, "parameters": parameters}
+    options = {**options, "parameters": parameters, "step_size": step_size}
     points = each_working_point(spec)
     found = []
     with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
@@ -194,9 +194,7 @@ def _measure(
                 interrupts.check()
 
             with as_typed(typed):
-                found.append(
-                    identify(target, point, scenario, step_size=step_size, progress=progress, **options)
-                )
+                found.append(identify(target, point, scenario, progress=progress, **options))
     return found
 
 

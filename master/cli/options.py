@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+ALONE = ("inputs", "step_size", "interface", "tolerance")
+"""The options that are for an FMU by itself."""
+
 
 class AlgorithmChoice(enum.StrEnum):
     """The master algorithms."""
@@ -43,6 +46,13 @@ def scenario_option(text: str) -> Any:
 
 
 ScenarioOption = Annotated[str | None, scenario_option("Name or TOML file; default: the system's own.")]
+
+
+class InterfaceChoice(enum.StrEnum):
+    """The interfaces of an FMU."""
+
+    co_simulation = "co_simulation"
+    model_exchange = "model_exchange"
 
 
 class EngineChoice(enum.StrEnum):
@@ -96,6 +106,20 @@ StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to
 WorkersOption = Annotated[
     int | None, typer.Option(metavar="N", min=1, help="Processes at a time; default: one for each core.")
 ]
+InputsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--input", metavar="NAME=X", help="FMU: what an input receives, 3.5 or table.csv; can be given again."
+    ),
+]
+StepSizeOption = Annotated[float | None, typer.Option(metavar="H", help="FMU: the communication step [s].")]
+InterfaceOption = Annotated[
+    InterfaceChoice | None,
+    typer.Option(help="FMU: which interface of two; default: co_simulation.", show_default=False),
+]
+ToleranceOption = Annotated[
+    float | None, typer.Option(metavar="R", help="FMU: relative tolerance of its solver; default: its own.")
+]
 StrictOption = Annotated[
     bool, typer.Option("--strict", help="Refuse an FMU whose description has defects that could be mended.")
 ]
@@ -112,13 +136,26 @@ def _run_options(
     isolation: IsolationOption = None,
     engine: EngineOption = None,
     stop_time: StopTimeOption = None,
+    inputs: InputsOption = None,
+    step_size: StepSizeOption = None,
+    interface: InterfaceOption = None,
+    tolerance: ToleranceOption = None,
     strict: StrictOption = False,
+    *,
+    of_fmu: bool = False,
 ) -> RunOptions:
-    """Return the options of a run as the library takes them. Raises ConfigError."""
-    from .arguments import parse_files, parse_settings
+    """Return the options of a run, `of_fmu` by itself or not, as the library takes them.
+
+    Raises ConfigError.
+    """
+    from .arguments import parse_files, parse_inputs, parse_settings
 
     return {
-        "parameters": parse_settings(settings or []),
+        "parameters": parse_settings(settings or [], of_fmu),
+        "inputs": parse_inputs(inputs or []),
+        "step_size": step_size,
+        "interface": interface.value if interface else None,
+        "tolerance": tolerance,
         "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
         "swaps": parse_files("--swap", swaps or [], "my/swap.toml"),
         "allow_open": allow_open,
@@ -138,16 +175,18 @@ def takes_run_options(*without: str) -> Callable[[Callable[..., T]], Callable[..
     or an FMU names the `--set` or `--fmu` option that was typed.
     """
     known = inspect.signature(_run_options, locals={"RunOptions": Any}, eval_str=True).parameters
-    declared = [parameter for name, parameter in known.items() if name not in without]
+    declared = [p for name, p in known.items() if name not in without and p.kind is not p.KEYWORD_ONLY]
 
     def declare(verb: Callable[..., T]) -> Callable[..., T]:
         @functools.wraps(verb)
         def called(**arguments: Any) -> T:
+            from ..single_fmu import names_fmu
             from .arguments import as_typed
 
             given = {parameter.name: arguments.pop(parameter.name) for parameter in declared}
-            with as_typed(given.get("settings") or [], given.get("fmus") or []):
-                return verb(**arguments, options=_run_options(**given))
+            of_fmu = "inputs" in given and names_fmu(arguments.get("system"))
+            with as_typed(given.get("settings") or [], given.get("fmus") or [], given.get("inputs") or []):
+                return verb(**arguments, options=_run_options(**given, of_fmu=of_fmu))
 
         own = inspect.signature(verb, locals={"RunOptions": Any}, eval_str=True).parameters.values()
         parameters = [p for each in own for p in (declared if each.name == "options" else [each])]

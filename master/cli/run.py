@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import QuietOption, ScenarioOption, SystemArgument, takes_run_options
+from . import completion
+from .options import QuietOption, ScenarioOption, takes_run_options
 
 if TYPE_CHECKING:
     from ...cosim.results.results import Results
@@ -22,7 +23,14 @@ if TYPE_CHECKING:
 
 @takes_run_options()
 def run(
-    system: SystemArgument,
+    system: Annotated[
+        str,
+        typer.Argument(
+            metavar="SYSTEM|FMU",
+            help="A system, or an FMU by itself: a file, or a built-in name.",
+            autocompletion=completion.systems_and_fmus,
+        ),
+    ],
     scenario: ScenarioOption = None,
     *,
     options: RunOptions,
@@ -41,7 +49,7 @@ def run(
     as_json: Annotated[bool, typer.Option("--json", help="Print what happened as JSON.")] = False,
     quiet: QuietOption = False,
 ) -> int:
-    """Run a system; write results.csv, run.json, a figure."""
+    """Run a system, or an FMU by itself; write results.csv, run.json, a figure."""
     bar = not (as_json or quiet)
     order = Order(system, scenario, options, output, replace, can_log, not no_plot, profile, bar)
     return _carry_out(order, as_json, quiet)

@@ -104,14 +104,13 @@ def identify(
     spec: IdentificationSpec | None = None,
     scenario: str | Path | None = None,
     *,
-    step_size: float | None = None,
     progress: PhaseProgress | None = None,
     **options: Unpack[RunOptions],
 ) -> Identification:
     """Identify `target` (a system, or an FMU alone) at the first working point of `spec`.
 
     Without a spec the scenario's is taken. Parameters of an FMU alone are named without a unit, and
-    `step_size` [s] is for it alone; the other arguments are those of `Simulation`, except `stop_time`.
+    `step_size` is for it alone; the options are those of `Simulation`, except `stop_time`.
     Raises ConfigError for input that does not fit, before the sweep; RunError if the run fails, or the
     output does not come to rest or does not react.
     """
@@ -124,6 +123,8 @@ def identify(
     sweep = sweep_of(spec)
     alone = is_fmu(target)
     prefix = f"{UNIT}." if alone else ""
+    step_size = options.get("step_size")
+    options["step_size"] = None  # the system has it
     system = one_unit_system(target, step_size) if alone else load_system(target)
     scenario = scenario if alone else default_scenario(system, scenario)
     if alone and scenario is not None:

@@ -30,7 +30,7 @@ def test_every_option_of_a_run_is_an_option_but_the_variation_of_buses():
     assert set(options._run_options()) == RunOptions.__optional_keys__ - {"bus"}
 
 
-@takes_run_options("ideal")
+@takes_run_options("ideal", *options.ALONE)
 def verb(system: SystemArgument, *, options: RunOptions, quiet: QuietOption = False):
     """Show the options."""
     return system, options, quiet
@@ -52,6 +52,10 @@ def test_a_verb_receives_them_as_one_record():
     assert (system, quiet) == ("scooter", True)
     assert found == {
         "parameters": {"vehicle.mass": 180},
+        "inputs": {},
+        "step_size": None,
+        "interface": None,
+        "tolerance": None,
         "fmus": {},
         "swaps": {},
         "ideal": False,
