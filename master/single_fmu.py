@@ -64,12 +64,12 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     fmu = read_fmu(path, options.get("strict", False)).using(options.get("interface"))
     given = options.get("parameters") or {}
     values = {_known(text, fmu.interface, f"parameter {text}", path): x for text, x in given.items()}
-    entry = {"fmu": str(path.resolve()), "interface": options.get("interface")}
+    unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
         "name": name if name.isidentifier() else UNIT,
         "title": fmu.description.description or "",
         "experiment": _experiment(fmu, options),
-        "units": {UNIT: entry | {"tolerance": options.get("tolerance")}},
+        "units": {UNIT: unit | {"tolerance": options.get("tolerance")}},
         "record": _recorded(fmu.interface),
     }
     stimuli = [_stimulus(n, v, fmu.interface, path) for n, v in (options.get("inputs") or {}).items()]
