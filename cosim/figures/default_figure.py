@@ -11,6 +11,7 @@ from ..results.results import Results, ResultVariable
 from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ..units.definition import defined
 from .check import panel_conversion
+from .text import pretty
 
 # Quantities that the units of this field measure, for axes that nobody has named.
 _QUANTITIES = {
@@ -47,12 +48,17 @@ MAX_SIGNALS = 8
 def default_spec(results: Results) -> FigureSpec:
     """Return a figure for any results: signals that measure the same quantity together.
 
-    Inputs that repeat an output are left out (see `_repeats`). The enumeration that changes first shades
-    the panels, the others have a panel. Of more than six panels or eight signals in one, those
-    that change stay, outputs first, and the note names the others. Raises ConfigError without a variable.
+    Inputs that repeat an output are left out (see `_repeats`), and the note has those that never change. The
+    enumeration that changes first shades the panels, the others have a panel. Of more than six panels or
+    eight signals in one, those that change stay, outputs first, and the note names the others. Raises
+    ConfigError without a variable.
     """
     shade = _shading(results)
-    shown = [v for v in _distinct(results) if v is not shade]
+    distinct = [v for v in _distinct(results) if v is not shade]
+    constant = [v for v in distinct if v.causality == "input" and not _changes(results, v)]
+    if len(constant) == len(distinct):
+        constant = []
+    shown = [v for v in distinct if v not in constant]
     groups: dict[object, list[ResultVariable]] = {}
     for v in shown:
         groups.setdefault(_group(results, v), []).append(v)
@@ -68,20 +74,28 @@ def default_spec(results: Results) -> FigureSpec:
         raise ConfigError("the results have no variable to draw")
     drawn = {signal.name for panel in chosen for signal in panel.signals}
     left_out = [v.name for v in shown if v.name not in drawn]
-    return FigureSpec(shade=shade.name if shade else None, panels=chosen, note=_note(left_out))
+    final = results.final()
+    note = _note("Constant", [_constant(v, final[v.name]) for v in constant]), _note("Not shown", left_out)
+    return FigureSpec(
+        shade=shade.name if shade else None, panels=chosen, note="; ".join(filter(None, note)) or None
+    )
 
 
 def title_of(results: Results) -> str:
     """Return the names of the system and the scenario of a run, as far as its manifest says them."""
     parts = [results.manifest.get(key) for key in ("system", "scenario")]
-    return " · ".join(part for part in parts if isinstance(part, str))
+    return " · ".join(part for part in parts if isinstance(part, str) and part)
 
 
-def _note(left_out: list[str]) -> str | None:
-    if not left_out:
-        return None
-    more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
-    return f"Not shown: {', '.join(left_out[:8])}{more}"
+def _note(about: str, texts: list[str]) -> str:
+    """Return the texts, eight at most, with what they are about; "" for none."""
+    more = f" and {len(texts) - 8} more" if len(texts) > 8 else ""
+    return f"{about}: {', '.join(texts[:8])}{more}" if texts else ""
+
+
+def _constant(variable: ResultVariable, value: float | int | bool) -> str:
+    shown = f"{value:g}" if isinstance(value, float) else str(dict(variable.items).get(value, value))
+    return f"{variable.name} = {shown} {pretty(variable.unit)}".rstrip()
 
 
 def _changes(results: Results, variable: ResultVariable) -> bool:

@@ -15,10 +15,24 @@ def test_the_default_figure_groups_by_what_is_measured() -> None:
     assert [(p.unit, [s.name for s in p.signals]) for p in spec.panels] == [
         ("%", ["rider.throttle", "ecu.throttle"]),  # the request repeats the rider's throttle
         ("km/h", ["ecu.speed_estimate", "vehicle.speed", "ecu.speed_measured", "ecu.speed_bound"]),
-        ("rad", ["vehicle.road_grade"]),
     ]
     assert spec.panels[1].label == "speed"
-    assert spec.note is None
+    assert spec.note == "Constant: vehicle.road_grade = 0 rad"
+
+
+def test_inputs_that_never_change_are_said_and_not_drawn() -> None:
+    variables = [
+        ResultVariable("a.limit", "m/s2", causality="input"),
+        ResultVariable("a.mode", type="Enumeration", causality="input", items=((1, "off"), (2, "on"))),
+        ResultVariable("a.idle", "W"),
+        ResultVariable("a.y", "m"),
+    ]
+    results = Results([0.0, 1.0], [[1e12, 2, 0.0, 1.0], [1e12, 2, 0.0, 2.0]], variables)
+    spec = default_spec(results)
+    assert [[signal.name for signal in panel.signals] for panel in spec.panels] == [["a.idle"], ["a.y"]]
+    assert spec.note == "Constant: a.limit = 1e+12 m/s², a.mode = on"
+    alone = default_spec(results.part(slice(None), ["a.limit", "a.mode"]))
+    assert [s.name for p in alone.panels for s in p.signals] == ["a.limit", "a.mode"] and alone.note is None
 
 
 def test_the_default_figure_has_an_end() -> None:
@@ -39,6 +53,7 @@ def test_a_figure_is_named_by_what_was_run() -> None:
 
     assert named(system="scooter", scenario="fig8") == "scooter · fig8"
     assert named(system="scooter", scenario=None) == "scooter"
+    assert named(system="Scooter", scenario="") == "Scooter"
     assert named() == ""
 
 
