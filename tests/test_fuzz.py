@@ -8,7 +8,7 @@ import pytest
 
 from support import fuzz
 
-COUNT = 140
+COUNT = 100
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import struct
+import sys
 from pathlib import Path
 
 from ..errors import ConfigError, nearest
@@ -145,9 +146,9 @@ def check_signal(message: Message, signal: Signal, place: str = "") -> None:
     and a finite offset; floats of 32 or 64 bits; minimum <= maximum, some value between them can be sent, and
     none of them is sent as the "not available" code.
     """
-    for problem in (_message_problem(message), _unsupported(signal), _range_problem(signal)):
-        if problem:
-            raise ConfigError(f"{prefix(place)}{message.file}: {message.name}.{signal.name}: {problem}")
+    # each relies on the one before: limits in raw steps need a scale
+    if problem := _message_problem(message) or _unsupported(signal) or _range_problem(signal):
+        raise ConfigError(f"{prefix(place)}{message.file}: {message.name}.{signal.name}: {problem}")
 
 
 def _message_problem(message: Message) -> str:
@@ -155,9 +156,17 @@ def _message_problem(message: Message) -> str:
     if message.multiplexed:
         return "the message is multiplexed; a connection needs one whose frames all hold the same signals"
     for s in message.signals.values():
+        if problem := _length_problem(s):
+            return f"{s.name} is {problem}"
         low, high = s.raw_type_range
         if not low <= s.start_raw <= high or (not s.is_float and s.start_raw != int(s.start_raw)):
             return f"the start value {s.start_raw} of {s.name} is no raw value of {_bits(s)}"
+    return ""
+
+
+def _length_problem(signal: Signal) -> str:
+    if signal.is_float and signal.length not in _FLOAT_MAX:
+        return f"a float of {signal.length} bits; 32 or 64 are supported"
     return ""
 
 
@@ -168,16 +177,28 @@ def _bits(signal: Signal) -> str:
 
 
 def _unsupported(signal: Signal) -> str:
-    if signal.is_float and signal.length not in _FLOAT_MAX:
-        return f"a float of {signal.length} bits; 32 or 64 are supported"
+    if problem := _length_problem(signal):
+        return problem
     if signal.scale == 0 or not math.isfinite(signal.scale) or not math.isfinite(signal.offset):
         rule = "the scale must be finite and not 0, the offset finite"
-        return f"scale {signal.scale} and offset {signal.offset}: {rule}"
+        return f"scale {signal.scale:.6g} and offset {signal.offset:.6g}: {rule}"
+    if not signal.is_float and not all(
+        math.isfinite(_physical(raw, signal)) for raw in signal.raw_type_range
+    ):
+        ends = f"scale {signal.scale:.6g} and offset {signal.offset:.6g}"
+        return f"{ends}: raw values of {_bits(signal)} are beyond {sys.float_info.max:.3g}"
     return ""
+
+
+def _physical(raw: float | int, signal: Signal) -> float:
+    """Return the value of a raw value; infinity beyond all doubles, and where a product on the way is."""
+    return float(raw) * float(signal.scale) + float(signal.offset)
 
 
 def _range_problem(signal: Signal) -> str:
     low, high = signal.minimum, signal.maximum
+    if (low is not None and math.isnan(low)) or (high is not None and math.isnan(high)):
+        return f"minimum {low} and maximum {high}: NaN is no limit"
     if low is not None and high is not None and low > high:
         return f"minimum {low} is above maximum {high}"
     if signal.is_float:

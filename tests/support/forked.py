@@ -18,11 +18,15 @@ MEMORY = 3 << 30
 
 
 class Outcome(NamedTuple):
-    """What became of a call: `value`, or `crash`, a text, where it raised, was killed or took too long."""
+    """What became of a call: `value`, or `crash`, a text, where it raised, was killed or took too long.
+
+    `seconds` are those of the clock on the wall, `busy` those of processors, of its own children too.
+    """
 
     value: Any
     crash: str
     seconds: float
+    busy: float = 0.0
 
 
 def forked(call: Callable[[], Any], limit: float = 10.0) -> Outcome:
@@ -34,16 +38,16 @@ def forked(call: Callable[[], Any], limit: float = 10.0) -> Outcome:
         child = os.fork()
         if child == 0:
             _in_child(call, answer, limit)
-        _, status = os.waitpid(child, 0)
-        seconds = time.monotonic() - began
+        _, status, used = os.wait4(child, 0)
+        seconds, busy = time.monotonic() - began, used.ru_utime + used.ru_stime
         answer.seek(0)
         content = answer.read()
     if os.WIFSIGNALED(status):
         number = signal.Signals(os.WTERMSIG(status)).name
         late = f"more than {limit} s" if number == "SIGALRM" else f"killed by {number}"
-        return Outcome(None, late, seconds)
+        return Outcome(None, late, seconds, busy)
     value, crash = pickle.loads(content) if content else (None, f"exit code {os.WEXITSTATUS(status)}")
-    return Outcome(value, crash, seconds)
+    return Outcome(value, crash, seconds, busy)
 
 
 def _in_child(call: Callable[[], Any], answer: Any, limit: float) -> None:

@@ -1,0 +1,1 @@
+"""The makers of hostile inputs: files of each kind, and command lines, from a random generator."""
