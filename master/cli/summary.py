@@ -106,8 +106,9 @@ def _factor(finished: FinishedRun) -> float:
 
 
 def _time(finished: FinishedRun) -> str:
-    seconds, factor = finished.simulation.loop_seconds, _factor(finished)
-    return f"{number(_simulated(finished))} s simulated in {seconds:.3g} s: {factor:.3g} times real time"
+    seconds = finished.simulation.loop_seconds
+    factor = float(f"{_factor(finished):.3g}")  # three digits, and no exponent up to a million
+    return f"{number(_simulated(finished))} s simulated in {seconds:.3g} s: {number(factor)} times real time"
 
 
 def _final_values(finished: FinishedRun) -> list[tuple[str, str]]:

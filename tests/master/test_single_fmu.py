@@ -75,7 +75,7 @@ def test_inputs_and_parameters_reach_the_fmu(tmp_path, fmi):
     again = simulate(path, parameters={"fmu.gain": 2.0}, inputs={"fmu.u": table}, step_size=0.25)
     assert np.array_equal(again["fmu.y"], results["fmu.y"])
     assert results.manifest["units"]["fmu"]["isolation"] == "process"
-    with pytest.raises(ConfigError, match="parameter fmu.u: the input is driven by a stimulus"):
+    with pytest.raises(ConfigError, match=r"parameter fmu.u: the input is driven by a stimulus"):
         simulate(path, parameters={"u": 7.0}, inputs={"u": table})
     start = simulate(path, parameters={"u": 7.0}, step_size=0.25)
     assert start["fmu.u"].tolist() == [7.0] * 5
