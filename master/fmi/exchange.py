@@ -46,10 +46,14 @@ class ModelExchange(Instance):
     `_derivatives`      the name of the function that gives the derivatives
     `_discrete_states`  makes the call for new discrete states, which is then made many times
     `_answer`           the structure that this call writes, with the members of fmi2EventInfo
+
+    and what differs from FMI 2.0 of `_nominals`, the name of the function that gives the nominal values,
+    `_entering`, `_completion_arguments`, `_first_update` and `_derivative_names`.
     """
 
     _flag: Any
     _derivatives: str
+    _nominals = "GetNominalsOfContinuousStates"
     _answer: Any
     _discrete_states: Callable[[], Call]
 
@@ -94,17 +98,25 @@ class ModelExchange(Instance):
         self._nz = int(description.numberOfEventIndicators)
         self._z = (ctypes.c_double * self._nz)()
         self._move = self._bound("SetTime", self._time)
-        self._enter_event_mode = self._bound("EnterEventMode")
-        self._enter_continuous_time = self._bound("EnterContinuousTimeMode")
+        self._enter_event_mode = self._entering("EventMode")
+        self._enter_continuous_time = self._entering("ContinuousTimeMode")
         self._get_indicators = self._of_all("GetEventIndicators", self._z)
         self._wants_event, self._wants_end = self._flag(), self._flag()
         self._complete = self._completed()
         self._update = self._discrete_states()
         if self._nx or self._nz:
             self._make_solver()
-        self._iterate()
+        self._iterate(self._first_update())
         self._settle()
         self._held[False] = [float(self.get(v.name)) for _, v in self._inputs[False]]
+
+    def _entering(self, mode: str) -> Call:
+        """Return the call that enters a mode."""
+        return self._bound(f"Enter{mode}")
+
+    def _first_update(self) -> Call:
+        """Return the call that gives the first answer about discrete states."""
+        return self._update
 
     def _bound(self, what: str, *arguments: Any) -> Call:
         """Return a call of a function of the FMU with these arguments behind the component, judged."""
@@ -129,16 +141,19 @@ class ModelExchange(Instance):
         self._get_states = self._of_all("GetContinuousStates", solver.x)
         self._put_states = self._of_all("SetContinuousStates", solver.x)
         self._get_nominals = one_after_the_other()
-        if self._library.has(f"{self.fmi}GetNominalsOfContinuousStates"):
-            self._get_nominals = self._of_all("GetNominalsOfContinuousStates", solver.absolute)
+        if self._library.has(f"{self.fmi}{self._nominals}"):
+            self._get_nominals = self._of_all(self._nominals, solver.absolute)
 
     def _completed(self) -> Call | None:
         """Return the call that reports a step of the solver to the FMU; None where it needs none."""
         what = "CompletedIntegratorStep"
         if not self.fmu.kind.needsCompletedIntegratorStep or not self._library.has(self.fmi + what):
             return None
-        answers = ctypes.byref(self._wants_event), ctypes.byref(self._wants_end)
-        return self._bound(what, self._flag(True), *answers)  # no return to a time before this step
+        return self._bound(what, *self._completion_arguments())
+
+    def _completion_arguments(self) -> tuple[Any, ...]:
+        """Return what the report of a step passes: there is no return to a time before it; two answers."""
+        return self._flag(True), ctypes.byref(self._wants_event), ctypes.byref(self._wants_end)
 
     # ---- for the solver
 
@@ -179,20 +194,27 @@ class ModelExchange(Instance):
 
     def _why_not(self) -> str:
         """Return a clause with the derivatives that were no finite numbers where the solver was last."""
-        solver, names = self._solver, [u.variable.name for u in self.fmu.description.derivatives]
+        solver, names = self._solver, self._derivative_names()
         if solver is None or len(names) != self._nx:
             return ""
         found = zip(names, solver.last_derivatives(), strict=True)
         bad = [f"{name} = {x}" for name, x in found if not math.isfinite(x)]
         return f"; there {', '.join(bad[:_SHOWN])}" if bad else ""
 
+    def _derivative_names(self) -> list[str]:
+        return [unknown.variable.name for unknown in self.fmu.description.derivatives]
+
     # ---- events
 
-    def _iterate(self) -> None:
-        """Compute new discrete states until there are no more, and enter continuous-time mode."""
+    def _iterate(self, first: Call | None = None) -> None:
+        """Compute new discrete states until there are no more, and enter continuous-time mode.
+
+        `first` is the first call that does it (None: as every other).
+        """
+        update = first or self._update
         for _ in range(_ITERATIONS):
-            self._update()
-            answer = self._answer
+            update()
+            update, answer = self._update, self._answer
             if answer.terminateSimulation:
                 self._give_up("asks to terminate the simulation")
             self._nominals_changed |= bool(answer.nominalsOfContinuousStatesChanged)
