@@ -38,8 +38,8 @@ NAMES = {
         "fmi2EventInfo.nextEventTimeDefined fmi2EventInfo.nextEventTime",
     ),
     "fmpy.model_description": (
-        "master/fmi/description.py, validation.py",
-        "ValidationError read_model_description",
+        "master/fmi/description.py, supplement.py, validation.py",
+        "Unknown ValidationError read_model_description",
     ),
     "fmpy.sundials": ("master/fmi/cvode.py", "libraries"),
     "fmpy.sundials.libraries": (

@@ -171,7 +171,8 @@ def _write(checked: _Checked, path: Path, tried: Trial | None, likeness: float) 
     from ...cosim.swap.swap_file import write
 
     proposal = tried.proposal if tried else None
-    write(path, str(checked.fmu), checked.place, checked.matches, checked.entry, proposal, likeness)
+    place = f"{checked.system.file.name}.{checked.unit}"  # --as may name the file
+    write(path, str(checked.fmu), place, checked.matches, checked.entry, proposal, likeness)
 
 
 def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str, object]:

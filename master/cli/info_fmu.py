@@ -182,8 +182,6 @@ def _solver(about: dict[str, Any]) -> str:
     """Return a sentence about the solver of Model Exchange; "" without that interface."""
     if _KINDS["modelExchange"] not in about["kinds"]:
         return ""
-    if about["fmi_version"].startswith("1"):
-        return "Model Exchange of FMI 1.0 is not supported"
     asked = "" if len(about["kinds"]) == 1 else ', where interface = "model_exchange" asks for it'
     return f"CVODE with events solves Model Exchange{asked}"
 

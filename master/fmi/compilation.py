@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import re
 import shlex
 import shutil
 import subprocess
@@ -24,6 +25,7 @@ from .fmu import Fmu, read_fmu
 
 _SHOWN = 3000  # characters of the compiler's messages
 _TIME = 600.0  # s
+_INCLUDED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"([^"\n]+\.c)"', re.MULTILINE)
 
 
 def compile_fmu(path: Path, output: Path | None = None) -> Path:
@@ -131,14 +133,25 @@ def _fmpy_folder() -> str:
 
 
 def _declared(fmu: Fmu) -> tuple[list[str], list[str]]:
-    """Return the entries to compile and the compiler's flags, as the FMU declares them; else each C file.
+    """Return the entries to compile and the compiler's flags, as the FMU declares them; else each C file that
+    no other one includes.
 
     Raises FmuError for a declared file that is not in the archive.
     """
     names, flags = (_of_fmi_3 if fmu.description.fmiVersion.startswith("3") else _of_fmi_2)(fmu)
     if lacking := [name for name in names if name not in fmu.entries]:
         raise FmuError(f"{fmu.path}: declares the source {lacking[0]}, which is not in it")
-    return names or list(fmu.c_sources), flags
+    return names or _not_included(fmu), flags
+
+
+def _not_included(fmu: Fmu) -> list[str]:
+    """Return the C files that no other one includes: FMI 1.0 declares none, and templates are included."""
+    included = set()
+    for entry in fmu.c_sources:
+        for name in _INCLUDED.findall(read_entry(fmu.path, entry).decode("utf-8", "replace")):
+            places = posixpath.dirname(entry), "sources"
+            included |= {posixpath.normpath(f"{place}/{name}") for place in places} - {entry}
+    return [entry for entry in fmu.c_sources if entry not in included] or list(fmu.c_sources)
 
 
 def _root(fmu: Fmu, entry: str) -> Any:

@@ -1,4 +1,4 @@
-"""Units of FMI 2.0 and 3.0 Model Exchange: the FMU gives equations, and we solve them.
+"""Units of Model Exchange, of any version of FMI: the FMU gives equations, and we solve them.
 
 Between two communication points the inputs are held and the states follow their derivatives (`cvode`) until
 an event: a state event (an event indicator z passes between z > 0 and z <= 0), a time event (the FMU named

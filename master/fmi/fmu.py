@@ -163,11 +163,6 @@ def _elsewhere(names: tuple[str, ...]) -> str:
 
 def check_runnable(fmu: Fmu) -> None:
     """Raise FmuError unless this master can run the FMU on this machine."""
-    if fmu.interface_type == "model_exchange" and fmu.description.fmiVersion.startswith("1"):
-        raise FmuError(
-            f"{fmu.path}: FMI 1.0 Model Exchange is not supported, only that of FMI 2.0 and 3.0; "
-            "export it as Co-Simulation, or in FMI 2.0"
-        )
     if fmu.binary not in fmu.entries:
         compile_it = f"; it has its sources: evcosim compile {fmu.path}" if fmu.c_sources else ""
         raise FmuError(

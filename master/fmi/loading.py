@@ -6,7 +6,7 @@ from typing import Any
 
 from ...cosim.interface import UnitInterface
 from ..unit import Unit
-from .fmi1 import Fmi1Unit
+from .fmi1 import Fmi1ModelExchange, Fmi1Unit
 from .fmi2 import Fmi2ModelExchange, Fmi2Unit
 from .fmi3 import Fmi3ModelExchange, Fmi3Unit
 from .fmu import Fmu
@@ -15,6 +15,7 @@ _CLASSES: dict[tuple[str, str], Any] = {
     ("1", "co_simulation"): Fmi1Unit,
     ("2", "co_simulation"): Fmi2Unit,
     ("3", "co_simulation"): Fmi3Unit,
+    ("1", "model_exchange"): Fmi1ModelExchange,
     ("2", "model_exchange"): Fmi2ModelExchange,
     ("3", "model_exchange"): Fmi3ModelExchange,
 }

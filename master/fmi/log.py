@@ -30,6 +30,12 @@ _instantiating: list[UnitLog] = []
 _ids = itertools.count(1)
 
 
+class _ModelCallbacks(ctypes.Structure):
+    """The callback structure of FMI 1.0 Model Exchange."""
+
+    _fields_ = [("logger", Logger1), ("allocateMemory", AllocateMemory1), ("freeMemory", FreeMemory1)]
+
+
 class UnitLog:
     """The last messages of one unit, and how many warnings it gave."""
 
@@ -56,13 +62,15 @@ class UnitLog:
         addLoggerProxy(ctypes.byref(callbacks))
         return callbacks
 
-    def callbacks_1(self) -> fmi1CallbackFunctions:
-        """Return FMI 1.0's callback structure; keep it as long as the unit lives."""
-        callbacks = fmi1CallbackFunctions()
+    def callbacks_1(self, steps: bool = True) -> fmi1CallbackFunctions | _ModelCallbacks:
+        """Return FMI 1.0's callback structure; keep it as long as the unit lives.
+
+        `steps` is true for Co-Simulation; its structure, which is passed by value, has a member more.
+        """
+        callbacks = fmi1CallbackFunctions() if steps else _ModelCallbacks()
         callbacks.logger = ctypes.cast(_receive, Logger1)
         callbacks.allocateMemory = AllocateMemory1(calloc)
         callbacks.freeMemory = FreeMemory1(free)
-        callbacks.stepFinished = None
         addLoggerProxy(ctypes.byref(callbacks))
         return callbacks
 

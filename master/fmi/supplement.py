@@ -19,6 +19,9 @@ def supplement(description: Any, root: Any) -> None:
     """Complete FMPy's ModelDescription from the root element that it was read from."""
     if root.get("fmiVersion") == "1.0":
         _capabilities(description, root)
+        if description.modelExchange is not None:
+            description.modelExchange.needsCompletedIntegratorStep = True
+            _dependencies(description, root)
         _causalities(description)
         _initial(description, root)
     else:
@@ -52,6 +55,24 @@ def _causalities(description: Any) -> None:
     for variable in description.modelVariables:
         if variable.causality in ("none", "internal"):
             variable.causality = "local"
+
+
+def _dependencies(description: Any, root: Any) -> None:
+    """List the outputs of Model Exchange with the inputs that reach them directly, where they are declared.
+
+    A slave's outputs belong to its last step, whatever its inputs became.
+    """
+    from fmpy.model_description import Unknown
+
+    inputs = {v.name: v for v in description.modelVariables if v.causality == "input"}
+    declared = {v.get("name"): v.find("DirectDependency") for v in root.iter("ScalarVariable")}
+    for variable in description.modelVariables:
+        if variable.causality == "output":
+            output = Unknown(variable=variable)
+            if (given := declared.get(variable.name)) is not None:
+                names = [(name.text or "").strip() for name in given.findall("Name")]
+                output.dependencies = [inputs[name] for name in names if name in inputs]
+            description.outputs.append(output)
 
 
 def _initial(description: Any, root: Any) -> None:

@@ -34,3 +34,17 @@ def changed(*changes: tuple[str, str]) -> str:
         assert old in text
         text = text.replace(old, new)
     return text
+
+
+def redescribed(fmu: Path, *changes: tuple[str, str]) -> Path:
+    """Change the description of an FMU (old text, new text), and return its file."""
+    with zipfile.ZipFile(fmu) as file:
+        content = {name: file.read(name) for name in file.namelist()}
+    text = content["modelDescription.xml"].decode()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    with zipfile.ZipFile(fmu, "w") as file:
+        for name, each in (content | {"modelDescription.xml": text.encode()}).items():
+            file.writestr(name, each)
+    return fmu

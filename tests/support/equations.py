@@ -45,9 +45,10 @@ def equations_fmu(
     types: Mapping[str, str] | None = None,
     more: str = "",
 ) -> Path:
-    """One of MODELS at `path` in FMI 2.0 or 3.0; `kinds` is "ME", "CS" or "ME CS".
+    """One of MODELS at `path` in FMI 1.0 ("ME" alone), 2.0 or 3.0; `kinds` is "ME", "CS" or "ME CS".
 
-    In FMI 3.0 `types` are other types of some variables, and `more` is put to the variables' descriptions.
+    In FMI 1.0 and 3.0 `types` are other types of some variables (1.0: Enumeration, with 8 items); in FMI 3.0
+    `more` is put to the variables' descriptions.
     """
     experiment = f'<DefaultExperiment tolerance="{tolerance}"/>'
     interfaces = "".join(
@@ -59,11 +60,35 @@ def equations_fmu(
         if kind in kinds.split()
     )
     flags = [f"-DFMI={fmi}", f"-DMODEL={model.upper()}", f"-DBEHAVIOR={behavior}"]
-    if fmi == 2:
+    if fmi == 1:
+        text = _describe_1(model, experiment, types or {})
+    elif fmi == 2:
         text = _describe_2(model, interfaces, experiment)
     else:
         text = _describe_3(model, interfaces, experiment, types or {}, more)
     return compile_fmu(path, SOURCES / "equations.c", text, "equations", fmi, flags)
+
+
+def _describe_1(model: str, experiment: str, types: Mapping[str, str]) -> str:
+    lines = []
+    for name, reference, causality, variability, kind, start in _VARIABLES:
+        given = f' start="{start}"' if start else ""
+        given += ' declaredType="Level"' if name in types else ""
+        variability = "parameter" if causality == "parameter" else variability
+        causality = "internal" if causality in ("parameter", "local") else causality
+        depends = "<DirectDependency/>" if causality == "output" else ""
+        lines.append(
+            f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" '
+            f'variability="{variability}"><{types.get(name, kind)}{given}/>{depends}</ScalarVariable>'
+        )
+    items = "".join(f'<Item name="level {i}"/>' for i in range(1, 9))
+    level = f'<Type name="Level"><EnumerationType min="1" max="8">{items}</EnumerationType></Type>'
+    return (
+        f'<fmiModelDescription fmiVersion="1.0" modelName="{model}" modelIdentifier="equations" guid="e" '
+        f'numberOfContinuousStates="{_STATES.get(model, 0)}" '
+        f'numberOfEventIndicators="{_INDICATORS.get(model, 0)}"><TypeDefinitions>{level}</TypeDefinitions>'
+        f"{experiment}<ModelVariables>{''.join(lines)}</ModelVariables></fmiModelDescription>"
+    )
 
 
 def _describe_2(model: str, interfaces: str, experiment: str) -> str:

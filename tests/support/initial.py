@@ -49,24 +49,30 @@ def _exact(name: str) -> str:
 
 def _scalars(fmi: int) -> str:
     lines = []
-    for name, reference, causality, variability, kind, start, _ in _VARIABLES:
+    for name, reference, causality, variability, kind, start, depends in _VARIABLES:
         if fmi == 1 and causality in ("parameter", "local"):
             variability, causality = ("parameter" if causality == "parameter" else variability), "internal"
         more = f' start="{start}"' if start else ""
         more += f' derivative="{_STATE + 1}"' if fmi == 2 and name == "der_h" else ""
+        names = f"<Name>{depends}</Name>" if depends else ""
+        direct = f"<DirectDependency>{names}</DirectDependency>" if fmi == 1 and causality == "output" else ""
         lines.append(
             f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" '
-            f'variability="{variability}"{_exact(name) if fmi == 2 else ""}><{kind}{more}/></ScalarVariable>'
+            f'variability="{variability}"{_exact(name) if fmi == 2 else ""}><{kind}{more}/>{direct}'
+            "</ScalarVariable>"
         )
     return "".join(lines)
 
 
-def _describe_1(_: str) -> str:
+def _describe_1(kind: str) -> str:
+    steps = (
+        "<Implementation><CoSimulation_StandAlone><Capabilities "
+        'canHandleVariableCommunicationStepSize="true"/></CoSimulation_StandAlone></Implementation>'
+    )
     return (
         '<fmiModelDescription fmiVersion="1.0" modelName="initial" modelIdentifier="initial" guid="i" '
-        f'numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables>{_scalars(1)}'
-        "</ModelVariables><Implementation><CoSimulation_StandAlone><Capabilities "
-        'canHandleVariableCommunicationStepSize="true"/></CoSimulation_StandAlone></Implementation>'
+        f'numberOfContinuousStates="{int(kind == "ModelExchange")}" numberOfEventIndicators="0">'
+        f"<ModelVariables>{_scalars(1)}</ModelVariables>{steps if kind == 'CoSimulation' else ''}"
         "</fmiModelDescription>"
     )
 

@@ -16,7 +16,7 @@ from evcosim.master.simulation import simulate
 from support.c_fmu import vehicle_fmu
 from support.initial import initial_fmu
 
-KINDS = [(1, "CS"), (2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
+KINDS = [(1, "CS"), (1, "ME"), (2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
 WAYS = [("none", "python"), ("none", "compiled"), ("process", "compiled")]
 STATE = "start = { u = 2.0, h = 2.5 }"
 

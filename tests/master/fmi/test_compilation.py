@@ -9,7 +9,9 @@ from evcosim.cosim.plan.unit_plan import FmuSteps
 from evcosim.master.fmi.compilation import compile_fmu
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
+from evcosim.master.simulation import simulate
 from support.c_fmu import SOURCES, mixed_fmu
+from support.equations import equations_fmu
 from support.needs import need_c_compiler
 
 DEFINED = "#define FMI {fmi}\n#define BEHAVIOR 0\n"
@@ -58,6 +60,38 @@ def test_the_library_made_here_computes_what_that_of_the_same_source_does(tmp_pa
         assert {n: after.read(n) for n in before.namelist()} == {n: before.read(n) for n in before.namelist()}
     with pytest.raises(FmuError, match="has a binary for this machine already"):
         compile_fmu(made)
+
+
+def equations_source(fmi: int) -> str:
+    return f"#define FMI {fmi}\n#define MODEL DECAY\n" + (SOURCES / "equations.c").read_text()
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+def test_the_library_of_model_exchange(tmp_path: Path, fmi: int) -> None:
+    full = equations_fmu(tmp_path / "full.fmu", "decay", fmi)
+    path = tmp_path / "bare.fmu"
+    with zipfile.ZipFile(full) as old, zipfile.ZipFile(path, "w") as new:
+        new.writestr("modelDescription.xml", old.read("modelDescription.xml"))
+        new.writestr("sources/equations.c", equations_source(fmi))
+    one, other = (simulate(fmu, stop_time=1.0, isolation="none") for fmu in (full, compile_fmu(path)))
+    assert one["fmu.x0"][-1] == pytest.approx(0.36788, abs=1e-5)
+    assert one.data.tobytes() == other.data.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("include", "place"), [("template.c", "template.c"), ("../deep/template.c", "deep/template.c")]
+)
+def test_a_c_file_that_another_one_includes_is_compiled_within_it_only(
+    tmp_path: Path, include: str, place: str
+) -> None:
+    """As the FMUs of FMI 1.0 are made of a template, and declare nothing."""
+    text = f'#define FMI 1\n#define MODEL mixed\n#define BEHAVIOR 0\n # include "{include}"\n'
+    sources = {
+        "main/model.c" if "/" in include else "model.c": text,
+        place: (SOURCES / "mixed.c").read_text(),
+    }
+    made = compile_fmu(bare(tmp_path / "bare.fmu", 1, sources))
+    assert answer(made) == answer(tmp_path / "full.fmu")
 
 
 def test_the_files_and_definitions_that_an_fmu_of_fmi_3_declares(tmp_path: Path) -> None:

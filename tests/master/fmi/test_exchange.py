@@ -18,7 +18,7 @@ from evcosim.master.fmi.loading import load_unit
 from evcosim.master.simulation import simulate
 from support.equations import MODELS, equations_fmu
 
-VERSIONS = (2, 3)
+VERSIONS = (1, 2, 3)
 
 
 def run(
@@ -102,7 +102,7 @@ value = 1
 
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_discrete_inputs_act_in_an_event_at_their_communication_point(tmp_path: Path, fmi: int) -> None:
-    """The unit refuses them outside of event mode, and it does what they say in events alone."""
+    """In FMI 2.0 and 3.0 the unit refuses them outside of event mode, and it uses them in events alone."""
     fmu = equations_fmu(tmp_path / "timer.fmu", "timer", fmi)
     results = run(fmu, "parameters = { p0 = 100.0 }", DISCRETE, stop=0.5)
     # the step from t_k sees the inputs of t_k, and its outputs belong to t_k+1
@@ -220,7 +220,7 @@ def test_model_exchange_is_co_simulation_of_the_same_source(tmp_path: Path, mode
         (fmi, kind): run(
             equations_fmu(tmp_path / f"{model}{fmi}.fmu", model, fmi, "ME CS"), f'interface = "{kind}"'
         )
-        for fmi in VERSIONS
+        for fmi in (2, 3)
         for kind in ("model_exchange", "co_simulation")
     }
     exchanged, simulated = found[2, "model_exchange"], found[2, "co_simulation"]
@@ -231,11 +231,16 @@ def test_model_exchange_is_co_simulation_of_the_same_source(tmp_path: Path, mode
     for name in exchanged.names:  # and the versions of FMI are the same to the last bit
         for kind in ("model_exchange", "co_simulation"):
             assert np.array_equal(found[2, kind][name], found[3, kind][name]), (kind, name)
+    first = run(equations_fmu(tmp_path / f"{model}1.fmu", model, 1))
+    assert first.names == exchanged.names
+    for name in first.names:
+        assert np.array_equal(first[name], exchanged[name]), name
 
 
-def test_a_stiff_oscillator(tmp_path: Path) -> None:
+@pytest.mark.parametrize("fmi", [1, 2])
+def test_a_stiff_oscillator(tmp_path: Path, fmi: int) -> None:
     """Van der Pol's with p0 = 1000: a jump within 1 ms, then 800 s on a slow manifold."""
-    fmu = equations_fmu(tmp_path / "oscillator.fmu", "oscillator", 2)
+    fmu = equations_fmu(tmp_path / "oscillator.fmu", "oscillator", fmi)
     results = run(fmu, "parameters = { p0 = 1000.0 }", stop=1000.0, step=10.0)
     reference = solve_ivp(
         lambda t, x: [x[1], 1000.0 * (1.0 - x[0] ** 2) * x[1] - x[0]],
@@ -258,8 +263,9 @@ def test_the_tolerance_is_that_of_the_system_else_of_the_fmu(tmp_path: Path) -> 
     assert error("", "2.0") == error("tolerance = 1e-6", "1e-3")  # 2 is none: the default
 
 
-def test_a_large_nominal_value_allows_a_large_error(tmp_path: Path) -> None:
-    fmu = equations_fmu(tmp_path / "decay.fmu", "decay", 2)
+@pytest.mark.parametrize("fmi", [1, 2])
+def test_a_large_nominal_value_allows_a_large_error(tmp_path: Path, fmi: int) -> None:
+    fmu = equations_fmu(tmp_path / "decay.fmu", "decay", fmi)
     errors = []
     for nominal in (1.0, 1e6):
         results = run(fmu, f"parameters = {{ p1 = {nominal} }}")
@@ -268,9 +274,10 @@ def test_a_large_nominal_value_allows_a_large_error(tmp_path: Path) -> None:
     assert 100.0 * errors[0] < errors[1] < 1e-1
 
 
+@pytest.mark.parametrize("fmi", [1, 3])
 @pytest.mark.parametrize("model", ["oscillator", "ball", "timer"])
-def test_a_process_of_its_own_changes_no_bit(tmp_path: Path, model: str) -> None:
-    fmu = equations_fmu(tmp_path / f"{model}.fmu", model, 3, "ME CS")
+def test_a_process_of_its_own_changes_no_bit(tmp_path: Path, model: str, fmi: int) -> None:
+    fmu = equations_fmu(tmp_path / f"{model}.fmu", model, fmi, "ME" if fmi == 1 else "ME CS")
     options = 'interface = "model_exchange"\ntolerance = 1e-5'
     here, apart = (run(fmu, options, stop=1.0, isolation=kind) for kind in ("none", "process"))
     assert apart.manifest["units"]["a"]["isolation"] == "process"
@@ -289,12 +296,16 @@ def test_substeps_bound_the_steps_of_the_solver(tmp_path: Path) -> None:
 # ---- what goes wrong
 
 TROUBLE = [
-    ("decay", 1, r"t = 0.5 s .step 50.: unit 'a': CVODE cannot go on: .*; there der_x0 = nan, at t = 0.5"),
+    (
+        "decay",
+        1,
+        r"t = 0.5 s .step 50.: unit 'a': CVODE cannot go on: .*; there der[_(]x0\)? = nan, at t = 0.5",
+    ),
     ("timer", 2, r"t = 0.12 s .step 12.: unit 'a': asks to terminate the simulation, at t = 0.13 s"),
     ("timer", 3, r"unit 'a': needs new discrete states without end \(1000 times\), at t = 0 s"),
     ("wave", 4, r"t = 0 s .step 0.: unit 'a': has more than 10000 events in one step, at t = 0 s"),
     ("decay", 5, r"t = 0.5 s .step 50.: unit 'a': CVODE cannot go on: the derivatives cannot be computed"),
-    ("decay", 6, r"t = 0.49 s .step 49.: unit 'a': fmi[23]Get\w*Derivatives returned Error \(3\)"),
+    ("decay", 6, r"t = 0.49 s .step 49.: unit 'a': fmi[23]?Get\w*Derivatives returned Error \(3\)"),
     ("oscillator", 7, r"t = 0.49 s .step 49.: unit 'a': asks to terminate the simulation, at t = 0.5 s"),
     ("decay", 8, r"t = 0.69 s .step 69.: unit 'a': CVODE cannot go on: .* at t = 0.693147\d+ s"),
 ]
@@ -315,14 +326,15 @@ def test_what_was_computed_before_is_kept(tmp_path: Path) -> None:
     assert len(caught.value.results) == 50
 
 
-def test_nominal_values_that_are_none_are_one(tmp_path: Path) -> None:
-    results = run(equations_fmu(tmp_path / "bad.fmu", "decay", 2, behavior=9))
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_nominal_values_that_are_none_are_one(tmp_path: Path, fmi: int) -> None:
+    results = run(equations_fmu(tmp_path / "bad.fmu", "decay", fmi, behavior=9))
     np.testing.assert_allclose(results["a.x0"], np.exp(-results.time), atol=1e-6)
 
 
 def test_info_says_how_it_is_solved(tmp_path: Path, capsys) -> None:
-    for kinds, count in (("ME", 1), ("ME CS", 1), ("CS", 0)):
-        assert main(["info", str(equations_fmu(tmp_path / "decay.fmu", "decay", 3, kinds))]) == 0
+    for fmi, kinds, count in ((3, "ME", 1), (3, "ME CS", 1), (3, "CS", 0), (1, "ME", 1)):
+        assert main(["info", str(equations_fmu(tmp_path / "decay.fmu", "decay", fmi, kinds))]) == 0
         shown = capsys.readouterr().out
         assert shown.count("CVODE with events solves Model Exchange") == count, kinds
         assert ("asks for it" in shown) == (kinds == "ME CS")

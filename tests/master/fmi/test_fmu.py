@@ -123,13 +123,6 @@ def test_an_fmu_without_a_binary_for_this_machine(tmp_path: Path) -> None:
         check_runnable(dataclasses.replace(fmu, entries=()))
 
 
-def test_model_exchange_of_fmi_1_is_refused(tmp_path: Path) -> None:
-    text = """<fmiModelDescription fmiVersion="1.0" modelName="m" modelIdentifier="m" guid="g"
-      numberOfContinuousStates="0" numberOfEventIndicators="0"><ModelVariables/></fmiModelDescription>"""
-    with pytest.raises(FmuError, match=r"FMI 1.0 Model Exchange is not supported"):
-        check_runnable(read_fmu(described(tmp_path, text)))
-
-
 def test_an_fmu_of_pythonfmu_is_known_by_its_resources(tmp_path: Path) -> None:
     assert read_fmu(fmu_file("Rider")).holds_python
     assert not read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 2)).holds_python

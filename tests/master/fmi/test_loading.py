@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from evcosim.master.fmi.exchange import ModelExchange
-from evcosim.master.fmi.fmi1 import Fmi1Unit
+from evcosim.master.fmi.fmi1 import Fmi1ModelExchange, Fmi1Unit
 from evcosim.master.fmi.fmi2 import Fmi2ModelExchange, Fmi2Unit
 from evcosim.master.fmi.fmi3 import Fmi3ModelExchange, Fmi3Unit
-from evcosim.master.fmi.fmu import read_fmu
+from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
 from support.c_fmu import mixed_fmu
 from support.equations import equations_fmu
@@ -26,7 +26,9 @@ def test_co_simulation_of_every_version(tmp_path: Path, fmi: int, expected: type
 
 
 @pytest.mark.parametrize(("fmi", "expected"), [(2, Fmi2ModelExchange), (3, Fmi3ModelExchange)])
-def test_model_exchange_where_it_is_wanted(tmp_path: Path, fmi: int, expected: type) -> None:
+def test_model_exchange_beside_co_simulation_where_it_is_wanted(
+    tmp_path: Path, fmi: int, expected: type
+) -> None:
     fmu = read_fmu(equations_fmu(tmp_path / "ball.fmu", "ball", fmi, "ME CS"))
     plain = load_unit(fmu, "a", fmu.interface)
     assert not isinstance(plain, ModelExchange)
@@ -35,3 +37,13 @@ def test_model_exchange_where_it_is_wanted(tmp_path: Path, fmi: int, expected: t
     assert type(unit) is expected
     assert unit.tolerance == 1e-3
     unit.free()
+
+
+def test_model_exchange_of_fmi_1_is_an_fmu_of_its_own(tmp_path: Path) -> None:
+    fmu = read_fmu(equations_fmu(tmp_path / "ball.fmu", "ball", 1, tolerance="1e-5"))
+    unit = load_unit(fmu, "a", fmu.interface)
+    assert type(unit) is Fmi1ModelExchange
+    assert unit.tolerance == 1e-5
+    unit.free()
+    with pytest.raises(FmuError, match='interface = "co_simulation": it has no such interface'):
+        fmu.using("co_simulation")

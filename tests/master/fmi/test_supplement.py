@@ -42,6 +42,34 @@ def test_the_capabilities_of_a_slave_of_fmi_1(tmp_path: Path) -> None:
     assert kind.maxOutputDerivativeOrder == 2
 
 
+OUTPUTS = """<fmiModelDescription fmiVersion="1.0" modelName="m" modelIdentifier="m" guid="g"
+  numberOfContinuousStates="0" numberOfEventIndicators="0">
+<ModelVariables>
+<ScalarVariable name="u" valueReference="0" causality="input"><Real/></ScalarVariable>
+<ScalarVariable name="v" valueReference="1" causality="input"><Real/></ScalarVariable>
+<ScalarVariable name="y" valueReference="2" causality="output"><Real/>
+<DirectDependency><Name> v </Name><Name>gone</Name></DirectDependency></ScalarVariable>
+<ScalarVariable name="z" valueReference="3" causality="output"><Real/><DirectDependency/></ScalarVariable>
+<ScalarVariable name="w" valueReference="4" causality="output"><Real/></ScalarVariable>
+<ScalarVariable name="x" valueReference="5"><Real/></ScalarVariable>
+</ModelVariables>{}</fmiModelDescription>"""
+
+
+def test_the_dependencies_of_model_exchange_of_fmi_1(tmp_path: Path) -> None:
+    """What is not declared is not known; a slave's outputs belong to the step that it did."""
+    for steps, expected in (
+        ("", {"y": ("v",), "z": (), "w": None}),
+        (f"<Implementation>{ALONE}</Implementation>", {"y": (), "z": (), "w": ()}),
+    ):
+        fmu = read_fmu(described(tmp_path, OUTPUTS.format(steps)))
+        assert {v.name: v.depends for v in fmu.interface.of_causality("output")} == expected
+        assert {v.depends_initially for v in fmu.interface.of_causality("output")} == {()}
+
+
+def test_model_exchange_of_fmi_1_is_told_of_every_step(tmp_path: Path) -> None:
+    assert is_true(read_fmu(described(tmp_path, OUTPUTS.format(""))).kind, "needsCompletedIntegratorStep")
+
+
 def test_a_slave_of_a_tool_needs_it(tmp_path: Path) -> None:
     kind = read_fmu(described(tmp_path, FIRST.format(WITH_TOOL))).kind
     assert is_true(kind, "needsExecutionTool")

@@ -12,7 +12,7 @@ from evcosim.master.fmi.tolerance import tolerance_of
 from evcosim.master.simulation import simulate
 from support.initial import initial_fmu
 
-KINDS = [(2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
+KINDS = [(2, "CS"), (3, "CS"), (1, "ME"), (2, "ME"), (3, "ME")]
 _DEFAULT = {"CS": (None, "none"), "ME": (1e-6, "default")}
 
 

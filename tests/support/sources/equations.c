@@ -1,5 +1,5 @@
-/* Small models as equations, for FMI 2.0 and 3.0 (-DFMI=2 or 3), Model Exchange and Co-Simulation of the same
-   source. -DMODEL= chooses the equations, -DBEHAVIOR= (0: good) makes one thing go wrong:
+/* Small models as equations, for FMI 1.0 (Model Exchange), 2.0 and 3.0 (both, and Co-Simulation of the same
+   source): -DFMI=1, 2 or 3. -DMODEL= chooses the equations, -DBEHAVIOR= (0: good) makes one thing go wrong:
    OSCILLATOR x0' = x1, x1' = p0 (1 - x0^2) x1 - x0           van der Pol's; stiff for a large p0
    BALL       x0' = x1, x1' = -p0; at x0 <= 0 the speed x1 becomes -p1 x1; at rest below 0.01 m/s
    RELAY      x0' = u - x0; counts when u passes p0; the first step behind x0 = 0.9 asks for an event, held is x0 there
@@ -8,8 +8,10 @@
    DECAY      x0' = -p0 x0, with a nominal value of p1
    1 derivatives are NaN from t = 0.5 on   2 terminateSimulation in an event   3 new discrete states without end
    4 an event at once after each event     5 derivatives: Discard from t = 0.5 on   6 derivatives: Error there
-   7 terminateSimulation after a solver step from t = 0.5 on   8 derivatives are NaN for x0 < 0.5
-   9 nominals: NaN
+   7 terminateSimulation after a solver step from t = 0.5 on (FMI 1.0: in the event that it asks for)   8 derivatives are NaN for x0 < 0.5
+   9 nominals: NaN   10 FMI 1.0: the types are those of another platform   11 FMI 1.0: setting u before the
+   initialization is an Error   12 FMI 1.0: the first event is left to be iterated   13 FMI 1.0: the initialization: Error
+   14 has every function, nominals of 1 too
    Value references: tests/support/equations.py. */
 
 #include <math.h>
@@ -109,6 +111,10 @@ static void release(Unit *c) {
 #define F(name) CAT(fmi3, name)
 #define EXTRA , size_t m
 typedef bool Bool;
+#elif FMI == 1
+#define F(name) CAT(equations_fmi, name)
+#define EXTRA
+typedef char Bool;
 #else
 #define F(name) CAT(fmi2, name)
 #define EXTRA
@@ -128,6 +134,7 @@ typedef unsigned int Reference;
         Unit *c = p;                                                                                      \
         for (size_t i = 0; i < n; i++) {                                                                  \
             if (c->mode == CONTINUOUS && v[i] != U) return ERROR; /* as the standard demands */           \
+            if (BEHAVIOR == 11 && !c->mode && v[i] == U) return ERROR;                                    \
             c->r[v[i]] = x[i];                                                                            \
         }                                                                                                 \
         return 0;                                                                                         \
@@ -173,25 +180,48 @@ static int initialized(Unit *c) {
 
 /* Model Exchange */
 
+#if FMI != 1
 EXPORT int F(EnterEventMode)(void *p) { return ((Unit *)p)->mode = EVENT_MODE, 0; }
 EXPORT int F(EnterContinuousTimeMode)(void *p) { return ((Unit *)p)->mode = CONTINUOUS, 0; }
-EXPORT int F(SetTime)(void *p, double t) { return ((Unit *)p)->time = t, 0; }
+#endif
+EXPORT int F(SetTime)(void *p, double t) {
+    Unit *c = p;
+    if (FMI == 1 && !c->mode) begin(c, t);
+    return c->time = t, 0;
+}
 EXPORT int F(GetContinuousStates)(void *p, double *x, size_t n) { return memcpy(x, ((Unit *)p)->r, 8 * n), n == NX ? 0 : ERROR; }
 EXPORT int F(SetContinuousStates)(void *p, const double *x, size_t n) { return memcpy(((Unit *)p)->r, x, 8 * n), n == NX ? 0 : ERROR; }
-#if MODEL == DECAY /* the others leave it out: 1 is what it is without */
-EXPORT int F(GetNominalsOfContinuousStates)(void *p, double *x, size_t n) { return x[0] = BEHAVIOR == 9 ? NAN : ((Unit *)p)->r[P1], 0; }
+#if FMI == 1
+#define NOMINALS GetNominalContinuousStates
+#else
+#define NOMINALS GetNominalsOfContinuousStates
+#endif
+#if MODEL == DECAY || BEHAVIOR == 14 /* the others leave it out: 1 is what it is without */
+EXPORT int F(NOMINALS)(void *p, double *x, size_t n) {
+    for (size_t i = 0; i < n; i++) x[i] = BEHAVIOR == 9 ? NAN : MODEL == DECAY ? ((Unit *)p)->r[P1] : 1;
+    return 0;
+}
 #endif
 EXPORT int F(GetEventIndicators)(void *p, double *z, size_t n) {
     if (n) z[0] = indicator(p);
     return n == NZ ? 0 : ERROR;
 }
-EXPORT int F(CompletedIntegratorStep)(void *p, Bool no_return, Bool *wants_event, Bool *ends) {
-    Unit *c = p;
-    *wants_event = MODEL == RELAY && c->r[X0] > 0.9 && !c->past;
-    *ends = BEHAVIOR == 7 && late(c);
-    return 0;
+static int wants_event(Unit *c) { return MODEL == RELAY && c->r[X0] > 0.9 && !c->past; }
+#if FMI == 1
+EXPORT int F(CompletedIntegratorStep)(void *p, Bool *event) { return *event = wants_event(p) || (BEHAVIOR == 7 && late(p)), 0; }
+#else
+EXPORT int F(CompletedIntegratorStep)(void *p, Bool no_return, Bool *event, Bool *ends) {
+    return *event = wants_event(p), *ends = BEHAVIOR == 7 && late(p), 0;
 }
-#if FMI == 3
+#endif
+#if FMI == 1
+typedef struct { Bool converged, references, values, ends, defined; double next; } Info;
+EXPORT int F(GetDerivatives)(void *p, double *d, size_t n) { return n == NX ? derivatives(p, d) : ERROR; }
+EXPORT int F(EventUpdate)(void *p, Bool intermediate, Info *info) {
+    Bool more, *again = &more, *ends = &info->ends, *nominals = &info->references, *values = &info->values;
+    Bool *defined = &info->defined;
+    double *next = &info->next;
+#elif FMI == 3
 EXPORT int fmi3GetContinuousStateDerivatives(void *p, double *d, size_t n) { return derivatives(p, d); }
 EXPORT int fmi3UpdateDiscreteStates(void *p, Bool *again, Bool *ends, Bool *nominals, Bool *values, Bool *defined, double *next) {
 #else
@@ -207,13 +237,43 @@ EXPORT int fmi2NewDiscreteStates(void *p, Info *info) {
     if (c->mode != EVENT_MODE) return ERROR;
     event(c);
     *again = BEHAVIOR == 3 || c->r[COUNT] != before; /* once more, as though something hung on it */
-    *ends = BEHAVIOR == 2 && c->r[COUNT] > 1;
+    *ends = (BEHAVIOR == 2 && c->r[COUNT] > 1) || (FMI == 1 && BEHAVIOR == 7 && late(c));
     *nominals = *values = c->r[COUNT] != before;
     *defined = MODEL == TIMER || BEHAVIOR == 4;
     *next = BEHAVIOR == 4 ? c->time : c->next;
+#if FMI == 1
+    info->converged = !more;
+#endif
     return 0;
 }
 
+#if FMI == 1
+typedef struct { void *logger, *allocate, *release; } Callbacks;
+typedef void Log(void *c, const char *name, int status, const char *category, const char *message, ...);
+static void refuse(Callbacks k, void *c) { ((Log *)k.logger)(c, "a", ERROR, "error", "the GUID is not %s", "e"); }
+
+EXPORT const char *F(GetModelTypesPlatform)(void) { return BEHAVIOR == 10 ? "standard64" : "standard32"; }
+EXPORT const char *F(GetVersion)(void) { return "1.0"; }
+EXPORT void *F(InstantiateModel)(const char *n, const char *g, Callbacks k, Bool logging) {
+    return strcmp(g, "e") ? refuse(k, NULL), NULL : make();
+}
+EXPORT int F(Initialize)(void *p, Bool controlled, double tolerance, Info *info) {
+    initialized(p);
+    if (BEHAVIOR == 13) return ERROR;
+    do F(EventUpdate)(p, 0, info);
+    while (!info->converged && BEHAVIOR != 3 && BEHAVIOR != 12);
+    return 0;
+}
+EXPORT int F(GetStateValueReferences)(void *p, Reference *v, size_t n) {
+    for (size_t i = 0; i < n; i++) v[i] = MODEL == OSCILLATOR && i ? (Reference)-1 : X0 + i;
+    return 0;
+}
+EXPORT int F(SetDebugLogging)(void *p, Bool on) { return 0; }
+EXPORT int F(Terminate)(void *p) { return 0; }
+EXPORT void F(FreeModelInstance)(void *p) { release(p); }
+#endif
+
+#if FMI != 1
 /* Co-Simulation: the midpoint rule in a thousand steps, events at their ends */
 
 static void advance(Unit *c, double h) {
@@ -247,3 +307,4 @@ EXPORT int fmi2DoStep(void *p, double t, double h, Bool n) { return advance(p, h
 EXPORT int F(ExitInitializationMode)(void *p) { return initialized(p); }
 EXPORT int F(Terminate)(void *p) { return 0; }
 EXPORT void F(FreeInstance)(void *p) { release(p); }
+#endif

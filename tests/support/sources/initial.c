@@ -122,6 +122,17 @@ EXPORT int F(InitializeSlave)(void *c, double start, char known, double stop) { 
 EXPORT int F(DoStep)(void *c, double t, double h, char n) { return step(c, h); }
 EXPORT int F(TerminateSlave)(void *c) { return 0; }
 EXPORT void F(FreeSlaveInstance)(void *c) { free(c); }
+/* Model Exchange; of its structure of callbacks this unit needs nothing */
+typedef struct { Bool converged, references, values, ends, defined; double next; } Info;
+typedef struct { void *logger, *allocate, *release; } ModelCallbacks;
+EXPORT void *F(InstantiateModel)(const char *n, const char *g, ModelCallbacks k, Bool logging) { return make(); }
+EXPORT int F(EventUpdate)(void *c, Bool intermediate, Info *info) { return memset(info, 0, sizeof *info), info->converged = 1, status(c); }
+EXPORT int F(Initialize)(void *c, Bool controlled, double tolerance, Info *info) {
+    return set_up(c, controlled, tolerance) | enter(c) | leave(c) | F(EventUpdate)(c, 0, info);
+}
+EXPORT int F(GetDerivatives)(void *c, double *d, size_t n) { return d[0] = 0, status(c); }
+EXPORT int F(CompletedIntegratorStep)(void *c, Bool *wants_event) { return *wants_event = 0, status(c); }
+EXPORT void F(FreeModelInstance)(void *c) { free(c); }
 #elif FMI == 2
 typedef struct { Bool again, ends, nominals, values, defined; double next; } Info;
 EXPORT void *fmi2Instantiate(const char *n, int k, const char *g, const char *r, void *f, Bool v, Bool l) { return make(); }
@@ -149,13 +160,13 @@ EXPORT int fmi3GetContinuousStateDerivatives(void *c, double *d, size_t n) { ret
 EXPORT int F(ExitInitializationMode)(void *c) { return leave(c); }
 EXPORT int F(EnterEventMode)(void *c) { return status(c); }
 EXPORT int F(EnterContinuousTimeMode)(void *c) { return status(c); }
+EXPORT int F(CompletedIntegratorStep)(void *c, Bool n, Bool *wants_event, Bool *ends) { return *wants_event = *ends = 0, status(c); }
+EXPORT void F(FreeInstance)(void *c) { free(c); }
+#endif
 EXPORT int F(SetTime)(void *c, double t) { return status(c); }
 EXPORT int F(GetContinuousStates)(void *c, double *x, size_t n) { return x[0] = ((Unit *)c)->r[H], status(c); }
 EXPORT int F(SetContinuousStates)(void *c, const double *x, size_t n) { return ((Unit *)c)->r[H] = x[0], status(c); }
-EXPORT int F(CompletedIntegratorStep)(void *c, Bool n, Bool *wants_event, Bool *ends) { return *wants_event = *ends = 0, status(c); }
 EXPORT int F(Terminate)(void *c) { return status(c); }
-EXPORT void F(FreeInstance)(void *c) { free(c); }
-#endif
 
 /* FMPy looks up every function of the standard; nobody calls these */
 
@@ -163,7 +174,8 @@ EXPORT void F(FreeInstance)(void *c) { free(c); }
 #if FMI == 1
 S(CancelStep) S(GetBooleanStatus) S(GetIntegerStatus) S(GetRealOutputDerivatives) S(GetRealStatus)
 S(GetStatus) S(GetString) S(GetStringStatus) S(GetTypesPlatform) S(GetVersion) S(ResetSlave)
-S(SetDebugLogging) S(SetRealInputDerivatives) S(SetString)
+S(SetDebugLogging) S(SetRealInputDerivatives) S(SetString) S(GetEventIndicators) S(GetStateValueReferences)
+EXPORT const char *F(GetModelTypesPlatform)(void) { return "standard32"; }
 #elif FMI == 2
 S(CancelStep) S(DeSerializeFMUstate) S(FreeFMUstate) S(GetBooleanStatus) S(GetDirectionalDerivative)
 S(GetFMUstate) S(GetIntegerStatus) S(GetRealOutputDerivatives) S(GetRealStatus) S(GetStatus) S(GetString)
@@ -181,6 +193,8 @@ S(SetBinary) S(SetClock) S(SetDebugLogging) S(SetFMUState) S(SetFloat32) S(SetIn
 S(SetIntervalDecimal) S(SetIntervalFraction) S(SetShiftDecimal) S(SetShiftFraction) S(SetString) S(SetUInt16)
 S(SetUInt32) S(SetUInt64) S(SetUInt8)
 #endif
-#if FMI != 1
+#if FMI == 1
+EXPORT int F(GetNominalContinuousStates)(void *c, double *x, size_t n) { return x[0] = 1, 0; }
+#else
 EXPORT int F(GetNominalsOfContinuousStates)(void *c, double *x, size_t n) { return x[0] = 1, 0; }
 #endif
