@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .cosim.interface import Value
     from .cosim.results.metrics import Metric
     from .cosim.results.results import Results
+    from .cosim.results.text_table import TextTable
     from .cosim.results.variable import ResultVariable
     from .cosim.row_store import Array, Grid, Table
     from .cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
@@ -94,6 +95,7 @@ __all__ = [
     "Task",
     "TaskError",
     "TaskProgress",
+    "TextTable",
     "Unit",
     "Value",
     "__version__",
@@ -151,6 +153,7 @@ _MODULES = {
     "Task": "master.studies.parallel",
     "TaskError": "master.studies.parallel",
     "TaskProgress": "master.studies.parallel",
+    "TextTable": "cosim.results.text_table",
     "Unit": "master.unit",
     "Value": "cosim.interface",
     "budget": "master.studies.bus_budget",

@@ -49,12 +49,15 @@ class Comments:
         self.count = 0
 
     def without(self, lines: Iterable[str]) -> Iterator[str]:
-        """Yield the lines that are no comments."""
+        """Yield the lines that are no comments: a line within a quoted text is none."""
+        quoted = False
         for line in lines:
-            if "#" in line and line.lstrip().startswith("#"):
+            if "#" in line and not quoted and line.lstrip().startswith("#"):
                 self.count += 1
-            else:
-                yield line
+                continue
+            if '"' in line:
+                quoted ^= line.count('"') % 2 == 1
+            yield line
 
 
 def encoding_of(path: Path) -> str:

@@ -228,3 +228,13 @@ def _read_fmus(
         if runnable:
             check_runnable(read[unit])
     return read
+
+
+def check_frames(system: System) -> None:
+    """Raise ConfigError for a bus whose values are not quantized."""
+    for name, entry in system.file.buses.items():
+        if entry.resolution == "ideal":
+            raise ConfigError(
+                f'{system.path}: buses.{name}.resolution = "ideal": values that are not quantized make no '
+                "frames that could be kept"
+            )

@@ -41,7 +41,7 @@ from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
 from .keeping import KeptRun, ended
 from .manifest import manifest, saturations
-from .prepare import prepare
+from .prepare import check_frames, prepare
 from .unit import Unit
 
 _SHOWN_DEFECTS = 5  # of an FMU's description, as warnings
@@ -78,7 +78,7 @@ class Simulation:
         self._prepared, self._fmus = prepared, prepared.fmus
         self._interfaces = {unit.name: unit.interface for unit in self.plan.units}
         if log_frames:
-            _check_frames(self.system)
+            check_frames(self.system)
         self.log_frames = log_frames
         self.loop_seconds = 0.0
         self._units: dict[str, Unit] = {}
@@ -185,8 +185,19 @@ class Simulation:
         self._require_units()
         value = self._units[unit].get(variable)
         if isinstance(value, str):
-            raise ConfigError(f"{name} is a String")
+            raise ConfigError(f"{name} is a String: text() returns it")
         return float(value)
+
+    def text(self, name: str) -> str:
+        """Return the value of a String "unit.variable". Raises as `[]` does; ConfigError for another type."""
+        if name in self.plan.text_names:
+            return self.plan.texts.text(self._engine.memory[self.plan.text_names[name]])
+        unit, variable = self._split(name)
+        self._require_units()
+        value = self._units[unit].get(variable)
+        if not isinstance(value, str):
+            raise ConfigError(f"{name} is of type {self._interfaces[unit].variables[variable].type}")
+        return value
 
     def set(self, name: str, value: Value) -> None:
         """Set an input that nothing drives, or a parameter that its FMU declares tunable, from now on.
@@ -211,7 +222,8 @@ class Simulation:
     def _do(self, event: Event) -> None:
         """Check and do an event that no file has: the messages name the call instead of the keys."""
         self._require_units()
-        self._engine.effect(check_event(event, self._interfaces, self.plan.inputs, event.action))
+        plan = self.plan
+        self._engine.effect(check_event(event, self._interfaces, plan.inputs, plan.texts, event.action))
 
     def _split(self, name: str) -> tuple[str, str]:
         unit, _, variable = name.partition(".")
@@ -267,6 +279,7 @@ class Simulation:
             manifest=self.manifest(),
             figure=figure_spec(self.system, self.scenario),
             metrics=metric_specs(self.system, self.scenario),
+            texts=self._engine.texts(),
         )
 
     def write_can_log(self, path: str | Path) -> int:
@@ -367,16 +380,6 @@ def simulate(
         error.results = simulation.results
         raise
     return simulation.results
-
-
-def _check_frames(system: System) -> None:
-    """Raise ConfigError for a bus whose values are not quantized."""
-    for name, entry in system.file.buses.items():
-        if entry.resolution == "ideal":
-            raise ConfigError(
-                f'{system.path}: buses.{name}.resolution = "ideal": values that are not quantized make no '
-                "frames that could be kept"
-            )
 
 
 def _defects(unit: str, fmu: Fmu) -> list[str]:

@@ -165,7 +165,7 @@ def _whole(duration: float, step: float | None) -> float:
 
 def _recorded(interface: UnitInterface) -> list[str]:
     """Return the patterns of what is recorded: inputs and outputs; locals of an FMU that has no outputs."""
-    shown = [v for v in interface.variables.values() if v.type != "String"]
+    shown = interface.variables.values()
     if any(v.causality == "output" for v in shown):
         return ["*"]
     inner = [v.name for v in shown if v.causality == "local" and v.variability in _VARIES]

@@ -17,11 +17,12 @@ from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, System
 from ..system.toml import data_file
 from ..system.values import as_double, of_type
+from ..texts import Texts
 from ..units.measure import Affine
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
-from .type_rules import check_boolean, check_types
+from .type_rules import check_boolean, check_no_text, check_types
 from .unit_maps import Definitions, End, check_texts, converts, scaled_map, with_unit
 from .unit_plan import Route
 
@@ -145,6 +146,8 @@ def _connect(work: _Connector, connection: Connection) -> None:
         raise ConfigError(f"{place}: a connection needs a receiver in 'to' or a signal in 'via'")
     # the signal is looked up with `ideal` too, so that a system file is right or wrong in both
     message, signal = _find_signal(work, connection.via, place) if connection.via else (None, None)
+    for end in (source, *sinks) if connection.via else ():
+        check_no_text(".".join(end), _variable(work, end), connection.via or "", place)
     _check_scalable(work, connection, source, sinks, place)
     if message is None or signal is None or work.ideal:
         for sink in sinks:
@@ -253,7 +256,7 @@ def _over_bus(
         mailbox = work.network.add_mailbox(*sink, work.slots, f"{connection.source} via {connection.via}")
         if connection.initial is not None:
             initial = of_type(connection.initial, receiver, f"{place}: initial")
-            work.network.initial[name] = as_double(receiver, initial, f"{place}: initial")
+            work.network.initial[name] = as_double(receiver, initial, f"{place}: initial", Texts())
         ends.append((mailbox, to_receiver))
     route = SignalRoute(signal=signal, source=work.slots.valid[source], to_bus=to_bus, sinks=tuple(ends))
     work.signal_routes.setdefault(key, []).append(route)

@@ -12,6 +12,7 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..system.values import as_double, checked, of_type
+from ..texts import Texts
 from .plan import InputPlan
 
 
@@ -20,6 +21,7 @@ def scheduled(
     interfaces: Mapping[str, UnitInterface],
     inputs: Mapping[str, InputPlan],
     clock: Clock,
+    texts: Texts,
 ) -> tuple[tuple[int, Event], ...]:
     """Return the events of a scenario in the order in which they happen, each with its communication step.
 
@@ -27,7 +29,8 @@ def scheduled(
     """
     events = []
     for number, event in enumerate(scenario.file.events, 1):
-        event = check_event(event, interfaces, inputs, f"{scenario.path}: event {number}", in_file=True)
+        place = f"{scenario.path}: event {number}"
+        event = check_event(event, interfaces, inputs, texts, place, in_file=True)
         events.append((max(clock.step_at(event.time), 0), event))
     return tuple(sorted(events, key=lambda event: event[0]))
 
@@ -36,10 +39,13 @@ def check_event(
     event: Event,
     interfaces: Mapping[str, UnitInterface],
     inputs: Mapping[str, InputPlan],
+    texts: Texts,
     place: str,
     in_file: bool = False,
 ) -> Event:
     """Return the event with its value as a run keeps it: a double, or that of a parameter in its type.
+
+    The double of a text is its number in `texts`.
 
     Raises ConfigError, which starts with `place`, unless it can act on what it names. With `in_file` the
     event is a table at `place`, and the key in it follows. A value beyond the input's minimum or maximum is
@@ -51,7 +57,8 @@ def check_event(
 
     match event:
         case Override():
-            return _with_value(event, _input_of(event, interfaces, inputs, at("variable")), at("value"))
+            variable = _input_of(event, interfaces, inputs, at("variable"))
+            return _with_value(event, variable, at("value"), texts)
         case Bias():
             _check_bias(event, _input_of(event, interfaces, inputs, at("variable")), at)
             return event
@@ -59,7 +66,8 @@ def check_event(
             _input_of(event, interfaces, inputs, at("variable"))
             return event
         case Set():
-            return _with_set_value(event, _settable(event, interfaces, inputs, at("variable")), at("value"))
+            variable = _settable(event, interfaces, inputs, at("variable"))
+            return _with_set_value(event, variable, at("value"), texts)
         case _:
             assert_never(event)
 
@@ -81,12 +89,10 @@ def _input_of(
     return interfaces[unit].variables[variable]
 
 
-def _with_value(event: Override, variable: VariableInfo, place: str) -> Override:
+def _with_value(event: Override, variable: VariableInfo, place: str, texts: Texts) -> Override:
     """Return the event with its value as a double. Raises ConfigError for one that the input cannot have."""
-    if variable.type == "String":
-        raise ConfigError(f"{place}: {event.variable} is a String, which no event acts on")
     value = of_type(event.value, dataclasses.replace(variable, name=event.variable), place)
-    return event.model_copy(update={"value": as_double(variable, value, place)})
+    return event.model_copy(update={"value": as_double(variable, value, place, texts)})
 
 
 def _settable(
@@ -117,15 +123,11 @@ def _settable(
     return variable
 
 
-def _with_set_value(event: Set, variable: VariableInfo, place: str) -> Set:
+def _with_set_value(event: Set, variable: VariableInfo, place: str, texts: Texts) -> Set:
     """Return the event with its value, an input's as a double. Raises ConfigError for one out of range."""
-    if variable.type == "String" and variable.causality == "input":
-        raise ConfigError(
-            f"{place}: {event.variable} is a String, and no input of that type can be set in a run"
-        )
     value = checked(event.value, dataclasses.replace(variable, name=event.variable), place)
     if variable.causality == "input":
-        value = as_double(variable, value, place)
+        value = as_double(variable, value, place, texts)
     return event.model_copy(update={"value": value})
 
 

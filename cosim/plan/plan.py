@@ -1,11 +1,12 @@
 """The plan of a run, resolved to slots of one array: every engine runs it.
 
 All values of a run stand in one float64 array, `memory` of shape (memory_size,). Each input, and each output
-that is recorded or connected, has a slot; Integer, Boolean and Enumeration values are stored as floats. An
-output that is not sampled has two: `valid` holds its value at the current communication point t_k, `latest`
-the one after the unit's last step (t_{k+1} once it has stepped). An input over a bus, or one that nothing
-drives, has a mailbox beside its slot: the value last received, or set by the user. An input slot is written
-from its route each step, so an override or a bias acts on what the unit receives and never on what was sent.
+that is recorded or connected, has a slot; Integer, Boolean and Enumeration values are stored as floats, and
+so are the numbers of texts (`texts`). An output that is not sampled has two: `valid` holds its value at the
+current communication point t_k, `latest` the one after the unit's last step (t_{k+1} once it has stepped). An
+input over a bus, or one that nothing drives, has a mailbox beside its slot: the value last received, or set
+by the user. An input slot is written from its route each step, so an override or a bias acts on what the unit
+receives and never on what was sent.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from ..results.results import ResultVariable
 from ..system.scenario import Event
 from ..system.stimuli import TimeFunction, initial_value
 from ..system.system import Algorithm, Experiment
+from ..texts import Texts
 from ..units.measure import Affine
 from .unit_plan import UnitPlan
 
@@ -86,7 +88,8 @@ class Plan:
     """A system with a scenario, ready to run at the times of `clock`.
 
     `events` have the step at which each happens, in order. `inputs` are by "unit.variable"; column j of the
-    results shows the slot `column_slots[j]`. `initial` are the values of slots, in the inputs' own units,
+    results shows the slot `column_slots[j]`, and of the texts the slot `text_slots[j]`. `texts` has the texts
+    whose numbers stand in slots. `initial` are the values of slots, in the inputs' own units,
     before anything was computed or received.
     """
 
@@ -107,6 +110,9 @@ class Plan:
     initial: dict[int, float]
     memory_size: int
     warnings: tuple[str, ...]
+    text_columns: tuple[ResultVariable, ...] = ()
+    text_slots: tuple[int, ...] = ()
+    texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
 
     @property
     def steps(self) -> int:
@@ -116,6 +122,11 @@ class Plan:
     def open_ended(self) -> Plan:
         """Return the plan of a run that may be stepped beyond the stop time, which units are not told."""
         return dataclasses.replace(self, clock=dataclasses.replace(self.clock, told=False))
+
+    @functools.cached_property
+    def text_names(self) -> dict[str, int]:
+        """The slots that show the recorded texts at the communication point, by "unit.variable"."""
+        return {c.name: slot for c, slot in zip(self.text_columns, self.text_slots, strict=True)}
 
     @functools.cached_property
     def slots(self) -> dict[str, int]:

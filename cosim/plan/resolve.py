@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
 from ..clock import Clock
 from ..errors import ConfigError, nearest
@@ -16,6 +18,7 @@ from ..system.scenario import Scenario
 from ..system.stimuli import stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..system.values import as_double, checked
+from ..texts import Texts
 from ..units.measure import Affine
 from .connections import Network, connect
 from .events import scheduled
@@ -56,11 +59,9 @@ def resolve(
     """
     experiment, algorithm = _experiment(system, scenario, options)
     entries = participating(system, scenario)
-    path, record = system.path, system.file.record
-    if scenario.file.record is not None and scenario.path is not None:
-        path, record = scenario.path, scenario.file.record
-    connected = {c.source for c in system.file.connect}
-    slots, columns = allot(interfaces, record, connected, str(path))
+    path, record = _record_of(system, scenario)
+    slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect}, str(path))
+    texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     experiment = experiment.model_copy(update={"stop_time": clock.stop})
     every = {
@@ -68,7 +69,7 @@ def resolve(
         for name, entry in entries.items()
     }
     network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
-    drives = _drives(scenario, interfaces, network, slots, clock)
+    drives = _drives(scenario, interfaces, network, slots, clock, texts)
     _mailboxes_of_the_rest(interfaces, network, slots)
     named, started = _by_kind(options.get("parameters") or {}, interfaces, network)
     parameters = _parameters(system, scenario, entries, interfaces, named)
@@ -91,20 +92,32 @@ def resolve(
                 substeps=entry.substeps,
                 groups=tuple(slots.groups[name]),
                 routes=tuple(network.routes[name]),
+                texts=texts,
             )
             for name, entry in entries.items()
         ),
         links=tuple(network.links),
         messages=tuple(network.messages),
         drives=drives,
-        events=scheduled(scenario, interfaces, network.inputs, clock),
+        events=scheduled(scenario, interfaces, network.inputs, clock, texts),
         inputs=network.inputs,
-        columns=tuple(result_variable(unit, v) for unit, v in columns),
-        column_slots=tuple(slots.valid[unit, v.name] for unit, v in columns),
-        initial=_initial(interfaces, starts, network, drives, experiment.start_time),
+        columns=tuple(itertools.starmap(result_variable, columns)),
+        column_slots=slots.shown(columns),
+        initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
         warnings=tuple(network.warnings),
+        text_columns=tuple(itertools.starmap(result_variable, text_columns)),
+        text_slots=slots.shown(text_columns),
+        texts=texts,
     )
+
+
+_Columns = list[tuple[str, VariableInfo]]
+
+
+def _numbers_and_texts(recorded: _Columns) -> tuple[_Columns, _Columns]:
+    """Return the recorded variables that have numbers, and the Strings."""
+    return [c for c in recorded if c[1].type != "String"], [c for c in recorded if c[1].type == "String"]
 
 
 def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
@@ -119,6 +132,13 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
         items=v.items,
         difference=v.difference,
     )
+
+
+def _record_of(system: System, scenario: Scenario) -> tuple[Path, list[str]]:
+    """Return the patterns of what is recorded, and the file that they stand in."""
+    if scenario.file.record is not None and scenario.path is not None:
+        return scenario.path, scenario.file.record
+    return system.path, system.file.record
 
 
 def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tuple[Experiment, Algorithm]:
@@ -239,8 +259,7 @@ def _starts(
                 'initial = "exact" or "approx"'
             )
         starts[name] = checked(value, variable, place)
-        if variable.type != "String":
-            as_double(variable, starts[name], place)
+        as_double(variable, starts[name], place, Texts())
     return starts
 
 
@@ -250,6 +269,7 @@ def _drives(
     network: Network,
     slots: Slots,
     clock: Clock,
+    texts: Texts,
 ) -> tuple[Drive, ...]:
     """Return the stimuli of a scenario, each noted as what drives its input in `network`.
 
@@ -274,7 +294,7 @@ def _drives(
             signal = stimulus(entry, place, scenario.path, variable, clock)
             drives.append(Drive(entry.to, slot, signal, map_))
         else:
-            to_double = functools.partial(as_double, variable)
+            to_double = functools.partial(as_double, variable, texts=texts)
             signal = held_stimulus(entry, place, scenario.path, variable, map_, clock, to_double)
             drives.append(Drive(entry.to, slot, signal, Affine()))
     return tuple(drives)
@@ -284,7 +304,7 @@ def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Net
     """Give a mailbox to every input that nothing drives."""
     for unit, interface in interfaces.items():
         for v in interface.of_causality("input"):
-            if v.type != "String" and f"{unit}.{v.name}" not in network.inputs:
+            if f"{unit}.{v.name}" not in network.inputs:
                 network.add_mailbox(unit, v.name, slots, "")
 
 
@@ -294,11 +314,12 @@ def _initial(
     network: Network,
     drives: tuple[Drive, ...],
     start_time: float,
+    texts: Texts,
 ) -> dict[int, float]:
     """Return the values of the inputs' slots and mailboxes before anything was computed or received.
 
     A value is that of the stimulus at the start time, else the connection's `initial`, else the start given
-    in a file, else the FMU's; 0 for a String. Raises ConfigError for a whole number that no double holds.
+    in a file, else the FMU's. Raises ConfigError for a whole number that no double holds.
     """
     values = {}
     for name, plan in network.inputs.items():
@@ -306,7 +327,7 @@ def _initial(
         variable = interfaces[unit].variables[of_unit]
         start = starts[unit].get(of_unit, variable.default)
         value = network.initial.get(name, start)
-        number = 0.0 if isinstance(value, str) else as_double(variable, value, interfaces[unit].place)
+        number = as_double(variable, value, interfaces[unit].place, texts)
         values[plan.slot] = number
         if plan.mailbox is not None:
             values[plan.mailbox] = number

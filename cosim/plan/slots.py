@@ -9,8 +9,6 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo, fitting
 from .unit_plan import SlotGroup
 
-_NUMERIC = ("Real", "Integer", "Enumeration", "Boolean")
-
 
 @dataclasses.dataclass
 class Slots:
@@ -26,6 +24,10 @@ class Slots:
         first = self.size
         self.size += count
         return first
+
+    def shown(self, columns: Iterable[tuple[str, VariableInfo]]) -> tuple[int, ...]:
+        """Return the slots that show these variables at the communication point."""
+        return tuple(self.valid[unit, v.name] for unit, v in columns)
 
     def source(self, unit: str, name: str, every: int) -> int:
         """Return the slot that a receiver reads of an output of a unit with a period of `every` steps.
@@ -72,7 +74,7 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         f"{unit}.{v.name}": v.causality
         for unit, interface in interfaces.items()
         for v in interface.variables.values()
-        if v.type in _NUMERIC and v.causality in ("input", "output", "local")
+        if v.causality in ("input", "output", "local")
     }
     public = [name for name, causality in shown.items() if causality != "local"]
     recorded: set[str] = set()
@@ -97,8 +99,6 @@ def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
     found = interfaces[unit].variables.get(variable)
     if found is None:
         return interfaces[unit].unusable.get(variable, "")
-    if found.type not in _NUMERIC:
-        return f"is of type {found.type}, and numbers are recorded"
     return f"is of causality {found.causality}, not input, output or local"
 
 
@@ -106,9 +106,9 @@ def _slotted(
     unit: str, interface: UnitInterface, wanted: set[str]
 ) -> tuple[list[VariableInfo], list[VariableInfo]]:
     """Return the inputs, and the outputs and local variables that are `wanted` as "unit.variable"."""
-    numeric = [v for v in interface.variables.values() if v.type in _NUMERIC]
-    inputs = [v for v in numeric if v.causality == "input"]
-    outputs = [v for v in numeric if v.causality in ("output", "local") and f"{unit}.{v.name}" in wanted]
+    every = interface.variables.values()
+    inputs = [v for v in every if v.causality == "input"]
+    outputs = [v for v in every if v.causality in ("output", "local") and f"{unit}.{v.name}" in wanted]
     return inputs, outputs
 
 
@@ -129,7 +129,7 @@ def _slot_groups(
 ) -> list[SlotGroup]:
     """Return the groups of one kind, one for each FMI type, with slots that stand side by side."""
     made = []
-    for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",)):
+    for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",), ("String",)):
         members = tuple(v for v in variables if v.type in types)
         if not members:
             continue

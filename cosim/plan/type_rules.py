@@ -28,6 +28,15 @@ def check_types(
         )
 
 
+def check_no_text(name: str, variable: VariableInfo, via: str, place: str) -> None:
+    """Raise ConfigError for a String at an end of a bus signal."""
+    if variable.type == "String":
+        raise ConfigError(
+            f"{place}: {name} is a String, and the signal {via} carries numbers; texts are connected without "
+            "'via'"
+        )
+
+
 def check_boolean(
     sender: VariableInfo, name: str, receiver: VariableInfo, signal: Signal, overflow: Overflow, place: str
 ) -> None:

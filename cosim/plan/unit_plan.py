@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ..interface import UnitInterface, VariableInfo
+from ..texts import Texts
 from ..units.measure import Affine
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ class UnitPlan:
     substeps: int
     groups: tuple[SlotGroup, ...]
     routes: tuple[Route, ...]
+    texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
 
 
 class FmuSteps(NamedTuple):

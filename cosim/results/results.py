@@ -24,6 +24,7 @@ from .formats.suffixes import CSV, FORMATS, format_of
 from .manifest import read_manifest, write_manifest
 from .rows_file import ROWS_NAME
 from .rows_file import read as read_rows
+from .text_table import TextTable, read_texts, write_texts
 from .variable import ResultVariable
 
 if TYPE_CHECKING:
@@ -50,6 +51,9 @@ class Results:
     `manifest` is what run.json says of the run; `figure` and `metric_specs` are those of its system and
     scenario (None and none for results that were read from a file).
 
+    Variables of type String stand in a table of their own: `texts` has their names, `results["a.s"]` the
+    texts of one of them.
+
     The times of a run are those of its clock: 0.07 s where 7 * 0.01 is 0.07000000000000001. Times that are
     given as an array are kept as they are.
     """
@@ -62,6 +66,7 @@ class Results:
         manifest: Mapping[str, Any] | None = None,
         figure: FigureSpec | None = None,
         metrics: Sequence[MetricSpec] = (),
+        texts: TextTable | None = None,
     ) -> None:
         self._grid = time if isinstance(time, Grid) else None
         self._time: Array | None = None
@@ -70,6 +75,7 @@ class Results:
         self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
+        self.text_table = texts or TextTable()
         self.figure = figure
         self.metric_specs = tuple(metrics)
         count = len(time) if isinstance(time, Grid) else len(self.time)
@@ -79,7 +85,8 @@ class Results:
                 f"need {(count, len(self.variables))}"
             )
         self._columns = {v.name: j for j, v in enumerate(self.variables)}
-        if len(self._columns) != len(self.variables) or "time" in self._columns:
+        names = [*self._columns, *self.texts]
+        if len(self._columns) != len(self.variables) or "time" in names or len(set(names)) < len(names):
             raise ValueError("the names of the variables must differ from each other and from 'time'")
 
     @property
@@ -129,16 +136,23 @@ class Results:
         return iter(self.names)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._columns
+        return name in self._columns or name in self.texts
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The names of the variables of type String."""
+        return self.text_table.names
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Return the values of a variable, shape (n,): float64, int64 (Integer, Enumeration) or bool;
-        float64, too, for integers of which one is beyond an int64, as an UInt64 can be.
+        """Return the values of a variable, shape (n,): float64, int64 (Integer, Enumeration), bool, or str as
+        objects; float64, too, for integers of which one is beyond an int64, as an UInt64 can be.
 
         `time` is accepted as a name. Raises ConfigError naming the nearest variable there is.
         """
         if name == "time":
             return self.time
+        if name in self.texts:
+            return self.text_table.column(name, len(self))
         column = self.column(name)
         kind = self.variable(name).type
         if kind == "Real":
@@ -163,6 +177,8 @@ class Results:
 
     def variable(self, name: str) -> ResultVariable:
         """Return the description of a variable. Raises ConfigError naming the nearest one there is."""
+        if name in self.texts:
+            raise ConfigError(f"{name} is a String, which has no numbers")
         if name not in self._columns:
             raise ConfigError(f"the results have no variable '{name}'{nearest(name, self.names)}")
         return self.variables[self._columns[name]]
@@ -210,17 +226,20 @@ class Results:
     def _save(self, path: Path, form: Format) -> Path:
         with replacing(path) as file:
             form.write(self, file)
+        write_texts(path, self.text_table, self.time if self.texts else np.empty(0))
         return path
 
     def write(self, folder: str | os.PathLike[str]) -> Path:
-        """Write results.csv and run.json into a folder, which is made if needed.
+        """Write results.csv and run.json into a folder, which is made if needed, and texts beside as
+        results.texts.csv.
 
         Numbers of the manifest that are not finite become null: JSON has no name for them.
         Raises ConfigError when a file cannot be written; then none is left under its name half-done.
         """
         folder = Path(folder)
         self.to_csv(folder / CSV_NAME)
-        write_manifest(folder / MANIFEST_NAME, self.manifest, self.variables)
+        described = [*self.variables, *self.text_table.variables]
+        write_manifest(folder / MANIFEST_NAME, self.manifest, described)
         return folder
 
     @classmethod
@@ -245,7 +264,10 @@ class Results:
             if "status" in manifest:
                 manifest["status"] = status(path.parent, manifest)
             variables = [known.get(v.name, v) for v in variables]
-        return cls(held.time, held.data, variables, manifest)
+        table = read_texts(path, held.time)
+        if path.name == CSV_NAME:
+            table = TextTable([known.get(v.name, v) for v in table.variables], table.changes)
+        return cls(held.time, held.data, variables, manifest, texts=table)
 
     def metrics(self) -> list[Metric]:
         """Return the numbers that the run's system and scenario name.

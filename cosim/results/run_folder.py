@@ -22,12 +22,13 @@ from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
 from .manifest import manifest_text, read_manifest, write_manifest
 from .results import CSV_NAME, Results
 from .rows_file import ROWS_NAME
+from .text_table import texts_path
 from .variable import ResultVariable
 
 FIGURES = ("figure.png", "figure.svg")
 CAN_LOGS = ("can.log", "can.blf", "can.asc")
 _SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
-FILES = (CSV_NAME, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
+FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
 """The files of a run that has ended."""
 
 

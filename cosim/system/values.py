@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import ConfigError, nearest
 from ..interface import Value, VariableInfo
+from ..texts import Texts
 from .problems import brief
 
 _SHOWN_ITEMS = 12
@@ -50,6 +51,8 @@ def of_type(value: Any, variable: VariableInfo, place: str) -> Value:
     if variable.type == "String":
         if not isinstance(value, str):
             raise ConfigError(f"{place}: {name} is a String, not {brief(value)}")
+        if "\0" in value or any("\ud800" <= c <= "\udfff" for c in value):
+            raise ConfigError(f"{place}: {name} = {brief(value)}: no C text holds a NUL or half a character")
         return value
     if variable.type == "Enumeration" and isinstance(value, str):
         return _item(value, variable, place)
@@ -85,11 +88,13 @@ def _items(variable: VariableInfo) -> str:
     return ", ".join([*listed[:_SHOWN_ITEMS], *(["..."] if len(listed) > _SHOWN_ITEMS else [])])
 
 
-def as_double(variable: VariableInfo, value: Value, place: str) -> float:
-    """Return a number or truth value, in its variable's type, as the double in which a run keeps it.
+def as_double(variable: VariableInfo, value: Value, place: str, texts: Texts) -> float:
+    """Return a value, in its variable's type, as the double in which a run keeps it: of a text, its number.
 
     Raises ConfigError, which starts with `place`, for a whole number beyond 2^53 that no double holds.
     """
+    if isinstance(value, str):
+        return texts.number(value)
     number = float(value)
     if isinstance(value, int) and int(number) != value:
         raise ConfigError(

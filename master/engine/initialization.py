@@ -21,6 +21,7 @@ from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.plan import Link, Plan
 from ...cosim.plan.unit_plan import UnitPlan
+from ...cosim.texts import Texts
 from ..unit import Unit, UnitError
 
 _ITERATIONS = 200
@@ -83,10 +84,10 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
     # inputs: start values where no output is connected directly, then outputs along the connections
     _set_free_inputs(units, plan)
     if looped:
-        _iterate(units, links, experiment.loop_tolerance)
+        _iterate(units, links, experiment.loop_tolerance, plan.texts)
     else:
         for link in links:
-            _pass_on(units, link)
+            _pass_on(units, link, plan.texts)
     # parameters are fixed from now on
     for unit in units.values():
         unit.exit_initialization()
@@ -111,50 +112,61 @@ def _first_inputs(plan: Plan, unit: UnitPlan) -> dict[str, Value]:
         if variable.name in unit.start:
             found[variable.name] = unit.start[variable.name]
         if receiver is not None and receiver.driver and (unit.name, variable.name) not in linked:
-            found[variable.name] = _typed(variable, plan.initial[receiver.slot])
+            found[variable.name] = _typed(variable, plan.initial[receiver.slot], plan.texts)
     return found
 
 
 def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
-    """Set the inputs that no output reaches directly, driven or not, to their first value."""
+    """Set the inputs that no output reaches directly, driven or not, to their first value.
+
+    A text that is the FMU's own start is not set: some read a file when they get a name.
+    """
     linked = {".".join(link.sink) for link in plan.links}
     for name, receiver in plan.inputs.items():
-        if name not in linked:
-            _set_number(units, name, plan.initial[receiver.slot])
+        unit, _, of_unit = name.partition(".")
+        variable = units[unit].interface.variables[of_unit]
+        value = _typed(variable, plan.initial[receiver.slot], plan.texts)
+        if name not in linked and not (variable.type == "String" and value == variable.default):
+            units[unit].set(of_unit, value)
 
 
-def _set_number(units: Mapping[str, Unit], name: str, value: float) -> None:
-    unit, _, variable = name.partition(".")
-    units[unit].set(variable, _typed(units[unit].interface.variables[variable], value))
-
-
-def _typed(variable: VariableInfo, value: float) -> Value:
+def _typed(variable: VariableInfo, value: float, texts: Texts) -> Value:
     """Return a number of the memory as a value of the variable's type; one that it has not, as it is.
 
     A unit refuses that one.
     """
+    if variable.type == "String":
+        return texts.text(value)
     if variable.type == "Boolean" and value in (0.0, 1.0):
         return bool(value)
     whole = math.isfinite(value) and value == int(value)
     return int(value) if variable.type != "Real" and whole else value
 
 
-def _pass_on(units: Mapping[str, Unit], link: Link) -> float:
-    """Copy an output to the input that it is connected to; return the value in the input's unit."""
+def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float:
+    """Copy an output to the input that it is connected to.
+
+    Return the value in the input's unit; of a text, its number.
+    """
     unit, name = link.source
-    value = float(units[unit].get(name))
+    receiver, sink = link.sink
+    found = units[unit].get(name)
+    if isinstance(found, str):
+        units[receiver].set(sink, found)
+        return texts.number(found)
+    value = float(found)
     if not math.isfinite(value):
         raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
     value = link.map(value)
-    _set_number(units, ".".join(link.sink), value)
+    units[receiver].set(sink, _typed(units[receiver].interface.variables[sink], value, texts))
     return value
 
 
-def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float) -> None:
+def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float, texts: Texts) -> None:
     """Pass all outputs on until no value changes by more than `tolerance`. Raises UnitError if some do."""
-    before = [_pass_on(units, link) for link in links]
+    before = [_pass_on(units, link, texts) for link in links]
     for _ in range(_ITERATIONS):
-        now = [_pass_on(units, link) for link in links]
+        now = [_pass_on(units, link, texts) for link in links]
         changes = [abs(b - a) for a, b in zip(before, now, strict=True)]
         if max(changes) <= tolerance:
             return

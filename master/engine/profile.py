@@ -13,7 +13,7 @@ Part = tuple[str, str]
 
 _WHAT: dict[Kind, str] = {
     "drive": "drive", "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
-    "end": "get", "record": "record", "publish": "get",
+    "end": "get", "record": "record", "note": "note texts", "publish": "get",
 }  # fmt: skip # a table
 
 
@@ -30,7 +30,7 @@ def part_of(action: Action, plan: Plan, what: str = "", apart: bool = False) -> 
         what = _APART.get(action.kind, what)
     if action.kind == "drive":
         name = "stimuli"
-    elif action.kind == "record":
+    elif action.kind in ("record", "note"):
         name = "results"
     elif action.kind in ("send", "deliver"):
         message = plan.messages[action.index]

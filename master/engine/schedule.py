@@ -24,7 +24,7 @@ from typing import Literal
 
 from ...cosim.plan.plan import MessagePlan, Plan
 
-Kind = Literal["drive", "deliver", "send", "take", "begin", "end", "record", "publish"]
+Kind = Literal["drive", "deliver", "send", "take", "begin", "end", "record", "note", "publish"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,6 +41,7 @@ class Action:
                   and begin the step
         end       wait for the step, read the outputs, and refuse NaN and infinity
         record    record the row of the step
+        note      note the texts of the row, where texts are recorded
         publish   make the unit's outputs after its step, but for sampled ones, the valid ones
     """
 
@@ -63,10 +64,10 @@ def schedule(plan: Plan) -> tuple[Action, ...]:
     # 2. and 3. messages and units, as the algorithm orders them
     steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
     # 4. row k
-    record = Action("record")
+    record = [Action("record"), *([Action("note")] if plan.text_columns else [])]
     # 5. the outputs valid at t_k+1; those of a unit with a longer period at the end of its period
     publish = [Action("publish", i, plan.units[i].every, plan.units[i].every - 1) for i in units]
-    return (*drives, *steps, record, *publish)
+    return (*drives, *steps, *record, *publish)
 
 
 def _gauss_seidel(plan: Plan) -> list[Action]:

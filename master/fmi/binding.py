@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 
 from ...cosim.interface import VariableInfo
 from ...cosim.plan.unit_plan import SlotGroup
+from ...cosim.texts import Texts
 from ..unit import floats
+from .text_transfer import moving_texts
 from .transfer import Call, Copy, Item, Transfer, copying, moving, one_after_the_other
-from .types import FmiType
+from .types import STRING, FmiType
 
 if TYPE_CHECKING:
     from .instance import Instance
@@ -34,8 +36,8 @@ def _as_it_is(v: VariableInfo) -> bool:
 class Binding:
     """Makes the transfers of an instance. `memory`, shape (size,), outlives them all."""
 
-    def __init__(self, instance: Instance, memory: NDArray[np.float64]) -> None:
-        self._instance, self._memory = instance, memory
+    def __init__(self, instance: Instance, memory: NDArray[np.float64], texts: Texts | None = None) -> None:
+        self._instance, self._memory, self._texts = instance, memory, texts or Texts()
         self.view = floats(memory)
 
     def transfers(self, direction: str, places: Iterable[Place]) -> list[Transfer]:
@@ -92,6 +94,9 @@ class Binding:
         def refuse(place: int, value: float) -> NoReturn:
             self._instance.refuse(transfer, place, value)
 
+        if transfer.type.kind is STRING:
+            told = self._instance.told_texts
+            return moving_texts(transfer, self._caller(transfer), self.view, self._texts, told)
         return moving(transfer, self._caller(transfer), self.view, refuse)
 
     def _caller(self, transfer: Transfer) -> Call:

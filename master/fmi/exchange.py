@@ -108,7 +108,11 @@ class ModelExchange(Instance):
             self._make_solver()
         self._iterate(self._first_update())
         self._settle()
-        self._held[False] = [float(self.get(v.name)) for _, v in self._inputs[False]]
+        self._held[False] = [self._number(self.get(v.name)) for _, v in self._inputs[False]]
+
+    def _number(self, value: Value) -> float:
+        assert self._bound_to is not None  # steps follow `bind`
+        return self._bound_to[1].texts.number(value) if isinstance(value, str) else float(value)
 
     def _entering(self, mode: str) -> Call:
         """Return the call that enters a mode."""

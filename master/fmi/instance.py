@@ -82,6 +82,7 @@ class Instance:
         self._component: Any = None
         self._library: Any = None
         self._initialized = False
+        self.told_texts: dict[str, str] = {}  # by variable
         self._bound_to: tuple[NDArray[np.float64], UnitPlan] | None = None
         self._folder: Path | None = None
         self._crash_note = self._joined_crash_report()
@@ -218,7 +219,8 @@ class Instance:
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Make the calls of a turn, with all their arguments. `memory` has the shape (size,)."""
         self._bound_to = memory, plan
-        binding = self._binding = Binding(self, memory)
+        self.told_texts = {}
+        binding = self._binding = Binding(self, memory, plan.texts)
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
             if group.kind == "input":
@@ -287,6 +289,7 @@ class Instance:
         kind = self.type_of(variable)
         if isinstance(value, str):
             buffer = (kind.c_type * 1)(value.encode())
+            self.told_texts[name] = value
         else:
             number = -value if variable.inverted else value
             if not variable.scaling.identity:

@@ -21,6 +21,7 @@ from typing import Any
 from . import framing, shared
 from .handover import Side
 from .shared import Shared
+from .texts import part_of
 
 _SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 
@@ -84,6 +85,7 @@ class Server:
         mine, theirs = (shared.ANSWER, shared.CHILD_SLEEPS), (shared.REQUEST, shared.MASTER_SLEEPS)
         self.side = Side(connection, memory.slots, mine, theirs, memory.slots[shared.SPIN])
         self.unit: Any = None
+        self.texts: Any = None
 
     def serve(self, loading: tuple[Any, ...]) -> None:
         """Load the unit, then answer until the master has gone."""
@@ -144,8 +146,17 @@ class Server:
         UnitLog.listener = self.memory.hear
         self.unit = load_unit(fmu, name, interface, tolerance)
 
+    def do_learn_text(self, text: str) -> float:
+        """Return the number of a text of the master's."""
+        return float(self.texts.number(text))
+
+    def do_texts_since(self, count: int) -> list[str]:
+        """Return texts that the master does not know, in order; at least one where there is one."""
+        return part_of(self.texts.since(count))
+
     def do_bind(self, plan: Any) -> None:
         """Bind the unit to the shared memory."""
+        self.texts = plan.texts
         self.unit.bind(self.memory.values, plan)
 
 

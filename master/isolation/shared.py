@@ -18,6 +18,7 @@ import tempfile
 import numpy as np
 
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
+from ...cosim.texts import Texts
 from ..unit import WARNED, floats
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
@@ -127,7 +128,7 @@ def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
         latest = place + n if group.kind == "continuous" else -1
         groups.append(dataclasses.replace(group, slot=place, latest=latest))
         place += 2 * n if group.kind == "continuous" else n
-    return dataclasses.replace(plan, groups=tuple(groups), routes=()), place
+    return dataclasses.replace(plan, groups=tuple(groups), routes=(), texts=Texts()), place
 
 
 def shown(group: SlotGroup) -> int:

@@ -8,7 +8,7 @@ import json
 import os
 import pickle
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface, Value
-from ...cosim.plan.unit_plan import FmuSteps, UnitPlan
+from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
 from ..unit import NO_VALUES, UnitError, floats
 from . import framing, handover, shared
 from .process import Process, ProcessLimits
+from .texts import TextExchange
 from .waiting import WAITING
 
 _FREEING = 2.0  # s
@@ -175,19 +176,31 @@ class IsolatedUnit:
         self._inputs = [
             (ours, slice(t.slot, t.slot + len(b.variables)), view[b.slot : b.slot + len(b.variables)])
             for b, t in pairs
-            if b.kind == "input"
+            if b.kind == "input" and b.type != "String"
         ]
         self._outputs = [
             (view, slice(place, place + len(b.variables)), ours[own : own + len(b.variables)])
             for b, t in pairs
-            if b.kind != "input"
+            if b.kind != "input" and b.type != "String"
             for place, own in [(shared.shown(b), shared.shown(t))]
         ]
         self._through = [
             (view, slice(b.slot, b.slot + b.feedthrough), ours[t.slot : t.slot + b.feedthrough])
             for b, t in pairs
-            if b.feedthrough
+            if b.feedthrough and b.type != "String"
         ]
+        self._exchange = TextExchange(self.name, plan.texts, self._call)
+        of_texts = [(b, t) for b, t in pairs if b.type == "String"]
+        self._texts_in, self._texts_out, self._texts_through = (
+            [
+                (ours_at + i, theirs_at + i)
+                for b, t in of_texts
+                for ours_at, theirs_at, count in places(b, t)
+                for i in range(count)
+            ]
+            for places in (_of_inputs, _of_outputs, _of_through)
+        )
+        self._memory, self._values = view, ours
         self._call("bind", theirs)
 
     def enter_initialization(
@@ -229,6 +242,8 @@ class IsolatedUnit:
         """Copy the inputs into the shared memory; the unit takes them with the next request."""
         for target, place, values in self._inputs:
             target[place] = values
+        for here, there in self._texts_in:
+            self._values[there] = self._exchange.to_child(self._memory[here])
 
     def get_feedthrough(self) -> None:
         """Note that the unit shows outputs before the step that follows."""
@@ -249,6 +264,7 @@ class IsolatedUnit:
             self._shows = False
             for target, place, values in self._through:
                 target[place] = values
+            self._take_texts(self._texts_through)
 
     def get_outputs(self) -> None:
         """Copy the outputs out of the shared memory, where a step has left them, else after a request."""
@@ -260,6 +276,11 @@ class IsolatedUnit:
         self._fresh = False
         for target, place, values in self._outputs:
             target[place] = values
+        self._take_texts(self._texts_out)
+
+    def _take_texts(self, places: list[tuple[int, int]]) -> None:
+        for here, there in places:
+            self._memory[here] = self._exchange.from_child(self._values[there])
 
     def terminate(self) -> None:
         self._call("terminate")
@@ -273,6 +294,25 @@ class IsolatedUnit:
                 with contextlib.suppress(UnitError, ConfigError):  # what fails now changes no result
                     self._call("free")
             self._process.close()
+
+
+_Places = Iterator[tuple[int, int, int]]
+"""Slots of the run's memory, those of the shared one, and how many there are of both."""
+
+
+def _of_inputs(ours: SlotGroup, theirs: SlotGroup) -> _Places:
+    if ours.kind == "input":
+        yield ours.slot, theirs.slot, len(ours.variables)
+
+
+def _of_outputs(ours: SlotGroup, theirs: SlotGroup) -> _Places:
+    if ours.kind != "input":
+        yield shared.shown(ours), shared.shown(theirs), len(ours.variables)
+
+
+def _of_through(ours: SlotGroup, theirs: SlotGroup) -> _Places:
+    if ours.feedthrough:
+        yield ours.slot, theirs.slot, ours.feedthrough
 
 
 def _printable(text: str) -> str:

@@ -42,10 +42,12 @@ _NO_LOG = -1
 def direct(turn: Turn) -> Instance | None:
     """Return the instance whose C functions the kernel calls itself; None: Python does the unit's actions.
 
-    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python.
+    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python,
+    with texts.
     """
     unit: object = turn.unit
-    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT else None
+    texts = any(group.type == "String" for group in turn.plan.groups)
+    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT and not texts else None
 
 
 class Program:
@@ -144,6 +146,8 @@ class Program:
             self._operation(at, action, L.DRIVE, plan.drives[i].sink, i)
         elif action.kind == "record":
             self._operation(at, action, L.RECORD, 0, len(self._engine.columns))
+        elif action.kind == "note":
+            self._operation(at, action, L.PYTHON_ACT, at)
         elif action.kind == "deliver":
             self._operation(at, action, L.DELIVER, self._wait(i))
         elif action.kind == "send":

@@ -13,6 +13,7 @@ from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan.events import check_event, scheduled
 from evcosim.cosim.plan.plan import InputPlan
 from evcosim.cosim.system.scenario import Bias, Override, Reset, Scenario, ScenarioFile, Set
+from evcosim.cosim.texts import Texts
 
 CLOCK = Clock.counted(0.0, 0.01, 1000)
 INPUTS = {
@@ -29,7 +30,8 @@ def at_steps(*times: float, start: float = 0.0, step: float = 0.01) -> list[int]
     """The steps at which resets at these times happen, in the order in which they happen."""
     events = [{"time": t, "action": "reset", "variable": "display.level"} for t in times]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
-    return [step for step, _ in scheduled(scenario, INTERFACES, INPUTS, Clock.counted(start, step, 1000))]
+    clock = Clock.counted(start, step, 1000)
+    return [step for step, _ in scheduled(scenario, INTERFACES, INPUTS, clock, Texts())]
 
 
 def test_an_event_happens_at_the_first_point_at_or_after_its_time():
@@ -53,7 +55,7 @@ def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():
     table = [(0.02, 1.0), (0.01, 2.0), (0.02, 3.0), (0.011, 4.0)]
     events = [{"time": t, "action": "override", "variable": "display.level", "value": v} for t, v in table]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
-    found = scheduled(scenario, INTERFACES, INPUTS, CLOCK)
+    found = scheduled(scenario, INTERFACES, INPUTS, CLOCK, Texts())
     assert [(step, event.value) for step, event in found] == [(1, 2.0), (2, 1.0), (2, 3.0), (2, 4.0)]
 
 
@@ -71,7 +73,7 @@ def test_an_event_of_a_file_is_named_by_its_number_and_key(event, said):
     events = [{"time": 0.0, "action": "reset", "variable": "display.level"}, {"time": 0.0} | event]
     scenario = Scenario("s", Path("s.toml"), ScenarioFile.model_validate({"event": events}))
     with pytest.raises(ConfigError, match=rf"^s.toml: event 2\.{said}"):
-        scheduled(scenario, INTERFACES, INPUTS, CLOCK)
+        scheduled(scenario, INTERFACES, INPUTS, CLOCK, Texts())
 
 
 def override(name: str, value: float | str) -> Override:
@@ -101,7 +103,7 @@ def bias(name: str, value: float) -> Bias:
 )  # fmt: skip # one case a line
 def test_an_event_that_cannot_act_is_refused(event, said):
     with pytest.raises(ConfigError) as caught:
-        check_event(event, INTERFACES, INPUTS, "here")
+        check_event(event, INTERFACES, INPUTS, Texts(), "here")
     assert str(caught.value) == f"here: {said}"
 
 
@@ -118,7 +120,7 @@ def test_an_event_that_cannot_act_is_refused(event, said):
     ],
 )  # fmt: skip
 def test_an_event_that_can_act_is_taken(event):
-    taken = check_event(event, INTERFACES, INPUTS, "here")
+    taken = check_event(event, INTERFACES, INPUTS, Texts(), "here")
     if isinstance(event, Override):
         assert isinstance(taken.value, float) and taken.value == (1.0 if event.value == "on" else event.value)
 
@@ -141,7 +143,7 @@ PLANT_INPUTS = {
 def set_to(name: str, value: object) -> Set:
     """The event as it is done, or what is wrong with it."""
     event = Set.model_construct(time=0.0, action="set", variable=name, value=value)
-    found = check_event(event, OF_PLANT, PLANT_INPUTS, "event 1", in_file=True)
+    found = check_event(event, OF_PLANT, PLANT_INPUTS, Texts(), "event 1", in_file=True)
     assert isinstance(found, Set)
     return found
 

@@ -124,14 +124,12 @@ def test_a_local_variable_is_recorded_where_it_is_named_in_full():
     ("pattern", "said"),
     [
         ("car.mass", "is of causality parameter, not input, output or local"),
-        ("car.text", "is of type String, and numbers are recorded"),
         ("car.spee", "fits no variable (did you mean 'car.speed'?)"),
         ("car.wide", "has two dimensions"),
     ],
 )
 def test_what_cannot_be_recorded_is_said(pattern, said):
-    variables = INTERFACES["car"].variables | {"text": VariableInfo("text", "String", "output")}
-    unit = UnitInterface("car.fmu", variables, unusable={"wide": "has two dimensions"})
+    unit = UnitInterface("car.fmu", INTERFACES["car"].variables, unusable={"wide": "has two dimensions"})
     with pytest.raises(ConfigError) as caught:
         allot({"car": unit}, [pattern], set(), "here")
     assert str(caught.value) == f"here: record: '{pattern}' {said}"

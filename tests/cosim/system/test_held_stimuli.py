@@ -15,6 +15,7 @@ from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.held_stimuli import held_stimulus
 from evcosim.cosim.system.scenario import StimulusEntry
 from evcosim.cosim.system.values import as_double
+from evcosim.cosim.texts import Texts
 from evcosim.cosim.units.measure import Affine
 
 CLOCK = Clock.counted(0.0, 0.01, 3000)
@@ -27,7 +28,7 @@ def values(
     variable: VariableInfo, times: list[float], map_: Affine | None = None, **entry: Any
 ) -> list[float]:
     described = StimulusEntry.model_validate({"to": "u.x"} | entry)
-    to_double = functools.partial(as_double, variable)
+    to_double = functools.partial(as_double, variable, texts=Texts())
     signal = held_stimulus(described, "here", None, variable, map_ or Affine(), CLOCK, to_double)
     return list(signal(np.array(times)))
 

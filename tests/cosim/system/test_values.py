@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.values import as_double, checked, of_type
+from evcosim.cosim.texts import Texts
 
 REAL = VariableInfo("x", unit="kg", min=-1.0, max=5.0)
 INTEGER = VariableInfo("n", "Integer", limits=(-(2**63), 2**63 - 1))
@@ -62,6 +63,7 @@ def test_a_value_is_taken_in_the_type_of_its_variable(
         (STATE, 3, "3 is no item of e: 1 off, 2 on, 4 broken"),
         (STATE, "of", "e has no item 'of' (did you mean 'off'?): ['off', 'on', 'broken']"),
         (STRING, 1, "s is a String, not 1"),
+        (STRING, "a\0b", 's = "a\\u0000b": no C text holds a NUL or half a character'),
     ],
 )  # fmt: skip # one case a line
 def test_any_other_value_is_refused(variable: VariableInfo, given: object, said: str) -> None:
@@ -83,7 +85,7 @@ def test_an_enumeration_of_many_items_shows_the_first() -> None:
 @given(st.integers(-(2**63), 2**63 - 1))
 def test_a_whole_number_is_kept_exactly_or_refused(number: int) -> None:
     try:
-        assert int(as_double(INTEGER, number, "here")) == number
+        assert int(as_double(INTEGER, number, "here", Texts())) == number
     except ConfigError as error:
         assert abs(number) > 2**53
         assert str(error).startswith(f"here: n = {number} is more than a double")
@@ -94,4 +96,10 @@ def test_what_no_double_holds_is_refused(number: int) -> None:
     with pytest.raises(
         ConfigError, match="more than a double, in which a run keeps its values, holds exactly"
     ):
-        as_double(INTEGER, number, "here")
+        as_double(INTEGER, number, "here", Texts())
+
+
+def test_a_text_is_kept_as_its_number() -> None:
+    texts = Texts()
+    number = as_double(STRING, of_type("a", STRING, "here"), "here", texts)
+    assert texts.text(number) == "a"

@@ -14,15 +14,25 @@ def message(after=None, every=1, first=0, delay=0, width=2):
     return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals)
 
 
-def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0):
+def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0):
     units = [SimpleNamespace(every=every) for every in periods]
     return SimpleNamespace(
-        algorithm=algorithm, units=units, messages=messages, drives=[None] * drives, memory_size=100
+        algorithm=algorithm,
+        units=units,
+        messages=messages,
+        drives=[None] * drives,
+        memory_size=100,
+        text_columns=[None] * texts,
     )
 
 
 def words(actions):
     return " ".join(f"{a.kind}{a.index}" if a.kind != "record" else "record" for a in actions)
+
+
+def test_texts_are_noted_with_the_row_where_there_are_any():
+    assert words(schedule(plan(texts=1))).endswith("record note0 publish0 publish1")
+    assert "note" not in words(schedule(plan()))
 
 
 def test_gauss_seidel_sends_first_then_takes_each_unit_with_its_discrete_messages():

@@ -163,7 +163,6 @@ def test_what_cannot_be_exchanged_is_refused_by_name(tmp_path: Path, variable: s
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("label", "is of type String, and numbers are recorded"),
         ("p0", "is of causality parameter, not input"),
     ],
 )

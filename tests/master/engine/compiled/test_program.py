@@ -57,6 +57,7 @@ def test_the_tables_of_a_unit_in_c(tmp_path):
     fmu = mixed_fmu(tmp_path / "mixed.fmu", 3, 0)
     path = tmp_path / "one.toml"
     path.write_text(f"name = 'one'\n[units.a]\nfmu = '{fmu}'\n[experiment]\nstop_time = 0.1\n")
+    path.write_text("record = ['*', '!a.shown']\n" + path.read_text())  # Python does a unit with texts
     with Simulation(path, engine="compiled", isolation="none") as simulation:
         program = simulation._engine._program
         (turn,) = simulation._engine.turns

@@ -1,0 +1,61 @@
+"""The table of texts beside results.csv: what is written is what is read, and only beside its own results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results.text_table import TextTable, read_texts, texts_path, write_texts
+from evcosim.cosim.results.variable import ResultVariable
+
+VARIABLES = [ResultVariable("a.s", type="String"), ResultVariable("b.t", type="String")]
+TIMES = np.array([0.0, 0.1, 0.2, 0.30000000000000004])
+TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=8)
+
+
+@given(changes=st.dictionaries(st.integers(1, 3), st.tuples(TEXTS, TEXTS)), first=st.tuples(TEXTS, TEXTS))
+def test_what_is_written_is_what_is_read(
+    changes: dict[int, tuple[str, str]], first: tuple[str, str], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "results.csv"
+    table = TextTable(VARIABLES, sorted({0: first, **changes}.items()))
+    write_texts(path, table, TIMES)
+    back = read_texts(path, TIMES)
+    assert back.names == table.names and back.changes == table.changes
+
+
+def test_a_text_holds_until_it_changes() -> None:
+    table = TextTable(VARIABLES, [(0, ("x", "")), (2, ("x", "y"))])
+    assert table.column("a.s", 4).tolist() == ["x"] * 4
+    assert table.column("b.t", 4).tolist() == ["", "", "y", "y"]
+    assert table.column("b.t", 2).tolist() == ["", ""]
+
+
+def test_results_without_texts_have_no_file_of_texts(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    write_texts(path, TextTable(VARIABLES, [(0, ("x", ""))]), TIMES)
+    assert texts_path(path) == tmp_path / "x.texts.csv" and texts_path(path).exists()
+    write_texts(path, TextTable(), TIMES)  # of the results that take the place of the others
+    assert not texts_path(path).exists()
+    assert read_texts(path, TIMES).names == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("time,a.s\n0.0,x\n0.15,y\n", "line 3: '0.15' begins no row of results.csv"),
+        ("time,a.s\n0.0,x\n0.0,y\n", "line 3: '0.0' begins no row of results.csv"),
+        ("time,a.s\n0.0\n", "line 2: '0.0' begins no row of results.csv"),
+        ("time,a.s\nsoon,x\n", "line 2: 'soon' begins no row of results.csv"),
+        ('time,a.s\n0.0,"x\n', "is no table of texts: unexpected end of data"),
+    ],
+)
+def test_a_table_of_other_results_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "results.texts.csv").write_text(text)
+    with pytest.raises(ConfigError, match=said):
+        read_texts(tmp_path / "results.csv", TIMES)
