@@ -135,7 +135,7 @@ SETTABLE = {
 }
 OF_PLANT = {"plant": UnitInterface("plant.fmu", SETTABLE | VARIABLES)}
 PLANT_INPUTS = {
-    "plant.driven": InputPlan(0, None, "ecu.torque"), "plant.label": InputPlan(4, None, ""),
+    "plant.driven": InputPlan(0, None, "ecu.torque"), "plant.label": InputPlan(4, 5, ""),
     **{f"plant.{name}": InputPlan(i, i, "") for i, name in enumerate(VARIABLES, 1)},
 }  # fmt: skip # beside each other
 
@@ -157,6 +157,14 @@ def test_tunable_parameters_and_free_inputs_are_set_in_their_types():
     assert set_to("plant.gain", 3).needs == ("plant.gain",)
 
 
+def test_the_value_of_a_text_is_its_number():
+    texts = Texts()
+    for action, event in (("override", Override), ("set", Set)):
+        made = event.model_construct(time=0.0, action=action, variable="plant.label", value=f"after {action}")
+        found = check_event(made, OF_PLANT, PLANT_INPUTS, texts, "event 1", in_file=True)
+        assert isinstance(found.value, float) and texts.text(found.value) == f"after {action}"
+
+
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
@@ -167,7 +175,7 @@ def test_tunable_parameters_and_free_inputs_are_set_in_their_types():
         ("plant.mass", 1.0, r"variable: plant.mass is a fixed parameter, which no run changes; "),
         ("plant.speed", 1.0, r"variable: plant.speed is of causality output; "),
         ("plant.driven", 1.0, r"variable: plant.driven is driven by ecu.torque; use override to take its place$"),
-        ("plant.label", "a", r"value: plant.label is a String, and no input of that type can be set in a run$"),
+        ("plant.label", 1.0, r"value: plant.label is a String, not 1.0$"),
         ("plant.gian", 1.0, r"variable: unit 'plant' has no variable 'gian' \(did you mean 'gain'"),
         ("plnat.gain", 1.0, r"variable: there is no unit 'plnat' \(did you mean 'plant'"),
     ],

@@ -115,6 +115,44 @@ def test_texts_are_written_beside_the_numbers_and_read_back(tmp_path: Path) -> N
             back.column("a.text")
 
 
+EVENTS = """
+[[event]]
+time = 0.01
+action = "override"
+variable = "a.text_in"
+value = "forced, here"
+[[event]]
+time = 0.02
+action = "set"
+variable = "b.text_in"
+value = "set"
+[[event]]
+time = 0.03
+action = "reset"
+variable = "a.text_in"
+"""
+
+
+@pytest.mark.parametrize(("engine", "isolation"), ENGINES)
+def test_events_act_on_texts(engine: Any, isolation: Any, tmp_path: Path) -> None:
+    system, scenario = files(tmp_path)
+    system.write_text(system.read_text().split("[[connect]]")[0])
+    scenario.write_text(SCENARIO + EVENTS)
+    results = simulate(system, scenario, engine=engine, isolation=isolation)
+    cold, two, green = "cold, wet", 'line\n# two "quoted"', GREEN
+    forced = "forced, here"
+    assert results["a.text_in"].tolist() == [cold, forced, forced, two, green, green]
+    assert results["b.text_in"].tolist() == ["b begins"] * 2 + ["set"] * 4
+    assert results["a.text"][1:].tolist() == results["a.text_in"][:-1].tolist()
+
+
+def test_a_text_is_biased_by_nothing(tmp_path: Path) -> None:
+    system, scenario = files(tmp_path)
+    scenario.write_text(EVENTS.replace('"override"', '"bias"').replace('"forced, here"', "1.0"))
+    with pytest.raises(ConfigError, match=r"event 1.action: a.text_in is a String, to which nothing can be"):
+        simulate(system, scenario)
+
+
 def test_a_text_is_set_and_read_in_a_run(tmp_path: Path) -> None:
     system, _ = files(tmp_path)
     options: dict[str, Any] = {"isolation": "none"}
@@ -124,6 +162,11 @@ def test_a_text_is_set_and_read_in_a_run(tmp_path: Path) -> None:
         simulation.step()
         assert simulation.text("a.text_in") == "one"
         assert simulation.results["a.text_in"].tolist() == ["one", "one"]
+        simulation.override("a.text_in", "two")
+        simulation.step()
+        simulation.reset("a.text_in")
+        simulation.step()
+        assert simulation.results["a.text_in"].tolist() == ["one", "two", "one", "one"]
         with pytest.raises(ConfigError, match=r"a.text is a String: text\(\) returns it|a.text is a String"):
             simulation["a.text"]
         with pytest.raises(ConfigError, match=r"a.flag is of type Boolean"):
