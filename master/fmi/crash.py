@@ -76,7 +76,8 @@ class CrashReport:
         root, address = self._root, text.address
 
         def note() -> None:
-            root[0] = address
+            if not self._follows:
+                root[0] = address
 
         return note
 
@@ -101,8 +102,9 @@ class CrashReport:
     def follow(self, table: int, cell: int) -> None:
         """Let the int64 at the address `cell` choose the row in the table at the address `table`.
 
-        `rest` ends it.
+        `rest` ends it; until then the notes of units count for nothing.
         """
+        self._follows = True
         self._root[0], self._root[1] = table, cell
 
     def last(self) -> str:
@@ -114,6 +116,7 @@ class CrashReport:
 
     def rest(self) -> None:
         """Note that no unit is called."""
+        self._follows = False
         self._root[0], self._root[1] = self._nothing.address, ctypes.addressof(self._first)
 
     def _install(self) -> None:

@@ -81,7 +81,7 @@ class ModelExchange(Instance):
         for group in plan.groups:
             for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
                 self._inputs[_is_continuous(variable)].append((slot, variable))
-        binding, self._view = self._binding, self._binding.view
+        binding, self._view = self.binding, self.binding.view
         self._set_continuous, self._set_discrete = (
             binding.calls(binding.transfers("Set", self._inputs[kind])) for kind in (True, False)
         )

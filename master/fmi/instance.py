@@ -220,7 +220,7 @@ class Instance:
         """Make the calls of a turn, with all their arguments. `memory` has the shape (size,)."""
         self._bound_to = memory, plan
         self.told_texts = {}
-        binding = self._binding = Binding(self, memory, plan.texts)
+        binding = self.binding = Binding(self, memory, plan.texts)
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
             if group.kind == "input":

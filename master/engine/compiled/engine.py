@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ....cosim.can.quantization import ChannelError
 from ...fmi import crash
-from ..engine import CHUNK_SECONDS, Act, Engine
+from ..engine import CHUNK_SECONDS, Engine
 from . import tables as L
 from .cache import compiled
 from .program import Program, address
@@ -96,9 +96,6 @@ class CompiledEngine(Engine):
         """Read all outputs at the start time, then make the tables and load the kernel."""
         super().start()
         program = self._program = Program(self)
-        self._acts: list[Act | None] = [
-            None if action.kind in ("drive", "record") else self.act(action) for action in self.schedule
-        ]
         self._python = _Python(self._act_for_kernel)
         self._state = np.zeros(L.STATE_SIZE, dtype=np.int64)
         self._numbers = np.zeros(L.NUMBERS_SIZE)
@@ -150,9 +147,10 @@ class CompiledEngine(Engine):
 
         Return 1 if an error was raised, else 0.
         """
+        assert self._program is not None  # the kernel follows it
         try:
             if what >= 0:
-                act = self._acts[what]
+                act = self._program.acts[what]
                 assert act is not None  # the kernel drives and records by itself
                 act(k)
             else:

@@ -3,34 +3,28 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....cosim.can.channel import SignalRoute
-from ....cosim.can.quantization import SignalOperation
-from ....cosim.plan.turns import TurnTimes
-from ....cosim.units.measure import Affine
 from ...fmi.fmi1 import Fmi1Unit
 from ...fmi.fmi2 import Fmi2Unit
 from ...fmi.fmi3 import Fmi3Unit
 from ...fmi.instance import Instance
 from ...fmi.transfer import Copy, Transfer
+from ...fmi.types import STRING
 from ...unit import Unit
-from ..engine import Engine, Sender, Turn
+from ..engine import Act, Engine, Sender, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
 from . import tables as L
-from .codes import effect_kind, raw_mode
-from .items import format_of, item_row
+from .codes import effect_kind
+from .items import Cells, format_of, item_row, mapped, signal_row, times_row
 
 KernelTable = NDArray[np.int64]
 """Rows of 8-byte numbers, int64 or the bits of float64, shape (rows, columns)."""
-
-Cells = Mapping[int, int | float]
-"""The numbers of one row by column; the others are 0."""
 
 Recheck = Callable[[int, int], None]
 """Repeats the check at which the kernel stopped, given its code and detail, and raises the exception."""
@@ -42,19 +36,18 @@ _NO_LOG = -1
 def direct(turn: Turn) -> Instance | None:
     """Return the instance whose C functions the kernel calls itself; None: Python does the unit's actions.
 
-    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python,
-    with texts.
+    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python.
     """
     unit: object = turn.unit
-    texts = any(group.type == "String" for group in turn.plan.groups)
-    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT and not texts else None
+    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT else None
 
 
 class Program:
     """The tables of an engine whose units are initialized.
 
     `rechecks` and `actions` have an entry for each operation: the function that raises its errors, and the
-    place of its action in the schedule; `call_rechecks` has a function for each row of CALLS.
+    place of its action in the schedule; `call_rechecks` has a function for each row of CALLS. `acts` are what
+    Python does, by the number in an operation: the actions of the schedule, then calls with texts.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -75,6 +68,9 @@ class Program:
         self._kept: list[NDArray[np.float64]] = []  # arrays whose addresses are in the tables
         self._effect_rows = 0
         self._waiting: dict[int, int] = {}
+        self.acts: list[Act | None] = [
+            None if action.kind in ("drive", "record") else engine.act(action) for action in engine.schedule
+        ]
         for at, action in enumerate(engine.schedule):
             self._action(at, action)
         self.ops = _table(self._rows["ops"], L.OPERATION)
@@ -119,13 +115,12 @@ class Program:
 
     def parts(self) -> list[Part]:
         """Return the part of each operation, for a profile."""
-        kinds = self.ops[:, L.KIND].tolist()
         found = []
-        for at, kind in zip(self.actions, kinds, strict=True):
+        for at, op in zip(self.actions, self.ops.tolist(), strict=True):
             action = self._engine.schedule[at]
             what = ""
-            if action.kind == "begin" and kind != L.PYTHON_ACT:
-                what = "step" if kind == L.STEP else "set"
+            if action.kind == "begin" and (op[L.KIND], op[L.A]) != (L.PYTHON_ACT, at):
+                what = "step" if op[L.KIND] == L.STEP else "set"
             found.append(part_of(action, self._engine.plan, what, self._engine.is_apart(action)))
         return found
 
@@ -155,7 +150,7 @@ class Program:
         elif action.kind == "take":
             first = self._count("routes")
             for r in plan.units[i].routes:
-                self._rows["routes"].append({L.SOURCE: r.source, L.SINK: r.sink} | _mapped(r.map))
+                self._rows["routes"].append({L.SOURCE: r.source, L.SINK: r.sink} | mapped(r.map))
             self._operation(at, action, L.TAKE, first, len(plan.units[i].routes))
         elif action.kind == "publish":
             for group in self._engine.turns[i].continuous:
@@ -183,6 +178,9 @@ class Program:
             if isinstance(transfer, Copy):
                 calls = self._calls(at, action, calls)
                 self._operation(at, action, L.COPY, transfer.source, transfer.target, transfer.count)
+            elif transfer.type.kind is STRING:
+                calls = self._calls(at, action, calls)
+                self._texts(at, action, instance, transfer)
             else:
                 self._call(instance, transfer)
         if self._apart:
@@ -192,7 +190,7 @@ class Program:
         row: dict[int, int | float] = {
             L.FUNCTION: address(step.pointer), L.COMPONENT: instance.component, L.ANSWERS: len(step.answers),
         }  # fmt: skip # a row
-        row |= _times(turn.times)
+        row |= times_row(turn.times)
         row |= {L.EVENT + i: ctypes.addressof(answer) for i, answer in enumerate(step.answers)}
 
         def recheck(result: int, detail: int) -> None:
@@ -209,7 +207,11 @@ class Program:
 
         first = self._count("calls")
         for transfer in instance.outputs:
-            self._call(instance, transfer)
+            if transfer.type.kind is STRING:
+                first = self._calls(at, action, first)
+                self._texts(at, action, instance, transfer)
+            else:
+                self._call(instance, transfer)
         checks = [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]
         if checks and self._count("calls") > first:  # with the last call goes the first check
             self._calls(at, action, first, self._count("calls") - 1)
@@ -218,6 +220,12 @@ class Program:
             self._calls(at, action, first)
         for check in checks:
             self._operation(at, action, L.CHECK, 0, *check, recheck=recheck)
+
+    def _texts(self, at: int, action: Action, instance: Instance, transfer: Transfer) -> None:
+        """Add an operation for a C call with texts, which Python makes."""
+        call = instance.binding.calls([transfer])
+        self._operation(at, action, L.PYTHON_ACT, len(self.acts))
+        self.acts.append(lambda k: call())
 
     def _calls(self, at: int, action: Action, first: int, end: int | None = None) -> int:
         """Add an operation for each row of CALLS from `first` on; return the number of rows."""
@@ -267,8 +275,8 @@ class Program:
             self.logged.append(sender)
         self._operation(at, action, L.SEND, self._count("signals"), len(channel.routes), log)
         for i, (route, operation) in enumerate(zip(channel.routes, channel.operations, strict=True)):
-            self._rows["signals"].append(_signal(route, operation, self._count("sinks")))
-            self._rows["sinks"] += [{L.SINK: slot} | _mapped(affine) for slot, affine in route.sinks]
+            self._rows["signals"].append(signal_row(route, operation, self._count("sinks")))
+            self._rows["sinks"] += [{L.SINK: slot} | mapped(affine) for slot, affine in route.sinks]
             self.signals.append((sender, i))
         if sender.waiting is not None:
             self._operation(at, action, L.KEEP, self._wait(action.index))
@@ -347,41 +355,6 @@ def _table(rows: Sequence[Cells], width: int) -> KernelTable:
     for i, row in enumerate(rows):
         _fill(made, i, row)
     return made
-
-
-def _times(times: TurnTimes) -> Cells:
-    """Return the columns of UNITS that say when the unit steps."""
-    last = times.last or times.steps(0)  # without a last turn these are not looked at
-    return {
-        L.STEPS: times.substeps, L.TIME_FACTOR: times.factor, L.DIVISOR: times.divisor,
-        L.ADVANCE: times.advance, L.STEP_SIZE: times.size, L.LAST_TURN: times.last_k,
-        L.LAST_ADVANCE: last.advance, L.LAST_SIZE: last.size, L.LANDING_SIZE: last.last,
-    }  # fmt: skip # columns of a row
-
-
-def _mapped(affine: Affine) -> dict[int, int | float]:
-    """Return a map's columns; an offset of 0 becomes -0.0, since adding 0.0 would turn -0.0 into 0.0."""
-    return {L.SCALE: float(affine.scale), L.ADD: float(affine.offset) or -0.0}
-
-
-def _signal(route: SignalRoute, operation: SignalOperation, first_sink: int) -> Cells:
-    row: dict[int, int | float] = {
-        L.FROM: route.source,
-        L.MODE: raw_mode(operation),
-        L.SATURATES: int(operation.raw_below is not None),
-        L.TO: first_sink,
-        L.RECEIVERS: len(route.sinks),
-        L.IN_SCALE: float(route.to_bus.scale),
-        L.IN_ADD: float(route.to_bus.offset) or -0.0,
-        L.LEAST: operation.low,
-        L.GREATEST: operation.high,
-        L.RESOLUTION: operation.scale,
-        L.OFFSET: operation.offset,
-        L.OUT_ADD: operation.offset if operation.adds_offset else -0.0,
-    }
-    if operation.raw_below is not None and operation.raw_above is not None:
-        row |= {L.BELOW: float(operation.raw_below), L.ABOVE: float(operation.raw_above)}
-    return row
 
 
 def address(function: Any) -> int:

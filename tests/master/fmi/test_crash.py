@@ -8,8 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from evcosim.master.fmi.crash import CrashReport
 from support.c_fmu import mixed_fmu
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere faulthandler alone speaks")
@@ -52,6 +54,19 @@ def run(path: Path, *options: str) -> subprocess.CompletedProcess[str]:
         *options,
     ]
     return subprocess.run([*command, "-o", str(path.parent / "out")], capture_output=True, text=True)
+
+
+def test_a_unit_that_python_calls_for_the_kernel_does_not_move_what_the_kernel_follows() -> None:
+    report = CrashReport()
+    notes = [report.add(name, name, f"{name}.fmu", in_python=True) for name in "ab"]
+    table = np.array([report.row("a"), report.row("b")], dtype=np.int64)
+    place = np.array([1], dtype=np.int64)
+    report.follow(table.ctypes.data, place.ctypes.data)
+    notes[0]()
+    assert report.last() == "b (b.fmu)"
+    report.rest()
+    notes[0]()
+    assert report.last() == "a (a.fmu)"
 
 
 @LINUX

@@ -53,17 +53,22 @@ def test_a_chunk_has_the_operations_that_are_due_in_it():
     assert len(program.chunk(1, 2)[1]) < len(program.chunk(0, 5)[1])
 
 
-def test_the_tables_of_a_unit_in_c(tmp_path):
+@pytest.mark.parametrize("texts", [True, False])
+def test_the_tables_of_a_unit_in_c(tmp_path, texts):
     fmu = mixed_fmu(tmp_path / "mixed.fmu", 3, 0)
     path = tmp_path / "one.toml"
-    path.write_text(f"name = 'one'\n[units.a]\nfmu = '{fmu}'\n[experiment]\nstop_time = 0.1\n")
-    path.write_text("record = ['*', '!a.shown']\n" + path.read_text())  # Python does a unit with texts
+    record = "" if texts else "record = ['*', '!a.shown']\n"
+    path.write_text(f"name = 'one'\n{record}[units.a]\nfmu = '{fmu}'\n[experiment]\nstop_time = 0.1\n")
     with Simulation(path, engine="compiled", isolation="none") as simulation:
         program = simulation._engine._program
         (turn,) = simulation._engine.turns
         instance = direct(turn)
-        assert L.PYTHON_ACT not in kinds(program)
         assert kinds(program).count(L.STEP) == 1
+        # Python makes the calls that move texts and notes the texts of a row, nothing else
+        schedule = simulation._engine.schedule
+        notes = [at for at, action in enumerate(schedule) if action.kind == "note"]
+        acts = [op[L.A] for op in program.ops.tolist() if op[L.KIND] == L.PYTHON_ACT]
+        assert acts == ([len(schedule), *notes] if texts else []) and len(notes) == texts
         assert program.stepped == [instance]
         assert set(program.called) == {instance}
         assert program.units[0, L.COMPONENT] == instance.component
