@@ -49,6 +49,7 @@ def manifest(
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
         "steps": engine.k,
         "saturations": saturations(engine),
+        "outside": list(prepared.outside),
         "warnings": list(warnings),
         "loop_seconds": round(loop_seconds, 6),
     }

@@ -17,26 +17,32 @@ from ..cosim.swap.mapping import present, without_absent, without_open, without_
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.sampled import inherited, sampled_in, told, untold
 from ..cosim.swap.swap_file import swapped
+from ..cosim.system.outside import read_outside
 from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
 from ..cosim.system.system import System, load_system
 from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
-from .builtin import fmu_file
+from .builtin import builtin_names, fmu_file
 from .engine.initialization import ordered_links
 from .fmi.doubts import doubts
 from .fmi.fmu import Fmu, check_runnable, read_fmu
+from .isolation.decision import check_trusted
 from .single_fmu import check_alone, names_fmu, one_fmu
 
 
 @dataclasses.dataclass(frozen=True)
 class Prepared:
-    """A run that is ready to be loaded: everything that can be checked without an instance was checked."""
+    """A run that is ready to be loaded: everything that can be checked without an instance was checked.
+
+    `outside` are sentences about the files that are read from elsewhere than the folder of who names them.
+    """
 
     system: System
     scenario: Scenario
     fmus: dict[str, Fmu]
     plan: Plan
+    outside: tuple[str, ...] = ()
 
 
 def prepare(
@@ -61,6 +67,8 @@ def prepare(
     read, driven, left_out = without_absent(read, driven)
     # the FMUs, and the interfaces that they present to the system
     loaded = _read_fmus(read, driven, fmus, options.get("strict", False), runnable)
+    if runnable:
+        check_trusted(read, loaded, options.get("isolation"), options.get("trust", False))
     interfaces, sampling = {}, []
     for unit, fmu in loaded.items():
         interface = present(fmu.interface, read.file.units[unit], read.keys_of(unit))
@@ -81,7 +89,15 @@ def prepare(
     plan = dataclasses.replace(plan, warnings=warnings)
     check_specs(read, driven, plan.columns)
     ordered_links(plan)  # refuses an algebraic loop
-    return Prepared(read, driven, loaded, plan)
+    named = {
+        unit: fmu.path for unit, fmu in loaded.items() if unit not in fmus and not _is_a_name(read, unit)
+    }
+    return Prepared(read, driven, loaded, plan, read_outside(read, driven, named))
+
+
+def _is_a_name(system: System, unit: str) -> bool:
+    """Return True for a unit whose FMU is built in, and named so."""
+    return system.file.units[unit].fmu in builtin_names()
 
 
 def _doubts(plan: Plan, fmus: Mapping[str, Fmu]) -> list[str]:

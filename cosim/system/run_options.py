@@ -58,6 +58,10 @@ class RunOptions(TypedDict, total=False):
     isolation: Isolation | None
     """Run every unit in a process of its own ("process"), or none ("none"; default: the system's)."""
 
+    trust: bool
+    """Let a file of yours put FMUs that evcosim did not build into this process by `isolation = "none"`
+    (default: False)."""
+
     engine: EngineName | None
     """The engine, "compiled" (needs numba) or "python", equal bit for bit (default: the system's)."""
 
@@ -120,6 +124,7 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "interface": _one_of(Literal["co_simulation", "model_exchange"]),
     "tolerance": (_is_share, "must be a number between 0 and 1"),
     "isolation": _one_of(Isolation),
+    "trust": _FLAG,
     "engine": _one_of(EngineName),
     "strict": _FLAG,
 }

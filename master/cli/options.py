@@ -75,6 +75,9 @@ IsolationOption = Annotated[
         help="Each unit in a process of its own, or none; default: other tools' FMUs.", show_default=False
     ),
 ]
+TrustOption = Annotated[
+    bool, typer.Option("--trust", help='Let a file say isolation = "none" for other tools\' FMUs.')
+]
 SettingsOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -134,6 +137,7 @@ def _run_options(
     ideal: IdealOption = False,
     algorithm: AlgorithmOption = None,
     isolation: IsolationOption = None,
+    trust: TrustOption = False,
     engine: EngineOption = None,
     stop_time: StopTimeOption = None,
     inputs: InputsOption = None,
@@ -162,6 +166,7 @@ def _run_options(
         "ideal": ideal,
         "algorithm": algorithm.value if algorithm else None,
         "isolation": isolation.value if isolation else None,
+        "trust": trust,
         "engine": engine.value if engine else None,
         "stop_time": stop_time,
         "strict": strict,

@@ -24,6 +24,7 @@ def show(finished: FinishedRun) -> None:
     ]
     if isolated := [name for name, unit in manifest["units"].items() if unit["isolation"] == "process"]:
         fields.append(("isolated", f"{', '.join(isolated)} (each in a process of its own)"))
+    fields += [("reads" if i == 0 else "", text) for i, text in enumerate(manifest["outside"])]
     for i, (signal, about) in enumerate(manifest["saturations"].items()):
         times = counted(int(about["count"]), "time")
         fields.append(
@@ -50,6 +51,7 @@ def as_data(finished: FinishedRun) -> dict[str, Any]:
         "real_time_factor": _factor(finished),
         "warnings": finished.remarks,
         "isolation": {name: unit["isolation"] for name, unit in manifest["units"].items()},
+        "outside": manifest["outside"],
         "profile": finished.simulation.profile,
         "metrics": manifest.get("metrics", {}),
         "final": results.final(),

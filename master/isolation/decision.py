@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 
 from ...cosim.errors import ConfigError
-from ...cosim.system.system import Isolation, UnitEntry
+from ...cosim.system.system import Isolation, System, UnitEntry
+from ...cosim.system.toml import is_built_in
 from ..builtin import is_ours
 from ..fmi.fmu import Fmu
 from .process import ProcessLimits
@@ -31,9 +33,27 @@ def chosen(name: str, fmu: Fmu, entry: UnitEntry, wanted: Isolation | None) -> I
         why = 'isolation = "process"' if asked else f"evcosim did not build {fmu.path.name}"
         raise ConfigError(
             f"unit '{name}': {why}, and on this system no unit can be put into a process of its own; with "
-            '--isolation none (isolation = "none") it runs in the process of evcosim, which then ends with it'
+            "--isolation none it runs in the process of evcosim, which then ends with it"
         )
     return found
+
+
+def check_trusted(system: System, fmus: Mapping[str, Fmu], wanted: Isolation | None, trust: bool) -> None:
+    """Raise ConfigError for a file that lets an FMU that evcosim did not build into this process.
+
+    A file that somebody else wrote cannot give that right to an FMU: `trust` does, or what is `wanted` for
+    all units. What evcosim brings is trusted.
+    """
+    for unit, fmu in fmus.items():
+        entry, file = system.file.units[unit], system.swaps.get(unit, system.path)
+        if wanted is not None or trust or entry.isolation != "none" or is_built_in(file):
+            continue
+        if decided(fmu, entry.model_copy(update={"isolation": None}), None) == "process":
+            raise ConfigError(
+                f'{system.keys_of(unit)}isolation = "none": {fmu.path} is not an FMU that evcosim built, and '
+                "would run in the process of evcosim; if you trust it, --trust (trust=True) lets it; without "
+                "this key it has a process of its own"
+            )
 
 
 def available() -> bool:

@@ -59,7 +59,7 @@ def change(results: Results, name: str) -> float:
 def test_a_discrete_output_of_a_stranger_belongs_to_the_time_after_the_step(
     tmp_path: Path, fmi: int, engine: str
 ) -> None:
-    results = simulate(stairs(tmp_path, fmi), engine=engine)
+    results = simulate(stairs(tmp_path, fmi), engine=engine, trust=True)
     assert np.array_equal(results["a.stairs"], np.floor(results.time))
     assert change(results, "a.stairs") == change(results, "b.stairs") == 1.0
     # b steps after a and takes what a has newly computed, as of its continuous outputs
@@ -67,9 +67,9 @@ def test_a_discrete_output_of_a_stranger_belongs_to_the_time_after_the_step(
 
 
 def test_isolated_and_in_jacobi_it_does_too(tmp_path: Path) -> None:
-    here, apart = (simulate(stairs(tmp_path, isolation=i)) for i in ("none", "process"))
+    here, apart = (simulate(stairs(tmp_path, isolation=i), trust=True) for i in ("none", "process"))
     assert np.array_equal(here.data, apart.data)
-    results = simulate(stairs(tmp_path), algorithm="jacobi")
+    results = simulate(stairs(tmp_path), algorithm="jacobi", trust=True)
     assert change(results, "a.stairs") == change(results, "b.count") == 1.0
 
 
@@ -89,7 +89,9 @@ def test_isolated_and_in_jacobi_it_does_too(tmp_path: Path) -> None:
 def test_the_file_or_the_fmu_tells(
     tmp_path: Path, engine: str, more: str, annotations: str, sampled: list[str]
 ) -> None:
-    with Simulation(stairs(tmp_path, more=more, annotations=annotations), engine=engine) as simulation:
+    with Simulation(
+        stairs(tmp_path, more=more, annotations=annotations), engine=engine, trust=True
+    ) as simulation:
         simulation.run()
         results = simulation.results
     assert results.manifest["units"]["a"]["sampled"] == sampled
@@ -107,14 +109,14 @@ def test_what_is_wrong_in_the_file_names_it(tmp_path: Path) -> None:
     with pytest.raises(
         ConfigError, match=r"stairs\.toml: units\.a\.sampled: unit 'a' has no variable 'stiars'"
     ):
-        simulate(stairs(tmp_path, more='sampled = ["stiars"]'))
+        simulate(stairs(tmp_path, more='sampled = ["stiars"]'), trust=True)
 
 
 def inheriting(folder: Path, more: str = "", **options: Any) -> Simulation:
     """The system with another file in the place of unit a, by a swap file that has `more`."""
     other = watch_fmu(folder / "other.fmu")
     (folder / "swap.toml").write_text(f'fmu = "{other}"\nisolation = "none"\n{more}\n')
-    return Simulation(folder / "stairs.toml", **options or {"swaps": {"a": folder / "swap.toml"}})
+    return Simulation(folder / "stairs.toml", **options or {"swaps": {"a": folder / "swap.toml"}}, trust=True)
 
 
 @pytest.mark.parametrize("how", ["annotation", "file"])
@@ -137,9 +139,11 @@ def test_an_fmu_inherits_from_the_place_that_it_takes(tmp_path: Path, how: str) 
 
 def test_an_fmu_of_an_earlier_evcosim_is_warned_of(tmp_path: Path) -> None:
     path = stairs(tmp_path)
-    assert not [text for text in prepare(path).plan.warnings if "earlier" in text]
+    assert not [text for text in prepare(path, trust=True).plan.warnings if "earlier" in text]
     old = watch_fmu(tmp_path / "watch2.fmu", tool="evcosim 0.1.0 with pythonfmu 0.6.9")
-    (said,) = [text for text in prepare(path).plan.warnings if "earlier" in text]  # b says sampled = false
+    (said,) = [
+        text for text in prepare(path, trust=True).plan.warnings if "earlier" in text
+    ]  # b says sampled = false
     assert said.startswith(f"unit 'a': {old} was built by an earlier evcosim")
 
 

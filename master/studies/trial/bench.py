@@ -85,7 +85,8 @@ class Bench:
         """Yield a simulation of the unit alone, ready to step. Raises ConfigError, RunError."""
         deadline.check()
         timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
-        update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout}
+        # by itself, whatever a file says: an FMU of another tool has a process of its own
+        update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout, "isolation": None}
         entry = self.entry.model_copy(update=update)
         with Simulation(self._alone(entry), self._driven(drive), isolation=self.isolation) as simulation:
             try:

@@ -30,7 +30,7 @@ def test_a_misspelled_name_is_told_the_nearest(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(RunOptions.__optional_keys__))
 @pytest.mark.parametrize("value", ["no", b"", 1j, [], True])
 def test_a_value_of_another_type_is_refused_by_name(name: str, value: object) -> None:
-    if (name, value) in (("allow_open", True), ("ideal", True), ("strict", True)):
+    if (name, value) in ((key, True) for key in ("allow_open", "ideal", "strict", "trust")):
         return check_options({name: value})
     with pytest.raises(ConfigError, match=rf"^{name} = {re.escape(repr(value))}: must be "):
         check_options({name: value})

@@ -46,7 +46,8 @@ def test_a_verb_declares_them_in_the_place_of_its_argument():
 
 def test_a_verb_receives_them_as_one_record():
     given = dict.fromkeys(("fmus", "swaps", "isolation"))
-    given |= {"settings": ["vehicle.mass=180"], "strict": True, "stop_time": 2.0, "allow_open": True}
+    given |= {"settings": ["vehicle.mass=180"], "strict": True, "stop_time": 2.0}
+    given |= {"allow_open": True, "trust": True}
     given |= {"algorithm": options.AlgorithmChoice.jacobi, "engine": options.EngineChoice.python}
     system, found, quiet = verb(system="scooter", quiet=True, **given)
     assert (system, quiet) == ("scooter", True)
@@ -61,6 +62,7 @@ def test_a_verb_receives_them_as_one_record():
         "ideal": False,
         "algorithm": "jacobi",
         "isolation": None,
+        "trust": True,
         "engine": "python",
         "stop_time": 2.0,
         "strict": True,

@@ -71,3 +71,16 @@ def test_the_units_in_processes_of_their_own_are_named(evcosim):
     assert "isolated" not in evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "here").out
     units = evcosim("info", "scooter", "--json").json["units"]
     assert {unit["isolation"] for unit in units} == {"none"}
+
+
+def test_the_summary_says_what_was_read_from_elsewhere(evcosim, tmp_path):
+    (tmp_path / "elsewhere.csv").write_text("time,grip\n0,50\n1,60\n")
+    (tmp_path / "given").mkdir()
+    stimulus = '[[stimulus]]\nto = "ecu.throttle_request"\ncsv = "../elsewhere.csv"\n'
+    (tmp_path / "given" / "own.toml").write_text(f'leave_out = ["rider"]\n{stimulus}')
+    command = ["run", "scooter", "-s", "given/own.toml", "--stop-time", "0.1", "--no-plot", "-o", "out"]
+    said = "given/own.toml: stimulus 1.csv reads given/../elsewhere.csv, which is not in the folder of"
+    assert said in " ".join(evcosim(*command).out.split())
+    (told,) = evcosim(*command, "--json").json["outside"]
+    assert told.startswith(said)
+    assert evcosim(*command[:2], *command[4:], "--json").json["outside"] == []

@@ -27,7 +27,7 @@ def run(fmu: Path, unit: str = "", scenario: str = DRIVEN, more: str = "", **opt
         f'name = "alone"\n[experiment]\nstop_time = 0.1\n[units.a]\nfmu = "{fmu.name}"\n{unit}\n{more}'
     )
     (fmu.parent / "driven.toml").write_text(scenario)
-    return simulate(path, fmu.parent / "driven.toml", **options)
+    return simulate(path, fmu.parent / "driven.toml", **options, trust=True)
 
 
 def first(results: Results) -> dict[str, float]:
@@ -62,7 +62,7 @@ def test_the_stimulus_is_that_of_the_start_time(tmp_path: Path, fmi: int, kind: 
     (tmp_path / "sine.toml").write_text(
         '[[stimulus]]\nto = "a.u"\nsine = { amplitude = 2.0, period = 2.8, mean = 1.0 }\n'
     )
-    results = simulate(path, tmp_path / "sine.toml")
+    results = simulate(path, tmp_path / "sine.toml", trust=True)
     assert results["a.entered"][0] == pytest.approx(3.0, abs=1e-12)
     assert results["a.entered"][0] == results["a.left"][0] == results["a.u"][0]
 

@@ -56,7 +56,7 @@ def test_types_of_fmi_3_in_a_run(tmp_path: Path) -> None:
         f'name = "one"\n[experiment]\nstop_time = 0.02\n'
         f'[units.a]\nfmu = "{fmu}"\nisolation = "none"\n{start}\n'
     )
-    results = simulate(tmp_path / "one.toml")
+    results = simulate(tmp_path / "one.toml", trust=True)
     assert results["a.single"][-1] == float(np.float32(0.1))
     found = [int(results[f"a.{n}"][-1]) for n in ("int8", "uint64", "int64", "count", "uint8")]
     assert found == [-2, 78, 2**53, 6, 1]
@@ -69,7 +69,7 @@ def test_an_integer_that_no_double_holds_is_an_error(tmp_path: Path) -> None:
         "start = { int64_in = 9007199254740992 }\n"
     )
     with pytest.raises(RunError, match=r"unit 'a': int64 = 9007199254740993 is more than a double holds"):
-        simulate(tmp_path / "one.toml")
+        simulate(tmp_path / "one.toml", trust=True)
 
 
 def test_an_array_is_refused_by_name(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_an_array_is_refused_by_name(tmp_path: Path) -> None:
 )
 def test_what_a_step_returns_beside_its_status(tmp_path: Path, behavior: int, reason: str) -> None:
     with pytest.raises(RunError, match=rf"t = 0.5 s \(step 50\): unit 'a': fmi3DoStep {reason}"):
-        simulate(alone(tmp_path, behavior))
+        simulate(alone(tmp_path, behavior), trust=True)
 
 
 @pytest.mark.parametrize("kind", ["int8", "uint8", "int16", "uint16", "uint32", "int64", "uint64"])

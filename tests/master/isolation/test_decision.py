@@ -110,3 +110,38 @@ def test_an_own_fmu_runs_the_same_in_both_ways_and_the_run_says_which(
     assert here.manifest["units"]["rider"]["isolation"] == "none"
     assert apart.manifest["units"]["rider"]["isolation"] == "process"
     assert here.data.tobytes() == apart.data.tobytes()
+
+
+def test_a_file_alone_lets_no_foreign_fmu_into_this_process(tmp_path: Path) -> None:
+    path = pair(tmp_path, 0)
+    text = path.read_text()
+    path.write_text(text.replace("[units.a]", '[units.a]\nisolation = "none"'))
+    with pytest.raises(ConfigError) as caught:
+        simulate(path)
+    said = str(caught.value)
+    assert said.startswith(f'{path}: units.a.isolation = "none": {tmp_path / "mixed.fmu"} is not an FMU that')
+    assert "--trust (trust=True)" in said
+    trusted = simulate(path, trust=True)
+    assert trusted.manifest["units"]["a"]["isolation"] == "none"
+    for wanted in ("none", "process"):
+        found = simulate(path, isolation=wanted)
+        assert found.manifest["units"]["a"]["isolation"] == wanted
+        assert np.array_equal(found.data, trusted.data)
+    path.write_text(text)
+    assert simulate(path, trust=True).manifest["units"]["a"]["isolation"] == "process"
+
+
+def test_a_swap_file_alone_lets_no_foreign_fmu_into_this_process(tmp_path: Path) -> None:
+    path = pair(tmp_path, 0)
+    swap = tmp_path / "swap.toml"
+    swap.write_text('fmu = "mixed.fmu"\nisolation = "none"\n')
+    with pytest.raises(ConfigError, match=rf'^{swap}: isolation = "none": .*mixed.fmu is not an FMU that'):
+        simulate(path, swaps={"a": swap})
+    found = simulate(path, swaps={"a": swap}, trust=True)
+    assert found.manifest["units"]["a"]["isolation"] == "none"
+
+
+def test_a_file_may_say_none_for_our_own_fmus(tmp_path: Path) -> None:
+    path = pair(tmp_path, 0)
+    path.write_text(path.read_text().replace("[units.rider]", '[units.rider]\nisolation = "none"'))
+    assert simulate(path).manifest["units"]["rider"]["isolation"] == "none"

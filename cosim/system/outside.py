@@ -1,0 +1,37 @@
+"""The files that a system, a scenario or a swap file names and that stand outside of its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from .scenario import Scenario
+from .system import System
+from .toml import data_file, is_built_in
+
+
+def read_outside(system: System, scenario: Scenario, fmus: Mapping[str, Path]) -> tuple[str, ...]:
+    """Return a sentence for each file that is read from outside the folder of the file that names it.
+
+    `fmus` are the files of the units' FMUs that the system or a swap file names by a path. A link counts as
+    what it leads to; what evcosim brings is outside of nothing.
+    """
+    found = []
+    for key, path, named_in in _named(system, scenario, fmus):
+        if not is_built_in(path) and named_in.parent.resolve() not in path.resolve().parents:
+            found.append(f"{key} reads {path}, which is not in the folder of {named_in}")
+    return tuple(found)
+
+
+def _named(system: System, scenario: Scenario, fmus: Mapping[str, Path]) -> Iterator[tuple[str, Path, Path]]:
+    """Yield the place of each key that names a file, that file, and the file in which the key stands."""
+    for unit, fmu in fmus.items():
+        yield f"{system.keys_of(unit)}fmu", fmu, system.swaps.get(unit, system.path)
+    for name, bus in system.file.buses.items():
+        place = f"{system.path}: buses.{name}.dbc"
+        yield place, data_file(bus.dbc, system.path, place), system.path
+    if scenario.path is not None:
+        for number, stimulus in enumerate(scenario.file.stimuli, 1):
+            if stimulus.csv is not None:
+                place = f"{scenario.path}: stimulus {number}.csv"
+                yield place, data_file(stimulus.csv, scenario.path, place), scenario.path
