@@ -30,6 +30,9 @@ def _named(system: System, scenario: Scenario, fmus: Mapping[str, Path]) -> Iter
     for name, bus in system.file.buses.items():
         place = f"{system.path}: buses.{name}.dbc"
         yield place, data_file(bus.dbc, system.path, place), system.path
+    chosen = system.file.scenario
+    if scenario.path is not None and chosen is not None and scenario.path == Path(chosen):
+        yield f"{system.path}: scenario", scenario.path, system.path  # its default, given by a path
     if scenario.path is not None:
         for number, stimulus in enumerate(scenario.file.stimuli, 1):
             if stimulus.csv is not None:

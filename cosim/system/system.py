@@ -164,7 +164,7 @@ class UnitEntry(FileModel):
 
     isolation: Isolation | None = None
     """Run it in a process of its own (process) or in the master's (none); without it FMUs that evcosim did
-    not build have a process of their own."""
+    not build have a process of their own, and "none" for one of them needs --trust."""
 
     step_timeout: float = Field(default=30.0, ge=1e-3, le=_LONGEST_WAIT)
     """Longest time in s that its process may take for an answer in the run."""

@@ -257,11 +257,21 @@ def _conclude(
     conclusion = " and ".join(remaining) or "it fits"
     if write is not None:
         left_open = open_names(checked.matches, likeness)
-        allowed = " --allow-open" if left_open else ""
+        allowed = (" --allow-open" if left_open else "") + _trust(checked, write)
         print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}{allowed}")
         if left_open:
             print(f"open, each with its guess as a comment in {write}: {', '.join(left_open)}")
     elif complete and file.endswith(".toml"):
-        print(f"{conclusion}: evcosim run {system} --swap {unit}={file}")
+        print(f"{conclusion}: evcosim run {system} --swap {unit}={file}{_trust(checked, Path(file))}")
     else:
         print(f"{conclusion}: evcosim check {file} --as {checked.place} --write swap.toml writes the mapping")
+
+
+def _trust(checked: _Checked, swap: Path) -> str:
+    """Return the option without which a swap file cannot put this FMU into evcosim's process."""
+    from ..fmi.fmu import read_fmu
+    from ..isolation.decision import needs_trust
+
+    if checked.entry is None or checked.entry.isolation != "none":
+        return ""
+    return " --trust" if needs_trust(read_fmu(checked.fmu), checked.entry, swap) else ""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def described(name: str) -> dict[str, Any]:
     """Return the report on a system. Raises ConfigError for everything that is wrong in it."""
     from ...cosim.system.scenario import load_scenario, scenario_names
-    from ..isolation.decision import decided
+    from ..isolation.decision import decided, needs_trust
 
     prepared = _whole(name)
     system, plan = prepared.system, prepared.plan
@@ -32,7 +32,10 @@ def described(name: str) -> dict[str, Any]:
         "units": [
             {"name": u.name, "fmu": u.fmu, "period": plan.clock.length(u.every),
              "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name),
-             "isolation": decided(prepared.fmus[u.name], system.file.units[u.name], None)}
+             "isolation": decided(prepared.fmus[u.name], system.file.units[u.name], None),
+             "needs_trust": needs_trust(
+                 prepared.fmus[u.name], system.file.units[u.name], system.swaps.get(u.name, system.path)
+             )}
             for u in plan.units
         ],
         "connections": _connections(system, plan),
@@ -40,6 +43,7 @@ def described(name: str) -> dict[str, Any]:
         "default_scenario": system.file.scenario,
         "scenarios": scenarios,
         "warnings": list(plan.warnings),
+        "outside": list(prepared.outside),
     }  # fmt: skip # one line for each key
 
 
@@ -113,6 +117,7 @@ def show(about: dict[str, Any]) -> None:
     fields = [("system", about["name"]), ("title", about["title"]), ("source", about["source"])]
     fields += [("file", about["file"]), ("experiment", steps)]
     fields += [("warning", text) for text in about["warnings"]]
+    fields += [("reads", text) for text in about["outside"]]
     for unit in about["units"]:
         fields += [("scaled", f"{unit['name']}.{name}: {words}") for name, words in unit["scaled"].items()]
     print_fields([(name, value) for name, value in fields if value])
@@ -137,6 +142,7 @@ def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:
     period = f"{unit['period']:g}" + (f" in {unit['substeps']} FMU steps" if unit["substeps"] > 1 else "")
     parameters = ", ".join(f"{name} = {value}" for name, value in unit["parameters"].items())
     process = "its own" if unit["isolation"] == "process" else "evcosim's"
+    process += " (with --trust)" if unit["needs_trust"] else ""
     return (unit["name"], unit["fmu"], period, process, parameters)
 
 

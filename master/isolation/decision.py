@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from pathlib import Path
 
 from ...cosim.errors import ConfigError
 from ...cosim.system.system import Isolation, System, UnitEntry
@@ -44,16 +45,25 @@ def check_trusted(system: System, fmus: Mapping[str, Fmu], wanted: Isolation | N
     A file that somebody else wrote cannot give that right to an FMU: `trust` does, or what is `wanted` for
     all units. What evcosim brings is trusted.
     """
+    if wanted is not None or trust:
+        return
     for unit, fmu in fmus.items():
-        entry, file = system.file.units[unit], system.swaps.get(unit, system.path)
-        if wanted is not None or trust or entry.isolation != "none" or is_built_in(file):
-            continue
-        if decided(fmu, entry.model_copy(update={"isolation": None}), None) == "process":
+        if needs_trust(fmu, system.file.units[unit], system.swaps.get(unit, system.path)):
             raise ConfigError(
                 f'{system.keys_of(unit)}isolation = "none": {fmu.path} is not an FMU that evcosim built, and '
                 "would run in the process of evcosim; if you trust it, --trust (trust=True) lets it; without "
                 "this key it has a process of its own"
             )
+
+
+def needs_trust(fmu: Fmu, entry: UnitEntry, file: Path) -> bool:
+    """Return True for a unit that a file alone puts into this process, although evcosim did not build it.
+
+    `file` is the system or swap file of the entry.
+    """
+    if entry.isolation != "none" or is_built_in(file):
+        return False
+    return decided(fmu, entry.model_copy(update={"isolation": None}), None) == "process"
 
 
 def available() -> bool:

@@ -63,3 +63,12 @@ def test_a_built_in_system_reads_nothing_from_elsewhere() -> None:
     system = load_system("scooter")
     assert system.path.is_relative_to(DATA)
     assert read_outside(system, load_scenario(system, "udds"), {}) == ()
+
+
+def test_a_default_scenario_may_stand_elsewhere(folder: Path) -> None:
+    other = folder.parent / "outer" / "c.toml"
+    other.write_text("")
+    (folder / "s.toml").write_text(f"scenario = '{other}'\n" + SYSTEM.format("x.dbc"))
+    system = load_system(str(folder / "s.toml"))
+    (said,) = read_outside(system, load_scenario(system), {})
+    assert said == f"{folder}/s.toml: scenario reads {other}, which is not in the folder of {folder}/s.toml"

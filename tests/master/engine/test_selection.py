@@ -42,7 +42,7 @@ def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch,
 def test_the_key_of_a_system_names_the_engine(ring):
     path = ring()
     path.write_text(path.read_text().replace("[experiment]", '[experiment]\nengine = "python"'))
-    with Simulation(path) as simulation:
+    with Simulation(path, trust=True) as simulation:
         assert simulation.manifest()["experiment"]["engine"] == "python"
 
 

@@ -86,11 +86,11 @@ def test_run_and_check_warn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     path.write_text(
         'name = "alone"\n[experiment]\nstop_time = 0.05\n[units.a]\nfmu = "vehicle.fmu"\nisolation = "none"\n'
     )
-    warnings = simulate(path).manifest["warnings"]
+    warnings = simulate(path, trust=True).manifest["warnings"]
     assert [w for w in warnings if w.startswith("unit 'a' needs its tool on the machine")]
     assert [w for w in warnings if w.startswith("unit 'a' takes steps of 0.02 s only")]
     path.write_text(path.read_text().replace("[units.a]", "[units.a]\nperiod = 0.02"))
-    warnings = simulate(path).manifest["warnings"]
+    warnings = simulate(path, trust=True).manifest["warnings"]
     assert [w for w in warnings if "its last step is of 0.01 s" in w] and "0.02 s only" not in str(warnings)
     main(["check", str(made), "--as", "scooter.vehicle"])
     printed = capsys.readouterr().out

@@ -90,7 +90,7 @@ def run(folder: Path, case: Case, fmi: int) -> Outcome:
 def run_command(folder: Path, case: Case, fmi: int) -> subprocess.CompletedProcess[str]:
     """Run a case with the installed command; its results are in `out`."""
     path = write_system(folder, case, fmi)
-    command = [str(Path(sys.executable).with_name("evcosim")), "run", str(path), "--no-plot"]
+    command = [str(Path(sys.executable).with_name("evcosim")), "run", str(path), "--no-plot", "--trust"]
     command += ["--output", str(folder / "out")]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
