@@ -20,7 +20,7 @@ from types import TracebackType
 from typing import Any, Unpack
 
 from ..cosim.can.frames import BusLog, write_can_log
-from ..cosim.errors import ConfigError, RunError, counted, nearest
+from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
 from ..cosim.plan.plan import Plan
@@ -35,7 +35,7 @@ from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
 from .engine.selection import engine_class
-from .fmi.fmu import Fmu
+from .fmi.doubts import defects_of
 from .fmi.loading import load_unit
 from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
@@ -43,8 +43,7 @@ from .keeping import KeptRun, ended
 from .manifest import manifest, saturations
 from .prepare import check_frames, prepare
 from .unit import Unit
-
-_SHOWN_DEFECTS = 5  # of an FMU's description, as warnings
+from .warned import warnings_text
 
 RunProgress = Callable[[float, float], None]
 """Called with the simulated time reached and the stop time, both in s."""
@@ -82,7 +81,7 @@ class Simulation:
         self.log_frames = log_frames
         self.loop_seconds = 0.0
         self._units: dict[str, Unit] = {}
-        self._last_warnings: dict[str, tuple[int, list[str]]] = {}
+        self._last_warnings: dict[str, tuple[int, dict[str, int]]] = {}
         self.isolation: dict[str, Isolation] = {}
         self._kept: KeptRun | None = None
         try:
@@ -252,18 +251,18 @@ class Simulation:
         """A sentence for everything suspicious: notices of the engine, defects of FMUs, missing units of
         measure, warnings of units, outputs beyond their limits."""
         from_units = [
-            f"unit '{name}' gave {counted(n, 'warning')}" + (f": {'; '.join(texts)}" if texts else "")
-            for name, (n, texts) in self._unit_warnings().items()
+            f"unit '{name}' gave {warnings_text(n, kinds)}"
+            for name, (n, kinds) in self._unit_warnings().items()
             if n
         ]
-        defects = [text for unit, fmu in self._fmus.items() for text in _defects(unit, fmu)]
+        defects = [f"unit '{unit}': {text}" for unit, fmu in self._fmus.items() for text in defects_of(fmu)]
         kept = self._kept.notice if self._kept is not None else ""
         notices = [notice for notice in (self._notice, self._engine.notice, kept) if notice]
         beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
         return [*notices, *defects, *self.plan.warnings, *self._notices, *from_units, *beyond]
 
-    def _unit_warnings(self) -> dict[str, tuple[int, list[str]]]:
-        now = {name: (unit.warnings, list(unit.warned)) for name, unit in self._units.items()}
+    def _unit_warnings(self) -> dict[str, tuple[int, dict[str, int]]]:
+        now = {name: (unit.warnings, dict(unit.warned)) for name, unit in self._units.items()}
         return self._last_warnings | now
 
     # ---- results
@@ -380,10 +379,3 @@ def simulate(
         error.results = simulation.results
         raise
     return simulation.results
-
-
-def _defects(unit: str, fmu: Fmu) -> list[str]:
-    """Return the first tolerated defects of an FMU's description, and the number of the others."""
-    shown = [f"unit '{unit}': {fmu.path.name}: {defect}" for defect in fmu.defects[:_SHOWN_DEFECTS]]
-    more = len(fmu.defects) - len(shown)
-    return [*shown, *([f"unit '{unit}': {fmu.path.name}: {more} more defects"] if more else [])]

@@ -13,9 +13,6 @@ from ..cosim.errors import RunError
 from ..cosim.interface import UnitInterface, Value
 from ..cosim.plan.unit_plan import FmuSteps, UnitPlan
 
-WARNED = 3
-"""The most texts of a unit's warnings that are kept: the first that differ from each other."""
-
 
 def floats(memory: NDArray[np.float64]) -> memoryview[float]:
     """Return the memory, shape (size,), as a view whose items are Python floats.
@@ -57,8 +54,8 @@ class Unit(Protocol):
         """The number of calls that ended with a warning and of log messages of status Warning."""
 
     @property
-    def warned(self) -> list[str]:
-        """The first texts of such messages that differ from each other, at most three."""
+    def warned(self) -> Mapping[str, int]:
+        """The first text of each of the first kinds of such messages, and their number (see `warned`)."""
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         """Keep the run's memory, shape (size,), and the slots of this unit's slot groups in it."""

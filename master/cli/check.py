@@ -65,7 +65,7 @@ def check(
     if not as_json:
         _show_matches(place, checked.matches)
         _show_sampled(checked)
-        _show_doubts(checked)
+        _show_warnings(checked)
     tried = None if duration is None else _tried(checked, duration)
     if tried is not None and not as_json:
         _show_trial(tried)
@@ -92,8 +92,8 @@ class _Checked:
     matches: list[Match]
     sampled: list[str]
     """The outputs that the FMU, which does not tell, has sampled since those of the place are."""
-    doubts: list[str]
-    """Clauses about declarations of the FMU that the steps of the place do not respect."""
+    warnings: list[str]
+    """Sentences on defects of the FMU, and on declarations that the steps of the place do not respect."""
 
 
 def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Checked:
@@ -123,17 +123,20 @@ def _checked(file: str, place: str, scenario: str | None, strict: bool) -> _Chec
     found = matches(requirements(system, driven, unit, there), fmu.interface, entry)
     names = [m.need for m in found if m.variable and m.verdict != "missing" and m.need in sampled_in(there)]
     silent = not fmu.interface.tells_sampled and (entry is None or entry.sampled is None)
-    doubtful = _doubts(fmu, entry or system.file.units[unit], system, driven, unit)
-    return _Checked(place, system, driven, unit, path, entry, found, names if silent else [], doubtful)
+    warnings = _warnings(fmu, entry or system.file.units[unit], system, driven, unit)
+    return _Checked(place, system, driven, unit, path, entry, found, names if silent else [], warnings)
 
 
-def _doubts(fmu: Fmu, entry: UnitEntry, system: System, scenario: Scenario, unit: str) -> list[str]:
-    """Return clauses about declarations that the FMU's steps, by its entry or the place's, do not respect."""
-    from ..fmi.doubts import doubts
+def _warnings(fmu: Fmu, entry: UnitEntry, system: System, scenario: Scenario, unit: str) -> list[str]:
+    """Return what a run warns of: defects, and declarations that the FMU's steps do not respect.
+
+    The steps are those of its entry, or of the place's.
+    """
+    from ..fmi.doubts import defects_of, doubts
 
     step_size = scenario.file.experiment.step_size or system.file.experiment.step_size
     period = entry.period or system.file.units[unit].period or step_size
-    return doubts(fmu, [period / entry.substeps])
+    return [*defects_of(fmu), *(f"the FMU {doubt}" for doubt in doubts(fmu, [period / entry.substeps]))]
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:
@@ -181,7 +184,7 @@ def _as_data(checked: _Checked, complete: bool, tried: Trial | None) -> dict[str
         "place": checked.place,
         "fits": complete,
         "sampled": checked.sampled,
-        "warnings": checked.doubts,
+        "warnings": checked.warnings,
         "rows": list(map(dataclasses.asdict, checked.matches)),
     }
     if tried is not None:
@@ -212,11 +215,10 @@ def _show_sampled(checked: _Checked) -> None:
         )
 
 
-def _show_doubts(checked: _Checked) -> None:
-    """Print what the FMU declares and its steps in this place do not respect."""
-    for doubt in checked.doubts:
-        print(f"warning: the FMU {doubt}")
-    if checked.doubts:
+def _show_warnings(checked: _Checked) -> None:
+    for warning in checked.warnings:
+        print(f"warning: {warning}")
+    if checked.warnings:
         print()
 
 

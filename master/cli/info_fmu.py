@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
+from ..warned import first_kinds, with_count
 from .console import number, print_fields, print_table
 from .info_capabilities import capabilities, limitations
 
@@ -163,8 +164,8 @@ def show(about: dict[str, Any]) -> None:
         *(field for name, found in can for field in _listed(name, map(_with_meaning, found))),
         *_listed("limits", map(_with_meaning, about["limits"])),
         ("experiment", ", ".join(f"{name.replace('_', ' ')} {x:g}" for name, x in experiment.items())),
-        *_listed("mended", _bounded(defects)),
-        *_listed("validator", _bounded(messages)),
+        *_listed("mended", _by_kind(defects)),
+        *_listed("validator", _by_kind(messages)),
         ("file", f"{about['file']} ({_size(about['size'])}, unpacked {_size(about['unpacked_size'])})"),
         ("sha256", about["sha256"]),
     ]
@@ -204,10 +205,19 @@ def _listed(name: str, texts: Iterable[str]) -> list[tuple[str, str]]:
 
 
 def _bounded(texts: Sequence[str]) -> list[str]:
-    """Return the first texts, shortened; --json has all of them whole."""
-    shown = [t if len(t) <= _LONGEST else t[:_LONGEST] + " ..." for t in texts[:_MESSAGES]]
-    more = len(texts) - len(shown)
-    return [*shown, *([f"and {more} more (--json shows all)"] if more else [])]
+    """Return the first texts; --json has all of them."""
+    more = len(texts) - _MESSAGES
+    return [*texts[:_MESSAGES], *([f"and {more} more (--json shows all)"] if more > 0 else [])]
+
+
+def _by_kind(texts: Sequence[str]) -> list[str]:
+    """Return the first kinds of texts, shortened, with their counts; --json has all of them whole."""
+    kinds, others = first_kinds(texts, _MESSAGES)
+    shown = [
+        with_count(text if len(text) <= _LONGEST else text[:_LONGEST] + " ...", n)
+        for text, n in kinds.items()
+    ]
+    return [*shown, *([f"and {others} more (--json shows all)"] if others else [])]
 
 
 def _size(count: int) -> str:

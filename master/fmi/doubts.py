@@ -1,13 +1,27 @@
-"""Declarations of an FMU that a run may not respect: the tool that it needs, the step that it can take."""
+"""Warnings of an FMU's description: its defects, and declarations that a run may not respect.
+
+These are the tool that it needs, and the step that it can take.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 
+from ...cosim.errors import counted
+from ..warned import first_kinds, with_count
 from .fmu import Fmu, is_true
 
 _SAME = 1e-9  # of a step: what differs by rounding alone
+_SHOWN_DEFECTS = 5
+
+
+def defects_of(fmu: Fmu) -> list[str]:
+    """Return the first kinds of tolerated defects of the description, and the number of the others."""
+    shown, others = first_kinds(fmu.defects, _SHOWN_DEFECTS)
+    texts = [with_count(text, n) for text, n in shown.items()]
+    texts += [counted(others, "more defect")] if others else []
+    return [f"{fmu.path.name}: {text}" for text in texts]
 
 
 def doubts(fmu: Fmu, steps: Sequence[float]) -> list[str]:

@@ -168,8 +168,8 @@ class Instance:
         return self.log.warnings
 
     @property
-    def warned(self) -> list[str]:
-        return self.log.warned
+    def warned(self) -> Mapping[str, int]:
+        return self.log.kinds.counts
 
     # ---- before the steps
 

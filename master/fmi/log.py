@@ -18,7 +18,7 @@ from fmpy.fmi2 import fmi2CallbackAllocateMemoryTYPE as AllocateMemory
 from fmpy.fmi2 import fmi2CallbackFreeMemoryTYPE as FreeMemory
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
 
-from ..unit import WARNED
+from ..warned import WarningKinds
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 _KEPT = 100
@@ -46,7 +46,7 @@ class UnitLog:
         self.id = next(_ids)
         self.messages: collections.deque[str] = collections.deque(maxlen=_KEPT)
         self.warnings = 0
-        self.warned: list[str] = []
+        self.kinds = WarningKinds()
         self._keys = [self.id]
         _queues[self.id] = self
 
@@ -96,8 +96,7 @@ class UnitLog:
             UnitLog.listener(status, text[:_LONGEST])
         if status == 1:
             self.warnings += 1
-            if len(self.warned) < WARNED and text[:_LONGEST] not in self.warned:
-                self.warned.append(text[:_LONGEST])
+            self.kinds.add(text[:_LONGEST])
 
     def last(self, count: int = 3) -> str:
         """Return the last messages, one in a line; "" when there is none.

@@ -19,7 +19,8 @@ import numpy as np
 
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from ...cosim.texts import Texts
-from ..unit import WARNED, floats
+from ..unit import floats
+from ..warned import KINDS, WarningKinds
 
 # the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
 REQUEST, KIND, MASTER_SLEEPS, SPIN, STEPS = range(5)
@@ -32,8 +33,8 @@ CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
 
 _RING, _KEPT, _TEXT = 32, 20, 2048  # first slot, messages, bytes of one
 _RECORD = 2 + _TEXT // 8  # status, length, text
-_WARNED_AT = _RING + _KEPT * _RECORD  # the first warnings that differ, which the ring does not keep
-_VALUES = -(-(_WARNED_AT + WARNED * _RECORD) // 16) * 16
+_WARNED_AT = _RING + _KEPT * _RECORD  # the first kinds of warnings, which the ring does not keep
+_VALUES = -(-(_WARNED_AT + KINDS * _RECORD) // 16) * 16
 
 
 def create(count: int) -> int:
@@ -59,6 +60,7 @@ class Shared:
         whole = np.frombuffer(self._memory, dtype=np.float64)
         self.slots = floats(whole)
         self.values = whole[_VALUES:]
+        self._kinds = WarningKinds()
 
     def warnings(self) -> int:
         """Return the number of warnings that the child has counted."""
@@ -72,19 +74,25 @@ class Shared:
         self.slots[_MESSAGES] = number + 1
         if status == 1:
             self.slots[WARNINGS] += 1  # the exact number comes with the answer, if one comes
-            self._warn(content)
+            self._warn(text, content)
 
-    def _warn(self, content: bytes) -> None:
-        """Keep a warning, if it is one of the first that differ."""
-        number = min(_count(self.slots[_WARNED]), WARNED)
-        if number < WARNED and all(content != self._read(place)[1] for place in _places(number)):
-            self._write(_WARNED_AT + number * _RECORD, 1, content)
+    def _warn(self, text: str, content: bytes) -> None:
+        """Count a warning with those of its kind; a new kind is kept, if it is one of the first."""
+        number = self._kinds.add(text)
+        if number is None:
+            return
+        place = _WARNED_AT + number * _RECORD
+        if number < _count(self.slots[_WARNED]):
+            self.slots[place] += 1  # in a record of the ring it is the status
+        else:
+            self._write(place, 1, content)
             self.slots[_WARNED] = number + 1
 
-    def warned(self) -> list[str]:
-        """Return the texts of the first warnings that differ, at most three."""
-        number = min(_count(self.slots[_WARNED]), WARNED)
-        return [self._read(place)[1].decode("utf-8", "replace") for place in _places(number)]
+    def warned(self) -> list[tuple[str, int]]:
+        """Return the first text of each of the first kinds of warnings, and their number."""
+        number = min(_count(self.slots[_WARNED]), KINDS)
+        found = [self._read(_WARNED_AT + i * _RECORD) for i in range(number)]
+        return [(content.decode("utf-8", "replace"), count) for count, content in found]
 
     def heard(self) -> list[tuple[int, str]]:
         """Return the last log messages, at most 20, as (status, text)."""
@@ -102,11 +110,6 @@ class Shared:
     def _read(self, place: int) -> tuple[int, bytes]:
         length = min(_count(self.slots[place + 1]), _TEXT)
         return _count(self.slots[place]), self._memory[8 * (place + 2) : 8 * (place + 2) + length]
-
-
-def _places(number: int) -> list[int]:
-    """Return the slots of the first `number` warnings."""
-    return [_WARNED_AT + i * _RECORD for i in range(number)]
 
 
 def fmu_steps(slots: memoryview[float]) -> FmuSteps:

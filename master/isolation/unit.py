@@ -74,8 +74,8 @@ class IsolatedUnit:
         return self._shared.warnings()
 
     @property
-    def warned(self) -> list[str]:
-        return [_printable(text) for text in self._shared.warned()]
+    def warned(self) -> Mapping[str, int]:
+        return {_printable(text): count for text, count in self._shared.warned()}
 
     # ---- requests
 

@@ -18,7 +18,7 @@ from ...cosim.results.results import Results
 from ...cosim.system.system import System, load_system
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road
-from ..simulation import Simulation
+from ..simulation import simulate
 
 LOCKED = 0.99  # slip
 FAST = 5.0  # m/s: above it, the end of the stop has no influence
@@ -81,12 +81,10 @@ def lock_of(results: Results) -> Lock:
 def stops(strategy: str, changes: Sequence[dict[str, Value]], step_size: float | None = None) -> list[Stop]:
     """Run a strategy with each set of changed parameters, at the system's step size or another one [s]."""
     system = _sampled(step_size)
-    found = []
-    for change in changes:
-        with Simulation(system, strategy, parameters=change, ideal=True, stop_time=STOP_TIME) as simulation:
-            simulation.run()
-            found.append(stop_of(simulation.results))
-    return found
+    return [
+        stop_of(simulate(system, strategy, parameters=change, ideal=True, stop_time=STOP_TIME))
+        for change in changes
+    ]
 
 
 def _sampled(step_size: float | None) -> System:

@@ -60,7 +60,7 @@ class MockUnit:
         self.log: list[str] = []
         self.apart = False
         self.warnings = 0
-        self.warned: list[str] = []
+        self.warned: dict[str, int] = {}
 
     def bind(self, memory: NDArray[np.float64], plan: UnitPlan) -> None:
         self.memory, self.groups = memory, plan.groups

@@ -20,6 +20,7 @@ from ....cosim.units.measure import Affine
 from ...builtin import fmu_file
 from ...fmi.fmu import read_fmu
 from ...simulation import Simulation
+from ...warned import WarningKinds
 
 InputCourses = Mapping[str, Sequence[tuple[float, float]]]
 """The points (time [s] from the start, value) of each input, in the units of measure of the system."""
@@ -46,7 +47,8 @@ class Bench:
     """A unit's entry of a system, to be run alone.
 
     `outputs` are recorded, in the units of measure of `ours`, the interface of the unit that is in the system
-    now; `ours` is None for that unit itself. A run is `duration` [s] long, rounded to periods.
+    now; `ours` is None for that unit itself. A run is `duration` [s] long, rounded to steps. `warnings`
+    counts those of all runs, and `kinds` has the first kinds of them.
     """
 
     def __init__(
@@ -69,8 +71,9 @@ class Bench:
         changes = scenario.file.experiment
         self.step_size = changes.step_size or system.file.experiment.step_size
         self.start = system.file.experiment.start_time
-        self.duration = max(1, round(duration / self.period)) * self.period
+        self.duration = max(1, round(duration / self.step_size)) * self.step_size
         self.warnings = 0
+        self.kinds = WarningKinds()
         self._scenario = scenario
 
     @property
@@ -80,19 +83,28 @@ class Bench:
 
     @contextlib.contextmanager
     def loaded(
-        self, drive: InputCourses, deadline: Deadline, substeps: int | None = None
+        self,
+        drive: InputCourses,
+        deadline: Deadline,
+        substeps: int | None = None,
+        longer: int = 0,
     ) -> Iterator[Simulation]:
-        """Yield a simulation of the unit alone, ready to step. Raises ConfigError, RunError."""
+        """Yield a simulation of the unit alone, ready to step. Raises ConfigError, RunError.
+
+        The unit is told the end of the duration as its stop time, as in a run, or that of so many periods
+        more; it must not be stepped beyond it.
+        """
         deadline.check()
         timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
         # by itself, whatever a file says: an FMU of another tool has a process of its own
         update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout, "isolation": None}
         entry = self.entry.model_copy(update=update)
-        with Simulation(self._alone(entry), self._driven(drive), isolation=self.isolation) as simulation:
+        system, scenario = self._alone(entry, longer), self._driven(drive)
+        with Simulation(system, scenario, isolation=self.isolation, to_stop=True) as simulation:
             try:
                 yield simulation
             finally:
-                self.warnings += sum(unit.warnings for unit in simulation.units.values())
+                self._note_warnings(simulation)
 
     def run(self, drive: InputCourses, deadline: Deadline, substeps: int | None = None) -> dict[str, Array]:
         """Return the outputs over the duration, each of shape (steps + 1,). Raises ConfigError, RunError."""
@@ -106,6 +118,12 @@ class Bench:
             columns[name] = map_.scale * results[f"{self.unit}.{name}"] + map_.offset
         return columns
 
+    def _note_warnings(self, simulation: Simulation) -> None:
+        for unit in simulation.units.values():
+            self.warnings += unit.warnings
+            for text, count in unit.warned.items():
+                self.kinds.add(text, count)
+
     def to_ours(self, name: str) -> Affine:
         """Return the map from a variable's own unit of measure to that in the present unit's interface."""
         return _between(self.interface, self.ours, name)
@@ -114,10 +132,11 @@ class Bench:
         """Return the inverse map, from the unit of measure in the present unit's interface."""
         return _between(self.ours, self.interface, name)
 
-    def _alone(self, entry: UnitEntry) -> System:
-        """Return a system of this unit only."""
+    def _alone(self, entry: UnitEntry, longer: int) -> System:
+        """Return a system of this unit only, whose runs last so many periods longer than the duration."""
+        stop_time = self.start + self.duration + longer * self.period
         experiment = self.system.file.experiment.model_copy(
-            update={"stop_time": self.start + self.duration, "step_size": self.step_size}
+            update={"stop_time": stop_time, "step_size": self.step_size}
         )
         file = SystemFile(
             name=self.system.file.name,

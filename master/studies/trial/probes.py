@@ -224,18 +224,23 @@ def _apart(values: Array, reference: Array) -> float:
 # ---- a unit that is there: its speed, and its state
 
 
+LONGEST_SPEED = 8192
+"""The most steps of a measurement of the speed."""
+
+
 def speed(unit: IsolatedUnit, at: float, step: float, seconds: float) -> Finding:
     """Measure the time of a step of `step` [s], from the time `at` [s] on: the fastest of many stretches.
 
-    `seconds` [s] is the duration of the measurement.
+    `seconds` [s] is the longest duration of the measurement; it does LONGEST_SPEED steps at most.
     """
-    count, best, end = 1, math.inf, time.perf_counter() + seconds
-    while True:
+    count, left, best, end = 1, LONGEST_SPEED, math.inf, time.perf_counter() + seconds
+    while count <= left:
         begin = time.perf_counter()
         unit.start_step(FmuSteps.equal(at, step, count))
         unit.finish_step()
         took = time.perf_counter() - begin
         at += count * step
+        left -= count
         best = min(best, took / count)
         if time.perf_counter() > end:
             break
@@ -248,6 +253,8 @@ def speed(unit: IsolatedUnit, at: float, step: float, seconds: float) -> Finding
 
 
 _STEPS = 25
+LONGEST_STATE = 2 * _STEPS
+"""The periods that a probe of the state needs."""
 
 
 def state(unit: IsolatedUnit, bench: Bench, at: float) -> Finding:

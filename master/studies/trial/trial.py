@@ -9,12 +9,13 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from ....cosim.analysis.signs import Pair, turned
-from ....cosim.errors import ConfigError, RunError, counted
+from ....cosim.errors import ConfigError, RunError
 from ....cosim.row_store import Array
 from ....cosim.swap.swap_file import Proposal
 from ....cosim.system.scenario import Scenario
 from ....cosim.system.system import System, UnitEntry
 from ...isolation.unit import IsolatedUnit
+from ...warned import warnings_text
 from . import probes
 from .bench import Bench, Deadline, InputCourses, OutOfTime, largest
 from .levels import Level, levels
@@ -58,7 +59,10 @@ def try_unit(
     """
     if not (duration > 0.0 and math.isfinite(duration)):
         raise ConfigError(f"--try {duration:g}: a trial takes some seconds")
-    ours = Bench(system, scenario, unit, system.file.units[unit], None, tuple(names), duration)
+    present = system.file.units[unit]
+    step_size = scenario.file.experiment.step_size or system.file.experiment.step_size
+    duration = _whole_turns(duration, step_size, (present, entry))
+    ours = Bench(system, scenario, unit, present, None, tuple(names), duration)
     given = levels(system, unit, (v for v in ours.interface.of_causality("input") if v.type in _MOVED))
     trial = _TrialRun(ours, given, Deadline(time.monotonic() + limit, answer))
     try:
@@ -70,6 +74,13 @@ def try_unit(
         trial.findings.append(probes.failed("start", error))
     findings = tuple(trial.findings)
     return Trial(ours.duration, findings, dataclasses.replace(trial.proposal, remarks=_remarks(findings)))
+
+
+def _whole_turns(duration: float, step_size: float, entries: Iterable[UnitEntry]) -> float:
+    """Return a duration [s] of whole periods of all entries: no last step is shorter than the others."""
+    periods = (entry.period or step_size for entry in entries)
+    turn = step_size * math.lcm(*(max(1, round(period / step_size)) for period in periods))
+    return max(1, round(duration / turn)) * turn
 
 
 def _remarks(findings: Sequence[Finding]) -> tuple[str, ...]:
@@ -110,7 +121,7 @@ class _TrialRun:
         self.findings += probes.values(self._seen, self._ours_seen, theirs)
         self.findings += probes.input_ends(theirs, self.given)
         self._look_inside()
-        warned = f", {counted(theirs.warnings, 'warning')}" if theirs.warnings else ""
+        warned = f", {warnings_text(theirs.warnings, theirs.kinds.counts)}" if theirs.warnings else ""
         text = f"{self._runs} runs of {theirs.duration:g} s{warned}"
         self.findings.insert(0, Finding("status", "note" if warned else "good", text))
 
@@ -292,14 +303,15 @@ class _TrialRun:
         """Probe state and speed of the unit, each after a quarter of a run."""
         bench = self.theirs
         step = bench.period / bench.entry.substeps
-        looks: dict[str, Callable[[IsolatedUnit, float], Finding]] = {
-            "state": lambda unit, at: probes.state(unit, bench, at),
-            "speed": lambda unit, at: probes.speed(unit, at, step, _SPEED),
+        looks: dict[str, tuple[int, Callable[[IsolatedUnit, float], Finding]]] = {
+            "state": (probes.LONGEST_STATE, lambda unit, at: probes.state(unit, bench, at)),
+            "speed": (probes.LONGEST_SPEED, lambda unit, at: probes.speed(unit, at, step, _SPEED)),
         }
+        quarter = max(1, round(0.25 * bench.duration / bench.step_size))
         drive = next((self._swept(self._base_for(n), n) for n in self.moved), {})
-        for what, look in looks.items():
-            with self._as_finding(what), bench.loaded(drive, self.deadline) as simulation:
-                simulation.step(max(1, simulation.steps_left // 4))
+        for what, (longer, look) in looks.items():
+            with self._as_finding(what), bench.loaded(drive, self.deadline, longer=longer) as simulation:
+                simulation.step(quarter)
                 unit = simulation.units[bench.unit]
                 assert isinstance(unit, IsolatedUnit)  # as the bench demands
                 self.findings.append(look(unit, simulation.time))

@@ -4,6 +4,8 @@
    One thing that a user of such an FMU may meet: -DBACKWARD full throttle at pedal 0, -DIN_KMH v in km/h, -DSTIFF steps
    of more than 6 ms do not converge, -DSTATE=1 saves its state, -DSTATE=2 says so and does not go back to it.
 
+   A step that goes beyond the stop time that it was told is an Error; with -DNEEDS_STOP so is an experiment without one.
+
    value references: 0 pedal [1], 1 F_brake [N], 2 slope [rad], 10 v [m/s], 11 a [m/s2], 12 P [W], 13 s [m],
    20 m_total [kg] */
 
@@ -22,7 +24,7 @@
 #endif
 
 enum { PEDAL, BRAKE, SLOPE, V = 10, A, P, S, MASS = 20, COUNT = 32 };
-typedef struct { double x[COUNT], force; } Vehicle;
+typedef struct { double x[COUNT], force, stop; } Vehicle;
 
 static const double G = 9.81, ROLLING = 0.014, VISCOUS = 10.0, TAU = 0.005, EFFICIENCY = 0.85, AUXILIARY = 40.0;
 static const double DRAG = 0.5 * 1.2 * 0.60, KMH = 3.6, MOST = 850.0, PI = 3.14159265358979323846;
@@ -93,6 +95,15 @@ static Vehicle *make(void) {
     return c;
 }
 
+static int setup(Vehicle *c, int defined, double stop) {
+    c->stop = defined ? stop : INFINITY;
+#ifdef NEEDS_STOP
+    if (!defined) return 3;
+#endif
+    return 0;
+}
+static int late(Vehicle *c, double end) { return end > c->stop; }
+
 static int get(Vehicle *c, const unsigned *r, size_t n, double *x) {
     show(c);
     for (size_t i = 0; i < n; i++) {
@@ -115,20 +126,20 @@ EXPORT void *fmi3InstantiateCoSimulation(const char *name, const char *token, co
                                          void *environment, void *log, void *update) { return make(); }
 EXPORT int fmi3GetFloat64(void *c, const unsigned *r, size_t n, double *x, size_t m) { return get(c, r, n, x); }
 EXPORT int fmi3SetFloat64(void *c, const unsigned *r, size_t n, const double *x, size_t m) { return set(c, r, n, x); }
-EXPORT int fmi3EnterInitializationMode(void *c, bool td, double t, double start, bool sd, double stop) { return 0; }
+EXPORT int fmi3EnterInitializationMode(void *c, bool td, double t, double start, bool sd, double stop) { return setup(c, sd, stop); }
 EXPORT int fmi3DoStep(void *c, double t, double h, bool s, bool *event, bool *terminate, bool *early, double *last) {
     *event = *terminate = *early = false;
     *last = t + h;
-    return advance(c, h);
+    return late(c, t + h) ? 3 : advance(c, h);
 }
 #else
 EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources,
                              const void *callbacks, int visible, int logging) { return make(); }
 EXPORT int fmi2GetReal(void *c, const unsigned *r, size_t n, double *x) { return get(c, r, n, x); }
 EXPORT int fmi2SetReal(void *c, const unsigned *r, size_t n, const double *x) { return set(c, r, n, x); }
-EXPORT int fmi2SetupExperiment(void *c, int td, double t, double start, int sd, double stop) { return 0; }
+EXPORT int fmi2SetupExperiment(void *c, int td, double t, double start, int sd, double stop) { return setup(c, sd, stop); }
 EXPORT int fmi2EnterInitializationMode(void *c) { return 0; }
-EXPORT int fmi2DoStep(void *c, double t, double h, int s) { return advance(c, h); }
+EXPORT int fmi2DoStep(void *c, double t, double h, int s) { return late(c, t + h) ? 3 : advance(c, h); }
 #endif
 #ifdef STATE
 #if FMI == 3

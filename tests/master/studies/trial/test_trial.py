@@ -40,9 +40,10 @@ def text(trial: Trial, what: str) -> str:
 
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_a_vehicle_that_reacts_as_ours_passes(tmp_path: Path, fmi: int) -> None:
+    """It is told a stop time in every run, and never stepped beyond it: both would be an error of its own."""
     names = {2: "canGetAndSetFMUstate", 3: "canGetAndSetFMUState"}
     declared = {'modelIdentifier="vehicle"': f'modelIdentifier="vehicle" {names[fmi]}="true"'}
-    trial = vehicle(tmp_path, fmi, "-DSTATE=1", **declared)
+    trial = vehicle(tmp_path, fmi, "-DSTATE=1", "-DNEEDS_STOP", **declared)
     assert trial.passed, trial.findings
     assert set(verdicts(trial).values()) == {"good"}
     assert {"throttle -> speed", "brake_force -> speed", "brake_force -> power"} <= set(verdicts(trial))
@@ -129,6 +130,25 @@ def test_a_trial_ends_in_time(tmp_path: Path) -> None:
     trial = mixed(tmp_path, 0, limit=0.4)
     assert trial.findings[-1].what == "time"
     assert trial.findings[-1].text == "ended after 0.4 s; what is not told was not tried"
+
+
+@pytest.mark.parametrize("stop", [0.29, 0.57, 1.13])
+def test_a_trial_of_any_duration_ends_at_the_stop_time_that_it_told(tmp_path: Path, stop: float) -> None:
+    """It is of whole periods, whatever those of the present unit are."""
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2, "-DNEEDS_STOP")
+    entry = UnitEntry(fmu=str(fmu), map=MapTables.model_validate(MAP), period=0.03, substeps=7)
+    trial = tried("scooter.vehicle", NAMES, entry, duration=stop)
+    assert trial.duration == pytest.approx(0.03 * round(stop / 0.03))
+    assert "returned Error" not in str(trial.findings), trial.findings
+    assert {"steps", "speed", "state", "status"} <= set(verdicts(trial))
+
+
+def test_the_warnings_of_a_trial_are_shown_with_their_text(tmp_path: Path) -> None:
+    trial = mixed(tmp_path, 11, duration=0.6)
+    runs, _, warned = text(trial, "status").partition(" of 0.6 s, ")
+    count, _, said = warned.partition(" warnings: ")
+    assert said == f"as it was told, 100 % (and {int(count) // 2 - 1} alike)"  # each beside a status
+    assert int(count) > 2 * 5 * int(runs.removesuffix(" runs"))
 
 
 def test_an_output_that_reacts_otherwise_is_told(tmp_path: Path) -> None:
