@@ -64,18 +64,19 @@ def test_without_an_initialization_there_is_nothing_to_terminate(unit: Fmi1Unit)
 
 # ---- Model Exchange
 
+NEAR = 'isolation = "none"\n'
+
 
 def run(fmu: Path, unit: str = "", scenario: str = "", **options: Any) -> Results:
     """A system of this FMU alone, for 3 s."""
     path = fmu.with_suffix(".toml")
     path.write_text(
-        f'name = "alone"\n[experiment]\nstop_time = 3.0\n[units.a]\nfmu = "{fmu.name}"\n'
-        f'isolation = "none"\n{unit}'
+        f'name = "alone"\n[experiment]\nstop_time = 3.0\n[units.a]\nfmu = "{fmu.name}"\n{unit or NEAR}'
     )
     if not scenario:
-        return simulate(path, **options)
+        return simulate(path, trust=True, **options)
     path.with_name("driven.toml").write_text(scenario)
-    return simulate(path, path.with_name("driven.toml"), **options)
+    return simulate(path, path.with_name("driven.toml"), trust=True, **options)
 
 
 def exchanged(tmp_path: Path, model: str = "oscillator", behavior: int = 0) -> Fmi1ModelExchange:
@@ -161,6 +162,21 @@ def test_an_enumeration_takes_the_names_of_its_items(tmp_path: Path) -> None:
     scenario = '[[stimulus]]\nto = "a.demand"\ntable = [[0.0, "level 2"], [1.0, "level 7"]]\n'
     results = run(fmu, "", scenario)
     assert set(results["a.seen"]) == {3.0, 8.0}
+
+
+def test_a_text_is_an_event_at_its_point(tmp_path: Path) -> None:
+    fmu = equations_fmu(tmp_path / "timer.fmu", "timer", 1)
+    first, second = (
+        run(
+            fmu,
+            f'isolation = "{isolation}"',
+            '[[stimulus]]\nto = "a.label"\ntable = [[0.0, "one"], [1.0, "two"]]\n',
+        )
+        for isolation in ("none", "process")
+    )
+    shown = list(first["a.shown"])
+    assert (shown[0], shown[100], shown[101], shown[-1]) == ("one", "one", "two", "two")
+    assert shown == list(second["a.shown"])
 
 
 @pytest.mark.parametrize("model", ["ball", "relay", "timer"])
