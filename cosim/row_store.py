@@ -11,7 +11,7 @@ import os
 import tempfile
 import threading
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -184,15 +184,19 @@ class RowStore:
         self._file: _RowFile | None = None
         self._path: Path | None = None
         self._head = b""
+        self._before: Callable[[], None] = lambda: None
         self._freed = self._in_memory = self._in_file = 0
         self._lock = threading.RLock()
 
     def __len__(self) -> int:
         return self._freed + self._in_memory
 
-    def keep_in(self, path: Path, head: bytes) -> None:
-        """Name the file that `save` makes: it begins with `head`, then the rows follow from the first on."""
-        self._path, self._head = path, head
+    def keep_in(self, path: Path, head: bytes, before: Callable[[], None] = lambda: None) -> None:
+        """Name the file that `save` makes: it begins with `head`, then the rows follow from the first on.
+
+        `before` is called before rows are written; it may raise OSError as writing them may.
+        """
+        self._path, self._head, self._before = path, head, before
 
     def append(self, rows: Array) -> None:
         """Keep rows, shape (n, width), which are not to be changed afterwards.
@@ -221,6 +225,7 @@ class RowStore:
             if more is not None and after == len(self):
                 chunks.append(more)
             try:
+                self._before()
                 for rows in chunks:
                     self._save(first, rows)
                     first += len(rows)

@@ -11,6 +11,7 @@ from ..cosim.plan.plan import Plan
 from ..cosim.results import rows_file
 from ..cosim.results.results import Results
 from ..cosim.results.run_folder import RunFolder
+from ..cosim.results.text_rows import TextRows
 from .engine.engine import Engine
 from .engine.row_keeper import RowKeeper
 
@@ -31,8 +32,10 @@ class KeptRun:
         try:
             if self._fills:
                 self.folder.check(about)
-            self.folder.begin(about, plan.columns)
-            engine.store.keep_in(self.folder.rows, rows_file.head(plan.clock, plan.columns, about))
+            self.folder.begin(about, (*plan.columns, *plan.text_columns))
+            head = rows_file.head(plan.clock, plan.columns, about)
+            texts = TextRows(self.folder.text_rows, plan.text_columns)
+            engine.store.keep_in(self.folder.rows, head, lambda: texts.save(engine.text_notes.new()))
             self._keeper = RowKeeper(engine)
             self.folder.saver = self._keeper.save_all
         except BaseException:

@@ -87,7 +87,7 @@ def prepare(
     doubtful = _doubts(plan, loaded)
     warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
     plan = dataclasses.replace(plan, warnings=warnings)
-    check_specs(read, driven, plan.columns)
+    check_specs(read, driven, (*plan.columns, *plan.text_columns))
     ordered_links(plan)  # refuses an algebraic loop
     named = {
         unit: fmu.path for unit, fmu in loaded.items() if unit not in fmus and not _is_a_name(read, unit)

@@ -278,7 +278,7 @@ class Simulation:
             manifest=self.manifest(),
             figure=figure_spec(self.system, self.scenario),
             metrics=metric_specs(self.system, self.scenario),
-            texts=self._engine.texts(),
+            texts=self._engine.text_notes.table(self._engine.k, self._engine.whole),
         )
 
     def write_can_log(self, path: str | Path) -> int:

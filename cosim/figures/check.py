@@ -17,7 +17,7 @@ from ..units.measure import Affine
 
 
 def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str) -> None:
-    """Check that a figure can be drawn from these variables.
+    """Check that a figure can be drawn from these variables; of a String there are no numbers.
 
     Raises ConfigError, which starts with `place`, that of the figure's table, and names the key.
     """
@@ -32,6 +32,8 @@ def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str)
 def _known(name: str, variables: Mapping[str, ResultVariable], place: str) -> ResultVariable:
     if name not in variables:
         raise ConfigError(f"{place}: no variable '{name}' is recorded{nearest(name, variables)}")
+    if variables[name].type == "String":
+        raise ConfigError(f"{place}: '{name}' is a String, which has no numbers to draw")
     return variables[name]
 
 

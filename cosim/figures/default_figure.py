@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ..errors import ConfigError
+from ..interface import Value
 from ..results.results import Results, ResultVariable
 from ..system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ..units.definition import defined
@@ -71,7 +72,8 @@ def default_spec(results: Results) -> FigureSpec:
     if not chosen and shade is not None:
         chosen, shade = [_panel([shade])], None
     if not chosen:
-        raise ConfigError("the results have no variable to draw")
+        texts = ": texts are not drawn" if results.texts else ""
+        raise ConfigError(f"the results have no variable to draw{texts}")
     drawn = {signal.name for panel in chosen for signal in panel.signals}
     left_out = [v.name for v in shown if v.name not in drawn]
     final = results.final()
@@ -93,8 +95,9 @@ def _note(about: str, texts: list[str]) -> str:
     return f"{about}: {', '.join(texts[:8])}{more}" if texts else ""
 
 
-def _constant(variable: ResultVariable, value: float | int | bool) -> str:
-    shown = f"{value:g}" if isinstance(value, float) else str(dict(variable.items).get(value, value))
+def _constant(variable: ResultVariable, value: Value) -> str:
+    items = (name for number, name in variable.items if number == value)
+    shown = f"{value:g}" if isinstance(value, float) else next(items, str(value))
     return f"{variable.name} = {shown} {pretty(variable.unit)}".rstrip()
 
 

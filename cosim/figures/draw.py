@@ -34,7 +34,7 @@ def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None 
     Raises ConfigError when the spec names a variable that is not there or measures something else.
     """
     spec = spec or default_spec(results)
-    check(spec, {v.name: v for v in results.variables}, "figure")
+    check(spec, {v.name: v for v in (*results.variables, *results.text_table.variables)}, "figure")
     heights = [panel_height(panel) for panel in spec.panels]
     with style():
         shown = title or spec.title or title_of(results)

@@ -281,6 +281,8 @@ def _drives(
         unit, name = network.input_of(entry.to, interfaces, f"{place}.to")
         variable, interface = interfaces[unit].variables[name], interfaces[unit]
         map_ = Affine()
+        if entry.unit is not None and variable.type == "String":
+            raise ConfigError(f"{place}.unit: {entry.to} is a String, which has no unit of measure")
         if entry.unit is not None:
             known = interface.units_of_measure
             given = End(f"the stimulus of {entry.to}", entry.unit, known, variable.difference)

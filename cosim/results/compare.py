@@ -15,8 +15,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ConfigError
 from ..row_store import Array
@@ -24,6 +26,7 @@ from ..units.conversion import conversion
 from ..units.definition import defined
 from ..units.measure import Affine
 from .results import Results, ResultVariable
+from .text_table import shown_text
 
 _SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
 
@@ -34,6 +37,7 @@ class VariableDifference:
 
     `difference` is the largest, at `time` [s]; `rms` is over all compared points, `range` max - min in `a`.
     It is infinite where one side is not a number, and NaN where nothing could be compared: `remark` says why.
+    So it is of texts, of which `time` is the first at which they differ.
     """
 
     name: str
@@ -115,11 +119,14 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
     if not (tolerance >= 0.0 and relative >= 0.0):
         raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
     grid = _Grid.of(a, b)
-    rows = [_compared(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b]
+    rows = [_compared(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b.names]
+    rows += [_compared_texts(a, b, name, grid) for name in a.texts if name in b.texts]
+    for name in (*(n for n in a.names if n in b.texts), *(n for n in a.texts if n in b.names)):
+        rows.append(_without_values(name, "", "a text on one side, numbers on the other"))
     return Comparison(
         rows=tuple(rows),
-        only_a=tuple(name for name in a.names if name not in b),
-        only_b=tuple(name for name in b.names if name not in a),
+        only_a=tuple(name for name in (*a.names, *a.texts) if name not in b),
+        only_b=tuple(name for name in (*b.names, *b.texts) if name not in a),
         points=len(grid.time),
         same_span=grid.same_span,
         tolerance=tolerance,
@@ -179,8 +186,17 @@ class _Grid:
             return values[: len(self.time)]
         if not variable.held:
             return np.interp(self.time, b.time, values)
-        previous = np.searchsorted(b.time, self.time + _SAME_TIME, side="right") - 1
-        return values[np.clip(previous, 0, len(values) - 1)]
+        return values[self._previous(b)]
+
+    def texts_of(self, b: Results, name: str) -> NDArray[Any]:
+        """Return the texts of a variable of `b` at the times of the grid, shape (n,)."""
+        texts = b[name]
+        return texts[: len(self.time)] if self.exact else texts[self._previous(b)]
+
+    def _previous(self, b: Results) -> NDArray[np.intp]:
+        """Return the rows of `b` that are valid at the times of the grid, shape (n,)."""
+        rows = np.searchsorted(b.time, self.time + _SAME_TIME, side="right") - 1
+        return np.clip(rows, 0, len(b) - 1)
 
 
 def _compared(
@@ -204,6 +220,20 @@ def _compared(
     equal = math.isfinite(largest) and largest <= tolerance + relative * span
     rms = float(np.sqrt(np.mean(apart**2))) if math.isfinite(largest) else math.inf
     return VariableDifference(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
+
+
+def _compared_texts(a: Results, b: Results, name: str, grid: _Grid) -> VariableDifference:
+    x, y = a[name][grid.rows], grid.texts_of(b, name)
+    if not len(x):
+        return _without_values(name, "", "no common time")
+    apart = np.flatnonzero(x != y)
+    row = _without_values(name, "", "")
+    if not len(apart):
+        return dataclasses.replace(row, equal=True)
+    first = int(apart[0])
+    texts = f"{shown_text(x[first])} and {shown_text(y[first])}"
+    said = f"{texts}; they differ at {len(apart)} of {len(x)} times"
+    return dataclasses.replace(row, time=float(grid.time[first]), remark=said)
 
 
 def _without_values(name: str, unit: str, remark: str) -> VariableDifference:

@@ -89,6 +89,8 @@ def _check_reduction(part: Reduction, variables: Mapping[str, ResultVariable], p
     for name in (part.signal, part.minus):
         if name is not None and name not in variables:
             raise ConfigError(f"{place}: no variable '{name}' is recorded{nearest(name, variables)}")
+        if name is not None and variables[name].type == "String":
+            raise ConfigError(f"{place}: '{name}' is a String, which has no numbers to reduce")
     if isinstance(part.value, str):
         names = [name for _, name in variables[part.signal].items]
         if part.value not in names:

@@ -24,6 +24,7 @@ from .formats.suffixes import CSV, FORMATS, format_of
 from .manifest import read_manifest, write_manifest
 from .rows_file import ROWS_NAME
 from .rows_file import read as read_rows
+from .text_rows import TEXT_ROWS_NAME, read_text_rows
 from .text_table import TextTable, read_texts, write_texts
 from .variable import ResultVariable
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..errors import Recorded
+    from ..interface import Value
     from ..system.figure_spec import FigureSpec
     from ..system.metric_spec import MetricSpec
     from .metrics import Metric
@@ -188,31 +190,38 @@ class Results:
         self.variable(name)
         return self._table.column(self._columns[name])
 
-    def final(self) -> dict[str, float | int | bool]:
-        """Return the last value of each variable, as the type that it has; nothing without a row."""
+    def final(self) -> dict[str, Value]:
+        """Return the last value of each variable, as the type that it has, then the texts.
+
+        Nothing without a row.
+        """
         if not len(self):
             return {}
         last = self._table.rows(len(self) - 1, len(self))[0].tolist()
         kinds = {"Real": float, "Boolean": bool}
-        return {v.name: kinds.get(v.type, int)(x) for v, x in zip(self.variables, last, strict=True)}
+        numbers = {v.name: kinds.get(v.type, int)(x) for v, x in zip(self.variables, last, strict=True)}
+        return numbers | dict(zip(self.texts, self.text_table.final(), strict=False))
 
     def part(self, rows: NDArray[np.bool_] | slice, names: Sequence[str]) -> Results:
         """Return the results of some rows and variables, in memory.
 
-        `rows` is a slice, or a choice of shape (n,). Raises ConfigError as `variable` does.
+        `rows` is a slice, or a choice of shape (n,); `names` may be those of texts too. Raises ConfigError as
+        `variable` does.
         """
+        texts = self.text_table.part(rows, [name for name in names if name in self.texts], len(self))
+        names = [name for name in names if name not in self.texts]
         variables = [self.variable(name) for name in names]
         if isinstance(rows, slice) and rows.step is None:
             start, stop, _ = rows.indices(len(self))
             data = self._table.part(start, stop, [self._columns[name] for name in names])
-            return Results(self.times(start, stop), data, variables, self.manifest)
+            return Results(self.times(start, stop), data, variables, self.manifest, texts=texts)
         columns = [self.column(name)[rows] for name in names]
         time = self.time[rows]
         data = np.column_stack(columns) if columns else np.empty((len(time), 0))
-        return Results(time, data, variables, self.manifest)
+        return Results(time, data, variables, self.manifest, texts=texts)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the rows into a file, in the format that its suffix names, as .csv does.
+        """Write the rows into a file, in the format that its suffix names, as .csv does; texts beside it.
 
         Raises ConfigError for another suffix, and where the file cannot be written; then none is left.
         """
@@ -224,9 +233,10 @@ class Results:
         return self._save(Path(path), CSV)
 
     def _save(self, path: Path, form: Format) -> Path:
+        # the texts first: where the rows of a run stand, its texts do
+        write_texts(path, self.text_table, self.time if self.texts else np.empty(0))
         with replacing(path) as file:
             form.write(self, file)
-        write_texts(path, self.text_table, self.time if self.texts else np.empty(0))
         return path
 
     def write(self, folder: str | os.PathLike[str]) -> Path:
@@ -305,7 +315,8 @@ def _of_rows(path: Path) -> Results:
     manifest |= {"steps": len(saved.time), "status": status(path.parent, manifest)}
     for counted_at_the_end in ("saturations", "loop_seconds"):
         manifest.pop(counted_at_the_end, None)
-    return Results(saved.time, saved.data, saved.variables, manifest)
+    texts = read_text_rows(path.with_name(TEXT_ROWS_NAME), len(saved.time))
+    return Results(saved.time, saved.data, saved.variables, manifest, texts=texts)
 
 
 def _table(data: ArrayLike) -> Table:

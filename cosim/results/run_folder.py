@@ -22,6 +22,7 @@ from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
 from .manifest import manifest_text, read_manifest, write_manifest
 from .results import CSV_NAME, Results
 from .rows_file import ROWS_NAME
+from .text_rows import TEXT_ROWS_NAME
 from .text_table import texts_path
 from .variable import ResultVariable
 
@@ -65,13 +66,18 @@ class RunFolder(FolderLock):
         """The file of the rows while the run lives."""
         return self.path / ROWS_NAME
 
+    @property
+    def text_rows(self) -> Path:
+        """The file of their texts."""
+        return self.path / TEXT_ROWS_NAME
+
     def begin(self, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
         """Remove the files of an earlier run, and let run.json say that this one is running.
 
         Raises ConfigError with the reason where that is impossible.
         """
         try:
-            for name in (*FILES, ROWS_NAME):
+            for name in (*FILES, ROWS_NAME, TEXT_ROWS_NAME):
                 (self.path / name).unlink(missing_ok=True)
         except OSError as error:
             said = f"{error.strerror}: {error.filename}"
@@ -83,14 +89,18 @@ class RunFolder(FolderLock):
         write_manifest(self.path / MANIFEST_NAME, about, variables)
 
     def finish(self, results: Results) -> None:
-        """Write results.csv and run.json, then remove the rows. Raises ConfigError where a disk refuses."""
+        """Write results.csv, its texts and run.json, then remove the rows.
+
+        Raises ConfigError where a disk refuses.
+        """
         results.write(self.path)
         self.discard_rows()
 
     def discard_rows(self) -> None:
-        """Remove the file of the rows, which other files hold now."""
-        with contextlib.suppress(OSError):  # Windows removes no file that is open: the next run does
-            self.rows.unlink(missing_ok=True)
+        """Remove the files of the rows and their texts, which other files hold now."""
+        for path in (self.rows, self.text_rows):
+            with contextlib.suppress(OSError):  # Windows removes no file that is open: the next run does
+                path.unlink(missing_ok=True)
 
     @property
     def was_killed(self) -> bool:

@@ -1,15 +1,18 @@
 """The texts of a run: a table beside the numbers, of the rows in which a text differs from the row before.
 
-It is the file results.texts.csv beside results.csv: the header `time,unit.variable,...`, then a line for
-each such row.
+It is the file results.texts.csv beside results.csv: the header `"time","unit.variable",...`, then a line for
+each such row. All but the times stand in double quotes. Beside another file, x.csv, it is x.texts.csv; a file
+of that name which does not begin so is somebody's own, and stays as it is.
 """
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import math
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +23,14 @@ from ..row_store import Array
 from ..writing import replacing
 from .variable import ResultVariable
 
+Change = tuple[int, tuple[str, ...]]
+"""A row and the texts of all variables from it on."""
+
+_BEGIN = b'"time",'
+_OF_A_RUN = "results.texts.csv"
+_SHOWN = 60  # characters of a text in a line
+_LONGEST = 2**31 - 1  # characters: the csv module counts them in a C long
+
 
 class TextTable:
     """The texts of n rows of some variables of type String.
@@ -28,9 +39,7 @@ class TextTable:
     row 0 where there is any row.
     """
 
-    def __init__(
-        self, variables: Sequence[ResultVariable] = (), changes: Sequence[tuple[int, tuple[str, ...]]] = ()
-    ) -> None:
+    def __init__(self, variables: Sequence[ResultVariable] = (), changes: Sequence[Change] = ()) -> None:
         self.variables, self.changes = tuple(variables), tuple(changes)
 
     @property
@@ -46,6 +55,33 @@ class TextTable:
             found[row:] = texts[j]
         return found
 
+    def final(self) -> tuple[str, ...]:
+        """Return the last text of each variable; nothing without a row."""
+        return self.changes[-1][1] if self.changes else ()
+
+    def part(self, rows: NDArray[np.bool_] | slice, names: Sequence[str], count: int) -> TextTable:
+        """Return the table of some variables and some of the first `count` rows.
+
+        `rows` is a slice, or a choice of shape (count,).
+        """
+        if not names:
+            return TextTable()
+        places = [self.names.index(name) for name in names]
+        begins = np.array([row for row, _ in self.changes], dtype=np.int64)
+        valid = np.searchsorted(begins, np.arange(count)[rows], side="right") - 1
+        changes: list[Change] = []
+        for k in np.flatnonzero(np.diff(valid, prepend=-1)).tolist():
+            texts = tuple(self.changes[valid[k]][1][j] for j in places)
+            if not changes or changes[-1][1] != texts:
+                changes.append((k, texts))
+        return TextTable([self.variables[j] for j in places], changes)
+
+
+def shown_text(text: str) -> str:
+    """Return a text in quotes, without characters that steer a terminal, cut where it is long."""
+    shown = repr(text)
+    return shown if len(shown) <= _SHOWN else f"{shown[: _SHOWN - 3]}..."
+
 
 def texts_path(path: Path) -> Path:
     """Return the path of the texts that stand beside a file of results."""
@@ -55,9 +91,17 @@ def texts_path(path: Path) -> Path:
 def write_texts(path: Path, table: TextTable, times: Array) -> None:
     """Write the table beside a file of results with `times` [s], shape (n,); without texts, remove the file.
 
-    Raises ConfigError where the disk refuses.
+    Raises ConfigError where the disk refuses, and where a file that is no table of texts would be replaced.
     """
     beside = texts_path(path)
+    ours = _is_table(beside)
+    if not table.variables and not ours:
+        return
+    if not ours and beside.exists():
+        raise ConfigError(
+            f"{beside}: the texts of {path.name} go there, and the file that is there holds no texts of "
+            "results; choose another name"
+        )
     if not table.variables:
         try:
             beside.unlink(missing_ok=True)
@@ -80,11 +124,11 @@ def read_texts(path: Path, times: Array) -> TextTable:
     Raises ConfigError naming file and line of a time that the results do not have.
     """
     beside = texts_path(path)
-    if not beside.is_file():
+    if not _is_table(beside):
         return TextTable()
     lines: list[int] = []
     try:
-        with beside.open(encoding="utf-8", newline="") as file:
+        with _texts_of_any_length(), beside.open(encoding="utf-8", newline="") as file:
             reader = csv.reader(file, strict=True)
             header = next(reader, ["time"])
             rows = []
@@ -96,7 +140,7 @@ def read_texts(path: Path, times: Array) -> TextTable:
     except (csv.Error, UnicodeDecodeError) as error:
         raise ConfigError(f"{beside}: is no table of texts: {error}") from error
     variables = [ResultVariable(name, type="String", variability="discrete") for name in header[1:]]
-    changes: list[tuple[int, tuple[str, ...]]] = []
+    changes: list[Change] = []
     for line, cells in zip(lines, rows, strict=True):
         row = _row_of(cells, len(header), times)
         if row is None or (changes and row <= changes[-1][0]):
@@ -106,6 +150,31 @@ def read_texts(path: Path, times: Array) -> TextTable:
             )
         changes.append((row, tuple(cells[1:])))
     return TextTable(variables, changes)
+
+
+def _is_table(path: Path) -> bool:
+    """Return True for a file that holds the texts of results."""
+    if path.name == _OF_A_RUN:
+        return path.is_file()
+    try:
+        with path.open("rb") as file:
+            return file.read(len(_BEGIN)) == _BEGIN
+    except OSError:
+        return False
+
+
+_limit = threading.Lock()
+
+
+@contextlib.contextmanager
+def _texts_of_any_length() -> Iterator[None]:
+    """Lift the limit of 128 KiB for a cell, which the csv module has for the whole process."""
+    with _limit:
+        before = csv.field_size_limit(_LONGEST)
+        try:
+            yield
+        finally:
+            csv.field_size_limit(before)
 
 
 def _row_of(cells: list[str], width: int, times: Array) -> int | None:

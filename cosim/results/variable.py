@@ -9,7 +9,7 @@ import dataclasses
 class ResultVariable:
     """A column of results: its name `unit.variable` and what its FMU declares of it.
 
-    `type` is Real, Integer, Boolean or Enumeration; `unit` a name of a unit of measure ("" for none);
+    `type` is Real, Integer, Boolean, Enumeration or String; `unit` a name of a unit of measure ("" for none);
     `items` the (value, name) pairs of an enumeration; `difference` says that it is a difference of absolute
     quantities, as of two temperatures.
     """

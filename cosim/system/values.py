@@ -50,7 +50,7 @@ def of_type(value: Any, variable: VariableInfo, place: str) -> Value:
     value = value.item() if isinstance(value, np.generic) else value
     if variable.type == "String":
         if not isinstance(value, str):
-            raise ConfigError(f"{place}: {name} is a String, not {brief(value)}")
+            raise ConfigError(f"{place}: {name} is a String, not {brief(value)}: a text stands in quotes")
         if "\0" in value or any("\ud800" <= c <= "\udfff" for c in value):
             raise ConfigError(f"{place}: {name} = {brief(value)}: no C text holds a NUL or half a character")
         return value

@@ -36,7 +36,8 @@ def compare(
     first, second = Results.read(a), Results.read(b)
     if signals:
         first = chosen(first, signals)
-        second = second.part(slice(None), [name for name in first.names if name in second])
+        common = [name for name in (*first.names, *first.texts) if name in second]
+        second = second.part(slice(None), common)
     found = comparing.compare(first, second, tolerance, relative)
     if plot is not None:
         from ...cosim.figures import draw as figures

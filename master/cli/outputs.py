@@ -138,12 +138,13 @@ def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
 
 
 def write_results(folder: RunFolder, results: Results) -> list[str]:
-    """Write results.csv and run.json, and return their names.
+    """Write results.csv and run.json, and texts beside them, and return their names.
 
-    If the two cannot be written they go to a temporary folder, and RunError names it.
+    If they cannot be written they go to a temporary folder, and RunError names it.
     """
     from ...cosim.errors import ConfigError, RunError
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
+    from ...cosim.results.text_table import texts_path
 
     try:
         folder.finish(results)
@@ -151,7 +152,8 @@ def write_results(folder: RunFolder, results: Results) -> list[str]:
         rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
         results.write(rescue)
         raise RunError(f"{error}\nthe results are kept in {rescue}") from error
-    return [CSV_NAME, MANIFEST_NAME]
+    texts = [texts_path(folder.path / CSV_NAME).name] if results.texts else []
+    return [CSV_NAME, *texts, MANIFEST_NAME]
 
 
 def write_figure(folder: Path, results: Results) -> list[str]:

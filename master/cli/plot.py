@@ -48,14 +48,15 @@ def chosen(results: Results, patterns: list[str]) -> Results:
     from ...cosim.interface import fitting
 
     found: set[str] = set()
+    names = (*results.names, *results.texts)
     for pattern in patterns:
-        fits = fitting(pattern, results.names)
+        fits = fitting(pattern, names)
         if not fits:
             raise ConfigError(
-                f"--signals {pattern}: the results have no such variable{nearest(pattern, results.names)}"
+                f"--signals {pattern}: the results have no such variable{nearest(pattern, names)}"
             )
         found.update(fits)
-    return results.part(slice(None), [name for name in results.names if name in found])
+    return results.part(slice(None), [name for name in names if name in found])
 
 
 def spec_of(results: Results) -> FigureSpec | None:

@@ -196,6 +196,8 @@ def _write(
         keeping.close()
         if interrupts.number:
             finished.error = finished.error or Interrupted(interrupts.number)
+        elif order.figure and not finished.results.variables:
+            finished.remarks.append("no figure: the run records no numbers")
         elif order.figure and len(finished.results) > 1:
             finished.files += write_figure(folder.path, finished.results)
     except ConfigError as error:

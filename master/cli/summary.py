@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
+from ...cosim.results.text_table import shown_text
 from . import interrupts
 from .console import number, print_fields, print_table
 
 if TYPE_CHECKING:
+    from ...cosim.interface import Value
+    from ...cosim.results.variable import ResultVariable
     from .run import FinishedRun
 
 _FINAL_VALUES = 8
@@ -117,11 +120,17 @@ def _final_values(finished: FinishedRun) -> list[tuple[str, str]]:
     """Return the last values of a few outputs, first of those that other units receive."""
     results = finished.results
     sent = {connection.source for connection in finished.simulation.system.file.connect}
-    outputs = [v for v in results.variables if v.causality == "output"]
+    described = (*results.variables, *results.text_table.variables)
+    outputs = [v for v in described if v.causality == "output"]
     outputs.sort(key=lambda v: v.name not in sent)
-    rows, final = [], results.final()
-    for v in outputs[:_FINAL_VALUES]:
-        value = final[v.name]
-        text = dict(v.items).get(int(value), str(value)) if v.items else number(value)
-        rows.append((v.name, text if v.unit in ("", "1") else f"{text} {v.unit}"))
-    return rows
+    final = results.final()
+    return [(v.name, _shown(v, final[v.name])) for v in outputs[:_FINAL_VALUES]] if final else []
+
+
+def _shown(variable: ResultVariable, value: Value) -> str:
+    """Return a value as a line shows it: with its unit of measure, the name of an item, a text in quotes."""
+    if isinstance(value, str):
+        return shown_text(value)
+    items = (name for number, name in variable.items if number == value)
+    text = next(items, str(value)) if variable.items else number(value)
+    return text if variable.unit in ("", "1") else f"{text} {variable.unit}"

@@ -23,12 +23,12 @@ from ...cosim.errors import RunError
 from ...cosim.plan.plan import MessagePlan, Plan
 from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
-from ...cosim.results.text_table import TextTable
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ..unit import Unit, floats
 from .profile import Profile
 from .schedule import Action, Waiting, schedule, waiting
+from .text_notes import TextNotes
 
 Act = Callable[[int], None]
 """A function of k that does an action in step k."""
@@ -161,8 +161,8 @@ class Engine:
     """A plan with its units, and the steps done so far; a subclass does the steps of a chunk in `_run`.
 
     `k` counts the steps done, `memory` has shape (size,), `chunks` counts the chunks begun, and `whole` is
-    False within one and from an error on. `store` has the recorded rows, those of a long run in a file;
-    `text_changes` are the rows in which a recorded text changed, with the numbers of all of them.
+    False within one and from an error on. `store` has the recorded rows, those of a long run in a file,
+    `text_notes` their texts.
     """
 
     name: str
@@ -182,7 +182,7 @@ class Engine:
         self.view = floats(self.memory)
         self.columns = np.array(plan.column_slots, dtype=np.intp)
         self.store = RowStore(len(self.columns))
-        self.text_changes: list[tuple[int, tuple[float, ...]]] = []
+        self.text_notes = TextNotes(plan, self.view)
         self.chunks = 0
         self._most = max(_LEAST, _ROOM // (8 * (len(self.columns) + len(plan.drives) + 1)))
         self._chunk = min(_FIRST, self._most)
@@ -309,16 +309,10 @@ class Engine:
         of_unit = action.kind in ("take", "begin", "end", "publish")
         return of_unit and self.turns[action.index].unit.apart
 
-    def note(self, k: int) -> None:
-        """Note the numbers of the texts of row k, where one differs from the row before."""
-        numbers = self._text_numbers()
-        if not self.text_changes or self.text_changes[-1][1] != numbers:
-            self.text_changes.append((k, numbers))
-
     def act(self, action: Action) -> Act:
         """Return the function that does an action of a message or a unit."""
         if action.kind == "note":
-            return self.note
+            return self.text_notes.note
         if action.kind in ("send", "deliver"):
             sender = self.senders[action.index]
             return sender.send if action.kind == "send" else sender.deliver
@@ -373,19 +367,6 @@ class Engine:
         except RunError as error:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         self.whole = True
-
-    def texts(self) -> TextTable:
-        """Return the texts of the recorded rows, as `recorded` does."""
-        changes = [change for change in self.text_changes if change[0] < self.k]
-        now = self._text_numbers()
-        if self.whole and self.plan.text_columns and (not changes or changes[-1][1] != now):
-            changes.append((self.k, now))
-        texts = self.plan.texts
-        found = [(k, tuple(texts.text(n) for n in numbers)) for k, numbers in changes]
-        return TextTable(self.plan.text_columns, found)
-
-    def _text_numbers(self) -> tuple[float, ...]:
-        return tuple(self.view[slot] for slot in self.plan.text_slots)
 
     def recorded(self) -> Table:
         """Return the rows so far, shape (k, columns), and unless the last step failed one more for now.

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from evcosim import ConfigError, Results, Simulation, simulate
+from evcosim.cosim.results.run_folder import recover
 from evcosim.master.keeping import ended
+from support.c_fmu import typed_fmu
 
 
 def status(folder: Path) -> str:
@@ -42,6 +45,31 @@ def test_rows_are_there_while_it_goes_on(tmp_path: Path, engine: str) -> None:
         assert np.array_equal(saved.data, sim.results.data[:50])
         assert saved.time.tolist() == sim.results.time[:50].tolist()
     assert (status(tmp_path), len(Results.read(tmp_path))) == ("stopped", 51)
+
+
+@pytest.mark.parametrize("isolation", ["none", "process"])
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_no_row_is_on_the_disk_without_its_texts(tmp_path: Path, engine: str, isolation: str) -> None:
+    fmu = typed_fmu(tmp_path / "typed.fmu", 2)
+    options = {"engine": engine, "isolation": isolation, "step_size": 0.1, "stop_time": 2.0}
+    with Simulation(fmu, inputs={"text_in": "first"}, **options) as sim:
+        sim.keep_in(tmp_path / "out")
+        sim.step(3)
+        sim.override("fmu.text_in", "then")
+        sim.step(3)
+        sim._engine.store.save()
+        saved, now = Results.read(tmp_path / "out"), sim.results
+        assert saved.texts == now.texts == ("fmu.text_in", "fmu.text")
+        for name in saved.texts:
+            assert saved[name].tolist() == now[name][:6].tolist()
+        assert saved["fmu.text_in"].tolist() == ["first"] * 3 + ["then"] * 3
+        shutil.copytree(tmp_path / "out", tmp_path / "killed")
+    left = {path.name for path in (tmp_path / "out").iterdir()}
+    assert left == {"results.csv", "results.texts.csv", "run.json"}
+    recovered = recover(tmp_path / "killed")
+    assert {path.name for path in (tmp_path / "killed").iterdir()} == left
+    assert recovered["fmu.text"].tolist() == Results.read(tmp_path / "killed")["fmu.text"].tolist()
+    assert recovered["fmu.text"].tolist() == now["fmu.text"][:6].tolist()
 
 
 @pytest.mark.parametrize("engine", ["python", "compiled"])

@@ -192,10 +192,10 @@ _ITEMS = (("off", 1), ("on", 2), ("broken", 4))
 
 
 def typed_fmu(path: Path, fmi: int) -> Path:
-    """The unit of sources/mixed.c with inputs of all types but Real, in FMI 2.0 or 3.0.
+    """The unit of sources/mixed.c with inputs of all types but Real, in FMI 1.0, 2.0 or 3.0.
 
     `flag` is the negation of `flag_in`, `text` after a step is `text_in`; `state_in` has the items off = 1,
-    on = 2 and broken = 4.
+    on = 2 and broken = 4. In FMI 1.0, whose enumerations count from 1 on, there is no `state_in`.
     """
     whole = ("state_in", 30 if fmi == 3 else 3, "input", "Enumeration", 'declaredType="State" start="1"')
     count = ("count_in", 20 if fmi == 3 else 9, "input", "Int8" if fmi == 3 else "Integer", 'start="0"')
@@ -207,6 +207,8 @@ def typed_fmu(path: Path, fmi: int) -> Path:
         whole,
         count,
     ]
+    if fmi == 1:
+        return _typed_1(path, [variable for variable in variables if variable is not whole])
     items = "".join(f'<Item name="{name}" value="{value}"/>' for name, value in _ITEMS)
     lines, structure = [], ""
     for i, (name, reference, causality, kind, rest) in enumerate(variables, 1):
@@ -239,3 +241,14 @@ def typed_fmu(path: Path, fmi: int) -> Path:
     )
     flags = (f"-DFMI={fmi}", "-DBEHAVIOR=0", "-DMODEL=mixed")
     return compile_fmu(path, SOURCES / "mixed.c", description, "mixed", fmi, flags)
+
+
+def _typed_1(path: Path, variables: Sequence[tuple[str, int, str, str, str]]) -> Path:
+    lines = [
+        f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" '
+        f'variability="discrete"><{kind} {rest}/></ScalarVariable>'
+        for name, reference, causality, kind, rest in variables
+    ]
+    description = _mixed_1().replace(_scalars(1), "".join(lines))
+    flags = ("-DFMI=1", "-DBEHAVIOR=0", "-DMODEL=mixed")
+    return compile_fmu(path, SOURCES / "mixed.c", description, "mixed", 1, flags)

@@ -3,12 +3,14 @@
 import dataclasses
 from functools import partial
 
+import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.figures.check import check_specs, panel_conversion
+from evcosim.cosim.figures.check import check, check_specs, panel_conversion
 from evcosim.cosim.figures.draw import draw
-from evcosim.cosim.results.results import ResultVariable
+from evcosim.cosim.results.results import Results, ResultVariable
+from evcosim.cosim.results.text_table import TextTable
 from evcosim.cosim.system.figure_spec import FigureSpec
 from evcosim.cosim.system.scenario import load_scenario, scenario_names
 from evcosim.cosim.system.selection import figure_spec
@@ -42,6 +44,21 @@ def test_only_an_enumeration_shades() -> None:
     spec = FigureSpec.model_validate({"shade": "vehicle.speed", "panels": [{"signals": ["ecu.state"]}]})
     with pytest.raises(ConfigError, match=r"'vehicle.speed' is not an enumeration, so it has no states"):
         draw(scooter(), spec)
+
+
+def test_a_text_is_not_drawn() -> None:
+    variables = {"ecu.mode": ResultVariable("ecu.mode", type="String")}
+    panel = FigureSpec.model_validate({"panels": [{"signals": ["ecu.mode"]}]})
+    with pytest.raises(ConfigError, match=r"^here.panels 1.signals 1: 'ecu.mode' is a String, which has no"):
+        check(panel, variables, "here")
+    table = TextTable(tuple(variables.values()), [(0, ("on",))])
+    results = Results([0.0, 1.0], np.empty((2, 0)), [], texts=table)
+    with pytest.raises(
+        ConfigError, match=r"^figure.panels 1.signals 1: 'ecu.mode' is a String, which has no"
+    ):
+        draw(results, panel)
+    with pytest.raises(ConfigError, match=r"^the results have no variable to draw: texts are not drawn$"):
+        draw(results)
 
 
 def test_the_unit_of_a_panel_is_that_of_its_lines() -> None:

@@ -10,6 +10,7 @@ from hypothesis.extra import numpy as arrays
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.compare import compare, difference, worst
 from evcosim.cosim.results.results import Results, ResultVariable
+from evcosim.cosim.results.text_table import TextTable
 
 SPEED = ResultVariable("vehicle.speed", "m/s")
 STATE = ResultVariable("ecu.state", type="Enumeration", variability="discrete")
@@ -159,3 +160,41 @@ def test_a_difference_of_temperatures_has_no_zero_to_convert() -> None:
         assert compare(one([5.0], kelvin), one([5.0], celsius)).equal
     absolute = [ResultVariable("cell.temperature", unit) for unit in ("K", "degC")]
     assert compare(one([278.15], absolute[0]), one([5.0], absolute[1])).equal
+
+
+def states(*texts: str, step: float = 1.0) -> Results:
+    """Results of a speed, and of a text in each row."""
+    table = TextTable([ResultVariable("ecu.mode", type="String")], [(k, (x,)) for k, x in enumerate(texts)])
+    times = step * np.arange(len(texts))
+    return Results(times, np.zeros((len(texts), 1)), [SPEED], texts=table)
+
+
+@given(
+    st.lists(st.text(max_size=2), min_size=3, max_size=3),
+    st.lists(st.text(max_size=2), min_size=3, max_size=3),
+)
+def test_texts_are_equal_where_all_are(x: list[str], y: list[str]) -> None:
+    found = compare(states(*x), states(*y), tolerance=1e9)
+    assert found.equal == (x == y)
+    assert [row.name for row in found.rows] == ["vehicle.speed", "ecu.mode"]
+    assert worst(found.rows, 5) == ["vehicle.speed"]
+
+
+def test_texts_that_differ_are_said() -> None:
+    found = compare(states("off", "on", "on"), states("off", "on", "fault"))
+    assert not found.equal
+    (_, (cells,)) = found.table(all_rows=False)
+    assert cells == ("ecu.mode", "", "-", "2", "-", "-", "'on' and 'fault'; they differ at 1 of 3 times")
+    fine = states("off", "off", "on", "on", "on", step=0.5)
+    assert compare(states("off", "on", "on"), fine).equal
+
+
+def test_a_text_on_one_side_is_named() -> None:
+    text, number = states("a", "b"), one([1.0, 2.0], ResultVariable("ecu.mode"))
+    both = compare(text, number)
+    assert [(row.name, row.equal, row.remark) for row in both.rows] == [
+        ("ecu.mode", False, "a text on one side, numbers on the other")
+    ]
+    assert (both.only_a, both.only_b) == (("vehicle.speed",), ())
+    assert compare(text, one([1.0, 2.0])).only_a == ("ecu.mode",)
+    assert compare(one([1.0, 2.0]), text).only_b == ("ecu.mode",)

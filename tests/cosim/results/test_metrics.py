@@ -218,6 +218,12 @@ def test_a_metric_that_cannot_come_out_is_refused_before_the_run(spec: dict, mes
         check([MetricSpec(name="it", **spec)], {v.name: v for v in VARIABLES}, "scooter.toml")
 
 
+def test_a_text_has_no_metric() -> None:
+    spec = MetricSpec(name="it", signal="ecu.mode")
+    with pytest.raises(ConfigError, match=r"metric 'it': 'ecu.mode' is a String, which has no numbers"):
+        check([spec], {"ecu.mode": ResultVariable("ecu.mode", type="String")}, "scooter.toml")
+
+
 def test_a_name_stands_once() -> None:
     spec = MetricSpec(name="it", signal="ecu.state")
     with pytest.raises(ConfigError, match="metric 'it' is there twice"):

@@ -15,6 +15,7 @@ from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures.draw import draw
 from evcosim.cosim.results.formats import csv
 from evcosim.cosim.results.results import PIECE, Results, ResultVariable
+from evcosim.cosim.results.text_table import TextTable
 from evcosim.cosim.row_store import Grid, RowStore
 from evcosim.cosim.system.figure_spec import FigureSpec
 from evcosim.cosim.system.metric_spec import MetricSpec
@@ -188,6 +189,20 @@ def test_results_read_the_same_from_a_file(tmp_path: Path) -> None:
         part = stored.part(rows, ["a.b", "a.x"])
         assert np.array_equal(part.data, kept.data[rows][:, [2, 0]])
         assert np.array_equal(part.time, kept.time[rows])
+
+
+def test_texts_stay_in_a_part_and_are_among_the_last_values(tmp_path: Path) -> None:
+    table = TextTable([ResultVariable("a.s", type="String")], [(0, ("on",)), (3, ("off",))])
+    results = Results(0.1 * np.arange(5), np.zeros((5, WIDTH)), VARIABLES, texts=table)
+    assert results.final() == {"a.x": 0.0, "a.n": 0, "a.b": False, "a.s": "off"}
+    part = results.part(slice(2, None), ["a.s", "a.b"])
+    assert (part.names, part.texts) == (("a.b",), ("a.s",))
+    assert part["a.s"].tolist() == ["on", "off", "off"]
+    assert results.part(slice(None), results.names).texts == ()
+    only = results.part(results.time > 0.25, ["a.s"])
+    assert only.save(tmp_path / "only.csv").read_text() == "time\n0.30000000000000004\n0.4\n"
+    assert Results.read(tmp_path / "only.csv")["a.s"].tolist() == ["off", "off"]
+    assert Results([], np.empty((0, 0)), [], texts=TextTable(table.variables)).final() == {}
 
 
 def test_times_on_a_grid_are_those_of_an_array() -> None:

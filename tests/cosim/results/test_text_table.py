@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.results.text_table import TextTable, read_texts, texts_path, write_texts
+from evcosim.cosim.results.text_table import TextTable, read_texts, shown_text, texts_path, write_texts
 from evcosim.cosim.results.variable import ResultVariable
 
 VARIABLES = [ResultVariable("a.s", type="String"), ResultVariable("b.t", type="String")]
@@ -43,6 +45,47 @@ def test_results_without_texts_have_no_file_of_texts(tmp_path: Path) -> None:
     write_texts(path, TextTable(), TIMES)  # of the results that take the place of the others
     assert not texts_path(path).exists()
     assert read_texts(path, TIMES).names == ()
+
+
+@given(
+    changes=st.dictionaries(st.integers(1, 9), st.tuples(TEXTS, TEXTS)),
+    rows=st.one_of(
+        st.slices(10), st.lists(st.booleans(), min_size=10, max_size=10).map(lambda choice: np.array(choice))
+    ),
+    names=st.lists(st.sampled_from(["a.s", "b.t"]), unique=True),
+)
+def test_a_part_has_the_same_texts(changes: dict[int, tuple[str, str]], rows: Any, names: list[str]) -> None:
+    table = TextTable(VARIABLES, sorted({0: ("", "x"), **changes}.items()))
+    part = table.part(rows, names, 10)
+    assert part.names == tuple(names)
+    for name in names:
+        expected = table.column(name, 10)[rows].tolist()
+        assert part.column(name, len(expected)).tolist() == expected
+        assert not expected or part.final()[names.index(name)] == expected[-1]
+    assert all(one != two for (_, one), (_, two) in zip(part.changes, part.changes[1:], strict=False))
+
+
+def test_a_text_of_any_length_reads(tmp_path: Path) -> None:
+    before = csv.field_size_limit()
+    table = TextTable(VARIABLES, [(0, ("x" * 300_000, '"' * 200_000))])
+    write_texts(tmp_path / "x.csv", table, TIMES)
+    assert read_texts(tmp_path / "x.csv", TIMES).changes == table.changes
+    assert csv.field_size_limit() == before
+
+
+def test_a_file_of_somebody_stays(tmp_path: Path) -> None:
+    """x.texts.csv may be a table of somebody, about texts or not."""
+    (tmp_path / "x.texts.csv").write_text("time,label\n0.05,begin\n")
+    write_texts(tmp_path / "x.csv", TextTable(), TIMES)
+    assert read_texts(tmp_path / "x.csv", TIMES).names == ()
+    with pytest.raises(ConfigError, match=r"x.texts.csv: the texts of x.csv go there, and the file that is"):
+        write_texts(tmp_path / "x.csv", TextTable(VARIABLES, [(0, ("a", "b"))]), TIMES)
+    assert (tmp_path / "x.texts.csv").read_text() == "time,label\n0.05,begin\n"
+
+
+def test_a_text_in_a_line_steers_no_terminal_and_has_an_end() -> None:
+    assert shown_text("a\x1b[2J\u202e\n") == r"'a\x1b[2J\u202e\n'"
+    assert shown_text("x" * 100) == "'" + "x" * 56 + "..."
 
 
 @pytest.mark.parametrize(

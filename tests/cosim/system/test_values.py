@@ -62,7 +62,7 @@ def test_a_value_is_taken_in_the_type_of_its_variable(
         (BOOLEAN, "true", "b is a Boolean, true or false, not 'true'"),
         (STATE, 3, "3 is no item of e: 1 off, 2 on, 4 broken"),
         (STATE, "of", "e has no item 'of' (did you mean 'off'?): ['off', 'on', 'broken']"),
-        (STRING, 1, "s is a String, not 1"),
+        (STRING, 1, "s is a String, not 1: a text stands in quotes"),
         (STRING, "a\0b", 's = "a\\u0000b": no C text holds a NUL or half a character'),
     ],
 )  # fmt: skip # one case a line

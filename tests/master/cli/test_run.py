@@ -7,6 +7,8 @@ import json
 import pytest
 
 from evcosim.cosim.results.results import Results
+from support.answers import refused
+from support.c_fmu import mixed_fmu, typed_fmu
 
 
 def test_run_says_and_writes_what_happened(evcosim, tmp_path):
@@ -84,3 +86,42 @@ def test_the_summary_says_what_was_read_from_elsewhere(evcosim, tmp_path):
     (told,) = evcosim(*command, "--json").json["outside"]
     assert told.startswith(said)
     assert evcosim(*command[:2], *command[4:], "--json").json["outside"] == []
+
+
+TEXTS = """
+name = "texts"
+record = [{record}]
+[experiment]
+stop_time = 0.05
+[units.a]
+fmu = "mixed.fmu"
+[units.b]
+fmu = "typed.fmu"
+[[connect]]
+from = "a.shown"
+to = ["b.text_in"]
+"""
+
+
+def test_texts_are_set_shown_compared_and_not_drawn(evcosim, tmp_path):
+    mixed_fmu(tmp_path / "mixed.fmu", 2)
+    typed_fmu(tmp_path / "typed.fmu", 3)
+    for name, record in (("texts", '"*"'), ("only", '"*.text"')):
+        (tmp_path / f"{name}.toml").write_text(TEXTS.format(record=record))
+    first = evcosim("run", "texts.toml", "--set", 'a.title=one, "two"', "-o", "first")
+    assert first.code == 0
+    assert """a.shown   'one, "two"'""" in first.out and """b.text    'one, "two"'""" in first.out
+    files = "results.csv, results.texts.csv, run.json, figure.png, figure.svg"
+    assert f"in first: {files}\n" in first.out
+    second = evcosim("run", "texts.toml", "--set", 'a.title="5"', "-o", "second", "--json").json
+    assert (second["final"]["b.text"], second["files"]) == ("5", files.split(", "))
+    other = evcosim("compare", "first", "second")
+    said = """'one, "two"' and '5'; they differ at 5 of 6 times"""
+    assert other.code == 1 and said in " ".join(other.out.split())
+    assert evcosim("compare", "first", "second", "--signals", "a.y").code == 0
+    assert evcosim("compare", "first", "first", "--signals", "*.text").code == 0
+    refused(evcosim("run", "texts.toml", "--set", "a.title=5"), "--set a.title=5: title is a String, not 5")
+    only = evcosim("run", "only.toml", "-o", "only")
+    assert only.code == 0 and "no figure: the run records no numbers" in only.out
+    assert evcosim("plot", "first").code == 0
+    refused(evcosim("plot", "only"), "the results have no variable to draw: texts are not drawn")

@@ -16,7 +16,7 @@ from evcosim.master.fmi.text_transfer import moving_texts
 from evcosim.master.fmi.transfer import Item, Transfer
 from evcosim.master.fmi.types import STRING, TYPES
 from evcosim.master.simulation import Simulation, simulate
-from support.c_fmu import typed_fmu
+from support.c_fmu import mixed_fmu, typed_fmu
 
 GREEN = "Gr\N{LATIN SMALL LETTER U WITH DIAERESIS}n"
 KIND = next(t for t in TYPES if t.kind is STRING)
@@ -83,7 +83,7 @@ def files(folder: Path, fmi: int = 2, algorithm: str = "gauss_seidel") -> tuple[
 
 
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("fmi", [1, 2, 3])
 def test_texts_are_the_same_from_every_engine_isolated_or_not(
     fmi: int, algorithm: str, tmp_path: Path
 ) -> None:
@@ -105,6 +105,7 @@ def test_texts_are_written_beside_the_numbers_and_read_back(tmp_path: Path) -> N
     results = simulate(*files(tmp_path), **options)
     results.write(tmp_path / "out")
     assert (tmp_path / "out" / "results.csv").read_text().startswith("time,a.flag_in,")
+    assert (tmp_path / "out" / "results.texts.csv").read_text().startswith('"time","a.text_in",')
     for path in (tmp_path / "out", tmp_path / "out" / "results.csv", results.save(tmp_path / "alone.csv")):
         back = Results.read(path)
         assert back.texts == results.texts and back.names == results.names
@@ -144,6 +145,24 @@ def test_events_act_on_texts(engine: Any, isolation: Any, tmp_path: Path) -> Non
     assert results["a.text_in"].tolist() == [cold, forced, forced, two, green, green]
     assert results["b.text_in"].tolist() == ["b begins"] * 2 + ["set"] * 4
     assert results["a.text"][1:].tolist() == results["a.text_in"][:-1].tolist()
+
+
+@pytest.mark.parametrize("fmi", [1, 2, 3])
+@pytest.mark.parametrize("isolation", ["none", "process"])
+def test_texts_are_parameters_and_starts(fmi: int, isolation: Any, tmp_path: Path) -> None:
+    fmu = mixed_fmu(tmp_path / "mixed.fmu", fmi)
+    options: dict[str, Any] = {"isolation": isolation, "stop_time": 0.1, "step_size": 0.05}
+    results = simulate(fmu, parameters={"title": GREEN}, **options)
+    assert set(results["fmu.shown"][1:]) == {GREEN}
+    assert results.manifest["units"]["fmu"]["parameters"] == {"title": GREEN}
+    assert set(simulate(fmu, **options)["fmu.shown"][1:]) == {"some text"}
+    with pytest.raises(
+        ConfigError, match=r"parameter fmu.title: title is a String, not 5: a text .* quotes$"
+    ):
+        simulate(fmu, parameters={"title": 5}, **options)
+    typed = typed_fmu(tmp_path / "typed.fmu", fmi)
+    for given in ({"parameters": {"text_in": "begun"}}, {"inputs": {"text_in": "begun"}}):
+        assert set(simulate(typed, **given, **options)["fmu.text_in"]) == {"begun"}
 
 
 def test_a_text_is_biased_by_nothing(tmp_path: Path) -> None:
@@ -199,6 +218,10 @@ def test_a_text_goes_to_a_text_and_over_no_bus(change: str, said: str, tmp_path:
     [
         ("constant = 1", "constant: text_in is a String, not 1"),
         ("ramp = { slope = 1 }", "ramp: text_in is of type String, which takes a constant"),
+        (
+            'constant = "a"\nunit = "m"',
+            r"stimulus 1.unit: a.text_in is a String, which has no unit of measure",
+        ),
         ('constant = "a\\u0000b"', "constant: text_in = .*: no C text holds a NUL"),
     ],
 )

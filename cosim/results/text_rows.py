@@ -1,0 +1,89 @@
+"""The texts of a run while it lives: results.texts.rows beside results.rows, of which any prefix reads.
+
+A line of JSON says what the variables are; each line below has a row and the texts of all variables from it
+on. A text is written before the row that has it, so that no row is on the disk without its texts. The file is
+removed with results.rows.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import ConfigError
+from ..writing import create
+from .manifest import described, manifest_text, variables_in
+from .text_table import Change, TextTable
+from .variable import ResultVariable
+
+TEXT_ROWS_NAME = "results.texts.rows"
+_FORMAT = "evcosim texts 1"
+
+
+class TextRows:
+    """A file at `path` of the texts of some variables, which is made at the first `save`."""
+
+    def __init__(self, path: Path, variables: Sequence[ResultVariable]) -> None:
+        self._path, self._variables = path, tuple(variables)
+        self._made = False
+
+    def save(self, changes: Sequence[Change]) -> None:
+        """Append rows, each with its texts. Raises OSError where the disk refuses."""
+        if not changes:
+            return
+        lines = b"".join(json.dumps([row, *texts]).encode() + b"\n" for row, texts in changes)
+        if self._made:
+            with self._path.open("ab") as file:
+                file.write(lines)
+            return
+        about = {"format": _FORMAT, "variables": [described(v) for v in self._variables]}
+        with create(self._path) as file:
+            self._made = True
+            file.write(manifest_text(about, indent=None) + b"\n" + lines)
+
+
+def read_text_rows(path: Path, count: int) -> TextTable:
+    """Read the texts of `count` rows, whatever stands behind them; an empty table where there is no file.
+
+    Raises ConfigError naming a file that cannot be read, and line and rule of one that does not hold texts.
+    """
+    if not path.is_file():
+        return TextTable()
+    try:
+        lines = path.read_bytes().split(b"\n")[:-1]  # half a line at the end counts for nothing
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+    variables = _variables(path, lines[0]) if lines else []
+    changes: list[Change] = []
+    for number, line in enumerate(lines[1:], 2):
+        row, texts = _change(path, number, line, len(variables))
+        if changes and row <= changes[-1][0]:
+            raise ConfigError(f"{path}: line {number}: row {row} comes after row {changes[-1][0]}")
+        if row >= count:
+            break
+        changes.append((row, texts))
+    return TextTable(variables, changes)
+
+
+def _variables(path: Path, line: bytes) -> list[ResultVariable]:
+    """Return the variables that the first line describes."""
+    try:
+        about = json.loads(line)
+    except ValueError:
+        about = None
+    if not isinstance(about, dict) or about.get("format") != _FORMAT:
+        raise ConfigError(f"{path}: does not begin as a file of texts ({_FORMAT})")
+    return list(variables_in(about.get("variables", []), path).values())
+
+
+def _change(path: Path, number: int, line: bytes, width: int) -> Change:
+    """Return the row and the texts of a line."""
+    try:
+        row, *texts = json.loads(line)
+    except (ValueError, TypeError) as error:
+        raise ConfigError(f"{path}: line {number}: is no row with texts: {error}") from error
+    whole = isinstance(row, int) and not isinstance(row, bool) and row >= 0
+    if not whole or len(texts) != width or not all(isinstance(text, str) for text in texts):
+        raise ConfigError(f"{path}: line {number}: needs a row, then {width} texts")
+    return row, tuple(texts)
