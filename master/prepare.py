@@ -84,7 +84,7 @@ def prepare(
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
     undriven = _undriven(plan, opened)
-    doubtful = _doubts(plan, loaded)
+    doubtful = _doubts(plan, loaded, read)
     warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
     plan = dataclasses.replace(plan, warnings=warnings)
     check_specs(read, driven, (*plan.columns, *plan.text_columns))
@@ -100,13 +100,14 @@ def _is_a_name(system: System, unit: str) -> bool:
     return system.file.units[unit].fmu in builtin_names()
 
 
-def _doubts(plan: Plan, fmus: Mapping[str, Fmu]) -> list[str]:
+def _doubts(plan: Plan, fmus: Mapping[str, Fmu], system: System) -> list[str]:
     """Return a sentence for each declaration of an FMU that the steps of this run do not respect."""
     found = []
     for unit in plan.units:
         times = TurnTimes(plan.clock, unit.every, unit.substeps)
         sizes = [times.size] if times.last is None else [times.size, times.last.size]
-        found += [f"unit '{unit.name}' {doubt}" for doubt in doubts(fmus[unit.name], sizes)]
+        tolerance = system.file.units[unit.name].tolerance
+        found += [f"unit '{unit.name}' {doubt}" for doubt in doubts(fmus[unit.name], sizes, tolerance)]
     return found
 
 

@@ -136,7 +136,8 @@ def _warnings(fmu: Fmu, entry: UnitEntry, system: System, scenario: Scenario, un
 
     step_size = scenario.file.experiment.step_size or system.file.experiment.step_size
     period = entry.period or system.file.units[unit].period or step_size
-    return [*defects_of(fmu), *(f"the FMU {doubt}" for doubt in doubts(fmu, [period / entry.substeps]))]
+    said = doubts(fmu, [period / entry.substeps], entry.tolerance)
+    return [*defects_of(fmu), *(f"the FMU {doubt}" for doubt in said)]
 
 
 def _there_now(system: System, unit: str) -> UnitInterface:

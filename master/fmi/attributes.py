@@ -72,6 +72,20 @@ def _mend_types(root: Any) -> list[str]:
     for content in [e for path in ("*", "*/*", "*/*/Item") for e in root.findall(f"TypeDefinitions/{path}")]:
         for name in set(content.attrib) - _OF_TYPES:
             del content.attrib[name]
+    return defects + _mend_items(root)
+
+
+def _mend_items(root: Any) -> list[str]:
+    """Leave out the items of enumerations that have no name, or no number; those of FMI 1.0 are counted."""
+    defects = []
+    counted = root.get("fmiVersion") == "1.0"
+    for item in [e for path in ("*/Item", "*/*/Item") for e in root.findall(f"TypeDefinitions/{path}")]:
+        name, value = item.get("name"), item.get("value")
+        if name is not None and (counted or re.fullmatch(_WHOLE, value or "")):
+            continue
+        said = "without a name" if name is None else f"'{name}' with the value {value!r}, no whole number"
+        defects.append(f"line {item.sourceline}: an item {said}, is left out")
+        item.getparent().remove(item)
     return defects
 
 

@@ -24,6 +24,7 @@ from .supplement import negated_aliases, sampled_outputs, supplement
 from .types import INTEGER, REAL, FmiType, Kind, fmi_type
 
 _VERSIONS = ("1.0", "2.0", "3.0")
+_PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def read_description(
@@ -111,16 +112,37 @@ def _parsed(path: Path, xml: bytes) -> Any:
 
 
 def _check_identifiers(place: str, root: Any) -> None:
-    """Raise FmuError for a modelIdentifier that is no plain name: it names a file and C functions."""
-    kinds = [root, *(root.find(k) for k in ("CoSimulation", "ModelExchange", "ScheduledExecution"))]
-    for kind in kinds:
-        name = None if kind is None else kind.get("modelIdentifier")
-        if name is None and kind is not None and (kind is not root or root.get("fmiVersion") == "1.0"):
+    """Raise FmuError for a modelIdentifier that can name no file beside others: it names the library."""
+    for kind in _identified(root):
+        name = kind.get("modelIdentifier")
+        if name is None and (kind is not root or root.get("fmiVersion") == "1.0"):
             raise FmuError(f"{place}: <{kind.tag}> has no modelIdentifier")
-        if name is not None and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
+        if name is not None and not (_PLAIN.fullmatch(name) or _names_a_file(name)):
             raise FmuError(
                 f"{place}: modelIdentifier is {name!r}, which is no plain name (letters, digits, _)"
             )
+
+
+def _identified(root: Any) -> list[Any]:
+    """Return the elements that have a modelIdentifier: the root in FMI 1.0, else those of the interfaces."""
+    kinds = (root.find(kind) for kind in ("CoSimulation", "ModelExchange", "ScheduledExecution"))
+    return [root, *(kind for kind in kinds if kind is not None)]
+
+
+def _names_a_file(identifier: str) -> bool:
+    """Return True for what names a file in the folder of libraries and no other place, in every system."""
+    odd = set('/\\:*?"<>|')
+    return identifier.isprintable() and identifier[:1].isalnum() and not odd.intersection(identifier)
+
+
+def _odd_identifiers(root: Any) -> list[str]:
+    """Return what is said of each modelIdentifier that is no name in C; tools that need none take any."""
+    names = dict.fromkeys(element.get("modelIdentifier") for element in _identified(root))
+    return [
+        f"modelIdentifier is '{name}', which is no plain name (letters, digits, _); it is taken as it is"
+        for name in names
+        if name is not None and not _PLAIN.fullmatch(name)
+    ]
 
 
 def _mend(path: Path, root: Any) -> list[str]:
@@ -150,7 +172,7 @@ def _mend(path: Path, root: Any) -> list[str]:
         _require(path, v, name, seen)
         seen[name] = index, v
         defects += _mend_variable(v, value, name, types, fmi_type(version, value.tag))
-    return defects + mend_attributes(root) + mend_structure(root, places)
+    return _odd_identifiers(root) + defects + mend_attributes(root) + mend_structure(root, places)
 
 
 def _alike(v: Any, first: Any) -> bool:
@@ -174,16 +196,16 @@ def _require(path: Path, v: Any, name: str, seen: Collection[str]) -> None:
     place = f"{path}: modelDescription.xml: variable '{name}' (line {v.sourceline})"
     if name in seen:
         raise FmuError(f"{place} is declared twice")
-    reference = v.get("valueReference")
-    if reference is None or not re.fullmatch(r"\d+", reference) or int(reference) >= 2**32:
-        raise FmuError(
-            f"{place} has valueReference {reference!r}; a whole number from 0 to 2^32 - 1 is needed"
-        )
+    reference = (v.get("valueReference") or "").strip()
+    if not re.fullmatch(r"\d+", reference) or int(reference) >= 2**32:
+        given = v.get("valueReference")
+        raise FmuError(f"{place} has valueReference {given!r}; a whole number from 0 to 2^32 - 1 is needed")
 
 
 def _mend_variable(v: Any, value: Any, name: str, types: set[str | None], kind: FmiType | None) -> list[str]:
     """Mend the attributes of a variable `v` and of its type's element `value`, which in FMI 3.0 are one."""
     defects = []
+    v.set("valueReference", v.get("valueReference").strip())
     declared = value.get("declaredType")
     if declared is not None and declared not in types:
         del value.attrib["declaredType"]

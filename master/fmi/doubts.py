@@ -1,6 +1,6 @@
 """Warnings of an FMU's description: its defects, and declarations that a run may not respect.
 
-These are the tool that it needs, and the step that it can take.
+These are the tool that it needs, the step that it can take, and a tolerance that it cannot be told.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from ...cosim.errors import counted
 from ..warned import first_kinds, with_count
 from .fmu import Fmu, is_true
+from .tolerance import takes_tolerance
 
 _SAME = 1e-9  # of a step: what differs by rounding alone
 _SHOWN_DEFECTS = 5
@@ -24,14 +25,22 @@ def defects_of(fmu: Fmu) -> list[str]:
     return [f"{fmu.path.name}: {text}" for text in texts]
 
 
-def doubts(fmu: Fmu, steps: Sequence[float]) -> list[str]:
+def doubts(fmu: Fmu, steps: Sequence[float], tolerance: float | None = None) -> list[str]:
     """Return a clause for each declaration that the FMU's steps in a run, of these sizes [s], do not respect.
 
     The first of `steps` is that of all but the last. Only an interface for Co-Simulation has such.
+    `tolerance` is that of the system file, if it has one.
     """
+    said = [*_needs_tool(fmu), *_untold(fmu, tolerance)]
     if fmu.interface_type != "co_simulation":
-        return [*_needs_tool(fmu)]
-    return [*_needs_tool(fmu), *_other_step(fmu, steps[0]), *_changing_step(fmu, steps)]
+        return said
+    return [*said, *_other_step(fmu, steps[0]), *_changing_step(fmu, steps)]
+
+
+def _untold(fmu: Fmu, tolerance: float | None) -> list[str]:
+    if tolerance is None or takes_tolerance(fmu):
+        return []
+    return [f"is not told tolerance = {tolerance:g}: Co-Simulation of FMI 1.0 knows none"]
 
 
 def _needs_tool(fmu: Fmu) -> list[str]:

@@ -96,18 +96,7 @@ class Fmi1Instance(Instance):
 
 
 class Fmi1Unit(Fmi1Instance):
-    """An `Instance` of FMI 1.0 Co-Simulation; it takes no tolerance."""
-
-    def __init__(
-        self,
-        fmu: Fmu,
-        name: str,
-        interface: UnitInterface | None = None,
-        tolerance: float | None = None,
-    ) -> None:
-        if tolerance is not None:
-            raise FmuError(f"{fmu.path}: unit '{name}': a unit of FMI 1.0 Co-Simulation takes no tolerance")
-        super().__init__(fmu, name, interface, tolerance)
+    """An `Instance` of FMI 1.0 Co-Simulation, which is told no tolerance."""
 
     def _instantiate(self, folder: Path) -> int | None:
         self._callbacks = self.log.callbacks_1()

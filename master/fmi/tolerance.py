@@ -13,16 +13,21 @@ Origin = Literal["system", "fmu", "default", "none"]
 _OF_SOLVER = 1e-6
 
 
+def takes_tolerance(fmu: Fmu) -> bool:
+    """Return False for a slave of FMI 1.0, which nobody can tell one."""
+    return fmu.interface_type == "model_exchange" or not fmu.description.fmiVersion.startswith("1")
+
+
 def tolerance_of(fmu: Fmu, wanted: float | None) -> tuple[float | None, Origin]:
     """Return the relative tolerance for an FMU and who says it; `wanted` is the system's, if it says one.
 
     None where no unit gets one: a slave of FMI 1.0, and one in Co-Simulation whose FMU declares none.
     """
+    if not takes_tolerance(fmu):
+        return None, "none"
     if wanted is not None:
         return wanted, "system"
     solved = fmu.interface_type == "model_exchange"
-    if fmu.description.fmiVersion.startswith("1") and not solved:
-        return None, "none"
     with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
         declared = float(getattr(fmu.description.defaultExperiment, "tolerance", None))  # type: ignore[arg-type] # None is a TypeError
         if 0.0 < declared < 1.0:

@@ -12,6 +12,7 @@ from evcosim.master.fmi.fmu import read_fmu
 from support.descriptions import GOOD, changed, described
 
 UNIT = '<UnitDefinitions><Unit name="km/h">{}</Unit></UnitDefinitions><TypeDefinitions>'
+ENUMERATION = '<SimpleType name="State"><Enumeration>{}<Item name="on" value="2"/></Enumeration></SimpleType>'
 
 DEFECTS = [
     (
@@ -53,6 +54,18 @@ DEFECTS = [
     (
         ("<TypeDefinitions>", UNIT.format('<BaseUnit m="9999"/>')),
         "unit of measure 'km/h': m = '9999' is no number; its definition is ignored",
+    ),
+    *(
+        (
+            ("<TypeDefinitions>", f"<TypeDefinitions>{ENUMERATION.format(item)}"),
+            f"line 4: an item {said}, is left out",
+        )
+        for item, said in (
+            ('<Item name="a"/>', "'a' with the value None, no whole number"),
+            ('<Item name="a" value=""/>', "'a' with the value '', no whole number"),
+            ('<Item name="a" value="1.5"/>', "'a' with the value '1.5', no whole number"),
+            ('<Item value="1"/>', "without a name"),
+        )
     ),
     (
         ("<TypeDefinitions>", '<TypeDefinitions><SimpleType name="Nothing"/>'),
@@ -100,3 +113,29 @@ def test_display_units_that_are_no_numbers_are_left_out(tmp_path: Path) -> None:
     root = parsed_xml("here", changed(("<TypeDefinitions>", UNIT.format(unit))).encode())
     assert mend_attributes(root) == []
     assert [each.get("name") for each in root.iter("DisplayUnit")] == ["cm"]
+
+
+@pytest.mark.parametrize("version", ["1.0", "2.0", "3.0"])
+def test_the_items_that_stay(tmp_path: Path, version: str) -> None:
+    """FMI 1.0 gives items no values; they are counted from 1 on."""
+    first = version == "1.0"
+    values = ("", "") if first else ('value="7"', 'value="9"')
+    items = f'<Item name="off" {values[0]}/><Item name="on" {values[1]}/><Item name="lost"/>'
+    variable = '<ScalarVariable name="s" valueReference="0"><Enumeration declaredType="S"/></ScalarVariable>'
+    kind = '<CoSimulation modelIdentifier="m"/>'
+    if first:
+        types = f'<Type name="S"><EnumerationType>{items}</EnumerationType></Type>'
+        kind = "<Implementation><CoSimulation_StandAlone/></Implementation>"
+    elif version == "2.0":
+        types = f'<SimpleType name="S"><Enumeration>{items}</Enumeration></SimpleType>'
+    else:
+        types = f'<EnumerationType name="S">{items}</EnumerationType>'
+        variable = '<Enumeration name="s" valueReference="0" declaredType="S"/>'
+    text = (
+        f'<fmiModelDescription fmiVersion="{version}" modelName="m" guid="g" modelIdentifier="m">'
+        f"{'' if first else kind}<TypeDefinitions>{types}</TypeDefinitions>"
+        f"<ModelVariables>{variable}</ModelVariables>{kind if first else '<ModelStructure/>'}"
+        "</fmiModelDescription>"
+    )
+    found = read_fmu(described(tmp_path, text)).interface.variables["s"].items
+    assert found == (((1, "off"), (2, "on"), (3, "lost")) if first else ((7, "off"), (9, "on")))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from evcosim.master.fmi.fmi2 import Fmi2ModelExchange, Fmi2Unit
 from evcosim.master.fmi.fmi3 import Fmi3ModelExchange, Fmi3Unit
 from evcosim.master.fmi.fmu import FmuError, read_fmu
 from evcosim.master.fmi.loading import load_unit
+from evcosim.master.simulation import simulate
 from support.c_fmu import mixed_fmu
 from support.equations import equations_fmu
 
@@ -47,3 +49,21 @@ def test_model_exchange_of_fmi_1_is_an_fmu_of_its_own(tmp_path: Path) -> None:
     unit.free()
     with pytest.raises(FmuError, match='interface = "co_simulation": it has no such interface'):
         fmu.using("co_simulation")
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("identifier", ["rollback-end", "Demo.Tank", "2 tanks"])
+def test_an_identifier_that_is_no_name_in_c(tmp_path: Path, fmi: int, identifier: str) -> None:
+    plain = mixed_fmu(tmp_path / "plain.fmu", fmi)
+    odd = tmp_path / "odd.fmu"
+    with zipfile.ZipFile(plain) as source, zipfile.ZipFile(odd, "w") as archive:
+        for name in source.namelist():
+            content = source.read(name)
+            if name == "modelDescription.xml":
+                content = content.replace(
+                    b'modelIdentifier="mixed"', f'modelIdentifier="{identifier}"'.encode()
+                )
+            archive.writestr(name.replace("mixed.so", f"{identifier}.so"), content)
+    one, other = (simulate(path, inputs={"u": 2.0}, stop_time=0.05, step_size=0.01) for path in (plain, odd))
+    assert one["fmu.y"][-1] == other["fmu.y"][-1] != 0.0
+    assert [d for d in read_fmu(odd).defects if "modelIdentifier" in d and identifier in d]

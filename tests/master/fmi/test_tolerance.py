@@ -47,3 +47,12 @@ def test_a_slave_of_fmi_1_has_no_way_to_be_told(tmp_path: Path) -> None:
     fmu = initial_fmu(tmp_path / "initial.fmu", 1, tolerance="1e-4")
     assert tolerance_of(read_fmu(fmu), None) == (None, "none")
     assert told(fmu, isolation="none") == (None, None, "none")
+
+
+@pytest.mark.parametrize("isolation", ["none", "process"])
+def test_a_tolerance_for_a_slave_of_fmi_1_is_a_warning(tmp_path: Path, isolation: str) -> None:
+    fmu = initial_fmu(tmp_path / "initial.fmu", 1)
+    assert told(fmu, "tolerance = 1e-3", isolation=isolation) == (None, None, "none")
+    alone = simulate(fmu, stop_time=0.02, step_size=0.01, tolerance=1e-3, isolation=isolation)
+    said = [w for w in alone.manifest["warnings"] if "tolerance" in w]
+    assert said == ["unit 'fmu' is not told tolerance = 0.001: Co-Simulation of FMI 1.0 knows none"]
