@@ -64,6 +64,13 @@ def nearest(word: str, words: Iterable[str]) -> str:
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
+def short(value: object) -> str:
+    """Return a value as Python writes it, cut where it is long; an integer of thousands of digits in hex."""
+    huge = isinstance(value, int) and value.bit_length() > 2000  # Python writes some thousand digits at most
+    text = f"{value:#x}" if huge else repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
 def counted(count: int, thing: str) -> str:
     """Return `1 value`, `2 values`."""
     return f"{count} {thing}" + ("" if count == 1 else "s")

@@ -15,12 +15,13 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping
+from numbers import Integral
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Unpack
 
 from ..cosim.can.frames import BusLog, write_can_log
-from ..cosim.errors import ConfigError, RunError, nearest
+from ..cosim.errors import ConfigError, RunError, nearest, short
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
 from ..cosim.plan.plan import Plan
@@ -30,7 +31,7 @@ from ..cosim.row_store import Grid
 from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..cosim.system.selection import figure_spec, metric_specs
-from ..cosim.system.system import Isolation, System
+from ..cosim.system.system import LATEST, Isolation, System
 from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
@@ -140,10 +141,12 @@ class Simulation:
         """Do `steps` communication steps.
 
         Raises RunError naming unit, time and reason; the results up to then are kept. ConfigError for a
-        negative number of steps, and with `to_stop` for more than are left.
+        number that is none of steps or leads too far, and with `to_stop` for more than are left.
         """
-        if steps < 0:
-            raise ConfigError(f"steps = {steps}: a run does 0 steps or more")
+        if not isinstance(steps, Integral) or isinstance(steps, bool) or steps < 0:
+            raise ConfigError(f"steps = {short(steps)}: a run does 0 steps or more, a whole number")
+        if not steps <= LATEST / self.plan.clock.step:
+            raise ConfigError(f"steps = {short(steps)}: a run goes up to {LATEST:g} s")
         if self.plan.clock.told and steps > self.steps_left:
             raise ConfigError(
                 f"steps = {steps}: {self.steps_left} are left to the stop time {self.plan.clock.stop} s, "

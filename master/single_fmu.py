@@ -27,6 +27,7 @@ ALONE = ("inputs", "step_size", "interface", "tolerance")
 """The options of a run that are for an FMU by itself; a system's stand in its files."""
 
 _OF_SYSTEMS = ("fmus", "swaps", "ideal", "bus")
+_SHORTEST = 1e-9  # s
 _DURATION = 1.0  # s, where the FMU declares no stop time
 _STEPS = 500  # at least, where it declares no step size
 _MOST_STEPS = 1_000_000  # where the step size is not the caller's
@@ -131,6 +132,8 @@ def _experiment(fmu: Fmu, options: RunOptions) -> dict[str, float]:
     if stop is None or (stop <= start and options.get("stop_time") is None):
         stop = start + _DURATION
     step = options.get("step_size")
+    if step is None and 0.0 < stop - start < _SHORTEST:
+        raise ConfigError(f"stop_time = {stop:g}: a run from {start:g} s on lasts {_SHORTEST:g} s or more")
     if step is None:
         step = _whole(
             stop - start, times["stepSize"] or _number(getattr(fmu.kind, "fixedInternalStepSize", 0))
@@ -149,7 +152,7 @@ def _number(text: Any) -> float | None:
 
 def _whole(duration: float, step: float | None) -> float:
     """Return the step [s], or the longest shorter one of which the duration [s] is a whole number."""
-    if not duration > 0.0:
+    if not 0.0 < duration < math.inf:
         return step or _DURATION / _STEPS  # the stop time is refused with its place
     if step is None or not 0.0 < step <= duration:
         decade = 10.0 ** math.floor(math.log10(duration / _STEPS))

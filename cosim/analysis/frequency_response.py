@@ -21,6 +21,9 @@ from numpy.typing import NDArray
 from ..errors import ConfigError
 from ..row_store import Array
 
+LARGEST = 1e150
+"""The magnitude of a signal at most: spectra are squares, which doubles hold to 1e308."""
+
 RATE = 8.0
 """Blocks in a period of the sweep's highest frequency."""
 
@@ -107,5 +110,7 @@ def _check_signals(u: Array, y: Array) -> None:
         if not np.isfinite(values).all():
             first = int(np.argmin(np.isfinite(values)))
             raise ConfigError(f"the {name} is {values[first]} at sample {first}: it must be finite")
+        if (largest := np.abs(values).max(initial=0.0)) > LARGEST:
+            raise ConfigError(f"the {name} is up to {largest:.6g}: {LARGEST:g} at most, to be squared")
         if not np.ptp(values) > 1e-12 * np.abs(values).max(initial=0.0):
             raise ConfigError(f"the {name} is constant ({values[0]:.6g}): there is nothing to identify")

@@ -19,12 +19,16 @@ import numpy as np
 from ..errors import ConfigError
 from ..row_store import Array
 from ..system.identification_spec import IdentificationSpec
+from .frequency_response import LARGEST
 
 STEPS_PER_PERIOD = 8
 """Communication steps that a period of the highest frequency needs: fewer, and the held input is no sine."""
 
 PERIODS = 2.0
 """Periods of the lowest frequency that a sweep must last for it to be seen."""
+
+FINEST = 1e-9
+"""The least amplitude as a share of the working point, of which rounding leaves seven digits."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -95,8 +99,16 @@ class Sweep:
             )
 
     def check_range(self, center: float, low: float | None, high: float | None, name: str, unit: str) -> None:
-        """Raise ConfigError when the sweep round `center` leaves what the input `name` declares."""
+        """Raise ConfigError when the sweep round `center` leaves what the input `name` declares.
+
+        Also where it would be lost in the rounding of `center`, or its square overflow.
+        """
         bottom, top = center - self.amplitude, center + self.amplitude
+        if self.amplitude < FINEST * abs(center) or max(abs(bottom), abs(top)) > LARGEST:
+            raise ConfigError(
+                f"the sweep of {name} has an amplitude of {self.amplitude:g} around {center:.6g} {unit}: "
+                f"it is {FINEST:g} or more of that value, and both are {LARGEST:g} at most"
+            )
         if (low is not None and bottom < low) or (high is not None and top > high):
             limits = f"{'' if low is None else f'{low:g}'}..{'' if high is None else f'{high:g}'}"
             raise ConfigError(

@@ -12,7 +12,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
 
-from ..errors import ConfigError
+from ..errors import ConfigError, short
+
+_SLOWEST, _MOST_STEPS = 10**6, 10**6
 
 Rounding = Literal["nearest", "half_even", "truncate"]
 Overflow = Literal["saturate", "wrap", "error"]
@@ -54,7 +56,7 @@ class BusSettings(BaseModel):
     ] = 1.0
     """Factor from 1 on by which signals are coarser than the DBC says, or "ideal": not quantized at all."""
 
-    cycle: int = Field(default=1, ge=1, le=10**6)
+    cycle: int = Field(default=1, ge=1, le=_SLOWEST)
     """Factor by which messages are sent less often than the DBC says."""
 
 
@@ -75,14 +77,16 @@ class BusVariation:
     cycle: int = 1
 
     def __post_init__(self) -> None:
-        if not (_whole(self.delay_steps) and self.delay_steps >= 0):
-            raise ConfigError(f"bus variation: delay_steps = {self.delay_steps!r}: it is 0 or more steps")
-        if not (_whole(self.cycle) and self.cycle >= 1):
-            raise ConfigError(f"bus variation: cycle = {self.cycle!r}: it is a whole number from 1 on")
+        if not (_whole(self.delay_steps) and 0 <= self.delay_steps <= _MOST_STEPS):
+            given = f"bus variation: delay_steps = {short(self.delay_steps)}"
+            raise ConfigError(f"{given}: it is 0 or more steps, {_MOST_STEPS} at most")
+        if not (_whole(self.cycle) and 1 <= self.cycle <= _SLOWEST):
+            given = f"bus variation: cycle = {short(self.cycle)}"
+            raise ConfigError(f"{given}: it is a whole number from 1 on, {_SLOWEST} at most")
         try:
             checked_resolution(self.resolution)
         except ValueError as error:
-            raise ConfigError(f"bus variation: resolution = {self.resolution!r}: {error}") from error
+            raise ConfigError(f"bus variation: resolution = {short(self.resolution)}: {error}") from error
 
     def of(self, settings: _Settings, step_size: float) -> _Settings:
         """Return the settings with this variation on top; `step_size` in s."""

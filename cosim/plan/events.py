@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import math
+import sys
 from collections.abc import Callable, Mapping
+from numbers import Real
 from typing import assert_never
 
 from ..clock import Clock
-from ..errors import ConfigError, nearest
+from ..errors import ConfigError, nearest, short
 from ..interface import UnitInterface, VariableInfo
 from ..system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..system.values import as_double, checked, of_type
@@ -136,7 +137,8 @@ def _check_bias(event: Bias, variable: VariableInfo, at: Callable[[str], str]) -
     name, value, kind = event.variable, event.value, variable.type
     if kind in ("Boolean", "String"):
         raise ConfigError(f"{at('action')}: {name} is a {kind}, to which nothing can be added")
-    if not math.isfinite(value):
-        raise ConfigError(f"{at('value')}: {name} needs a finite number, not {value}")
+    number = isinstance(value, Real) and not isinstance(value, bool)
+    if not (number and abs(value) <= sys.float_info.max):
+        raise ConfigError(f"{at('value')}: {name} needs a finite number, not {short(value)}")
     if kind != "Real" and value != int(value):
         raise ConfigError(f"{at('value')}: {name} is an {kind}; bias needs a whole number, not {value}")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, get_args
 
 from ..can.bus_settings import BusVariation
-from ..errors import ConfigError, nearest
+from ..errors import ConfigError, nearest, short
 from ..interface import Value
 from .system import LATEST, SHORTEST, Algorithm, EngineName, Isolation
 
@@ -81,7 +81,7 @@ def check_options(options: Mapping[str, Any]) -> None:
                 f"a run has no option '{name}'{nearest(name, known)}; there are: {', '.join(sorted(known))}"
             )
         if (value := options[name]) is not None and name in _RULES and not _RULES[name][0](value):
-            raise ConfigError(f"{name} = {value!r}: {_RULES[name][1]}")
+            raise ConfigError(f"{name} = {short(value)}: {_RULES[name][1]}")
 
 
 def _one_of(kind: Any) -> tuple[Callable[[Any], bool], str]:

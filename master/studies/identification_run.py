@@ -20,6 +20,7 @@ from ...cosim.errors import ConfigError, RunError, nearest
 from ...cosim.interface import VariableInfo
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...cosim.system.system import LATEST
 from ...cosim.units.conversion import conversion
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import Affine
@@ -36,10 +37,19 @@ _PULSES = 6  # half periods of the square wave
 
 
 def longest(sweep: Sweep, step_size: float) -> float:
-    """Return a stop time [s] that no phase goes beyond, a multiple of the step size [s]."""
+    """Return a stop time [s] that no phase goes beyond, a multiple of the step size [s].
+
+    Raises ConfigError for a sweep that lasts longer than a run can.
+    """
     settling = (_TRIES + 3) * _WINDOWS * _window(sweep)
     pulses = _PULSES / sweep.start
-    return step_size * math.ceil((settling + sweep.length + pulses) / step_size)
+    together = settling + sweep.length + pulses
+    if not together <= LATEST:
+        raise ConfigError(
+            f"sweep from {sweep.start:g} Hz, repeats = {sweep.repeats}, a duration of {sweep.duration:g} s: "
+            f"with all that belongs to it, it takes {together:.3g} s, and a run goes up to {LATEST:g} s"
+        )
+    return step_size * math.ceil(together / step_size)
 
 
 def _window(sweep: Sweep) -> float:

@@ -29,7 +29,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Generic, SupportsIndex, TypeVar
 
 from ...cosim import leftovers
-from ...cosim.errors import RunError
+from ...cosim.errors import ConfigError, RunError, short
 from ..fmi import crash
 
 T = TypeVar("T")
@@ -100,12 +100,12 @@ def run_all(
 
     A script that calls this needs `if __name__ == "__main__":` around its own calls, since every worker
     imports it. Before any task is started it raises TypeError for one that cannot be pickled and for
-    `workers` that are no whole number, ValueError for fewer than one.
+    `workers` that are no whole number, ConfigError for fewer than one.
     """
     if workers is not None and not isinstance(workers, SupportsIndex):
-        raise TypeError(f"workers = {workers!r}: a whole number is needed, or None")
+        raise TypeError(f"workers = {short(workers)}: a whole number is needed, or None")
     if workers is not None and workers < 1:
-        raise ValueError(f"workers = {workers}: at least one is needed")
+        raise ConfigError(f"workers = {short(workers)}: at least one is needed")
     queue = [_packed(task) for task in tasks]
     outcomes: dict[int, Outcome[T]] = {}
     if not tasks:

@@ -67,6 +67,9 @@ def test_sweep_against_step_band_and_range():
         SWEEP.check_range(85.0, 0.0, 100.0, "throttle", "%")
     with pytest.raises(ConfigError, match=r"declared for 10.. %"):
         SWEEP.check_range(28.0, 10.0, None, "throttle", "%")
+    for center in (1e12, -1e12, 1e151, 1e308):
+        with pytest.raises(ConfigError, match=r"amplitude of 20 around -?1e\+\d+ %: it is 1e-09 or more"):
+            SWEEP.check_range(center, None, None, "throttle", "%")
 
 
 def test_a_sweep_begins_at_the_working_point_with_a_rising_flank():
