@@ -12,10 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ConfigError
+from ..errors import ConfigError, short
 from ..reading import content
 from ..writing import replacing
 from .variable import ResultVariable
+
+_TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
 
 
 def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
@@ -73,12 +75,20 @@ def _read(path: Path) -> dict[str, Any]:
         return {}
     text = content(path)
     try:
-        manifest = json.loads(text.decode("utf-8"))
-    except (ValueError, RecursionError) as error:
+        manifest = from_json(text.decode("utf-8"))
+    except ValueError as error:
         raise ConfigError(f"{path}: is not a JSON file: {error}") from error
     if not isinstance(manifest, dict):
         raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")
     return manifest
+
+
+def from_json(text: str | bytes) -> Any:
+    """Return what a JSON text says. Raises ValueError, also for one that is nested too deep."""
+    try:
+        return json.loads(text)
+    except RecursionError as error:
+        raise ValueError("it is nested too deep") from error
 
 
 def variables_in(descriptions: Any, place: Path) -> dict[str, ResultVariable]:
@@ -88,6 +98,21 @@ def variables_in(descriptions: Any, place: Path) -> dict[str, ResultVariable]:
             ResultVariable(**{**about, "items": tuple((int(v), str(n)) for v, n in about.get("items", ()))})
             for about in descriptions
         ]
-    except (TypeError, ValueError, AttributeError) as error:
+        for variable in found:
+            _check_types(variable)
+    except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise ConfigError(f"{place}: 'variables' does not describe the variables: {error}") from error
     return {v.name: v for v in found}
+
+
+def _check_types(variable: ResultVariable) -> None:
+    """Raise TypeError for a key of another type than it is declared with, ValueError for no FMI type."""
+    for field in dataclasses.fields(variable):
+        value = getattr(variable, field.name)
+        wanted = {"str": str, "bool": bool}.get(str(field.type))
+        if wanted is not None and not isinstance(value, wanted):
+            raise TypeError(f"{field.name} = {short(value)} of {short(variable.name)}")
+    if variable.type not in _TYPES:
+        raise ValueError(
+            f"type = {short(variable.type)} of {short(variable.name)}: it is {', '.join(_TYPES)}"
+        )

@@ -9,16 +9,16 @@ killed.
 from __future__ import annotations
 
 import dataclasses
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..clock import Clock
-from ..errors import ConfigError
+from ..clock import WHOLE, Clock
+from ..errors import ConfigError, short
+from ..reading import require_file
 from ..row_store import Grid, Table, rows_in
-from .manifest import described, manifest_text, variables_in
+from .manifest import described, from_json, manifest_text, variables_in
 from .variable import ResultVariable
 
 ROWS_NAME = "results.rows"
@@ -54,16 +54,17 @@ def read(path: Path) -> SavedRows:
 
     Raises ConfigError naming a file that cannot be read or does not begin as one.
     """
+    require_file(path)
     try:
         with path.open("rb") as file:
             line = file.readline(_LONGEST)
-        about = json.loads(line) if line.endswith(b"\n") else None
+        about = from_json(line) if line.endswith(b"\n") else None
         if not isinstance(about, dict) or about.get("format") != _FORMAT:
             raise ConfigError(f"{path}: does not begin as a file of rows ({_FORMAT})")
         if about["byteorder"] != sys.byteorder:
             raise ConfigError(f"{path}: was written on a machine of the other byte order")
         variables = list(variables_in(about["variables"], path).values())
-        clock, manifest = Clock(**about["clock"]), dict(about["manifest"])
+        clock, manifest = _clock(about["clock"]), dict(about["manifest"])
         data = rows_in(path, len(line), len(variables))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
@@ -72,3 +73,19 @@ def read(path: Path) -> SavedRows:
             raise
         raise ConfigError(f"{path}: its first line does not describe rows: {error}") from error
     return SavedRows(Grid(clock, data.shape[0]), data, variables, manifest)
+
+
+def _clock(about: Mapping[str, Any]) -> Clock:
+    """Return a clock of its numbers. Raises TypeError or ValueError for values that make none."""
+    clock = Clock(**about)
+    for name, value in dataclasses.asdict(clock).items():
+        if name in ("decimal", "told"):
+            good = isinstance(value, bool)
+        else:
+            good = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= WHOLE
+        least = {"step": 0, "advance": 0, "divisor": 1}.get(name)
+        if not good or (least is not None and not value >= least):
+            raise ValueError(f"clock.{name} = {short(value)}")
+    if not isinstance(clock.steps, int) or clock.steps < 0:
+        raise ValueError(f"clock.steps = {short(clock.steps)}")
+    return clock

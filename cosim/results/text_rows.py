@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..errors import ConfigError
 from ..writing import create
-from .manifest import described, manifest_text, variables_in
+from .manifest import described, from_json, manifest_text, variables_in
 from .text_table import Change, TextTable
 from .variable import ResultVariable
 
@@ -69,7 +69,7 @@ def read_text_rows(path: Path, count: int) -> TextTable:
 def _variables(path: Path, line: bytes) -> list[ResultVariable]:
     """Return the variables that the first line describes."""
     try:
-        about = json.loads(line)
+        about = from_json(line)
     except ValueError:
         about = None
     if not isinstance(about, dict) or about.get("format") != _FORMAT:
@@ -80,7 +80,7 @@ def _variables(path: Path, line: bytes) -> list[ResultVariable]:
 def _change(path: Path, number: int, line: bytes, width: int) -> Change:
     """Return the row and the texts of a line."""
     try:
-        row, *texts = json.loads(line)
+        row, *texts = from_json(line)
     except (ValueError, TypeError) as error:
         raise ConfigError(f"{path}: line {number}: is no row with texts: {error}") from error
     whole = isinstance(row, int) and not isinstance(row, bool) and row >= 0

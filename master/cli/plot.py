@@ -68,7 +68,8 @@ def spec_of(results: Results) -> FigureSpec | None:
     from ...cosim.system.system import load_system
 
     names = [results.manifest.get(key) for key in ("system", "scenario")]
-    files = results.manifest.get("files", {})
+    files = results.manifest.get("files")
+    files = files if isinstance(files, dict) else {}
     system_name, scenario_name = (
         files.get(k) or n for k, n in zip(("system", "scenario"), names, strict=True)
     )

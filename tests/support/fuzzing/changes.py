@@ -155,7 +155,7 @@ def mutated(random: random.Random, text: str, nested: str = "[") -> bytes:
 def encoded(random: random.Random, text: str) -> bytes:
     """Return a text as bytes: mostly UTF-8; at times in another encoding, or with bytes flipped."""
     data = bytearray(text.encode("utf-8", "surrogatepass"))
-    match random.randrange(20):
+    match random.randrange(40):
         case 0 | 1 if data:
             for _ in range(random.randint(1, 8)):
                 data[random.randrange(len(data))] = random.randrange(256)

@@ -43,12 +43,12 @@ def table(random: random.Random) -> bytes:
     """Return a table with a dialect of its own, hostile cells, or changes of its characters."""
     columns = ["time", "a", "b"]
     rows = [[f"{0.01 * k:.2f}", f"{k % 7}.5", str(k)] for k in range(random.choice((0, 1, 6, 6, 6, 200)))]
-    if random.random() < 0.3:
+    if random.random() < 0.15:
         columns[random.randrange(3)] = random.choice((*_HEADERS, *TEXTS))
-    for _ in range(random.choice((0, 1, 1, 2, 5))):
+    for _ in range(random.choice((0, 0, 1, 1, 2))):
         if rows:
             random.choice(rows)[random.randrange(3)] = random.choice(_CELLS)
-    match random.randrange(12):
+    match random.randrange(24):
         case 0 if rows:
             rows.insert(random.randrange(len(rows)), random.choice(rows))
         case 1 if rows:
@@ -63,13 +63,13 @@ def table(random: random.Random) -> bytes:
             columns += [f"c{i}" for i in range(3000)]
         case 6:
             rows = rows * 500
-    mark = random.choice((",", ",", ",", ";", "\t", "|", " ", ", "))
-    text = random.choice(("\n", "\n", "\r\n", "\r")).join(mark.join(row) for row in [columns, *rows])
-    if random.random() < 0.1:
+    mark = random.choice((*[","] * 8, ";", "\t", "|", " ", ", "))
+    text = random.choice((*["\n"] * 6, "\r\n", "\r")).join(mark.join(row) for row in [columns, *rows])
+    if random.random() < 0.05:
         text = text.replace(".", ",")
-    if random.random() < 0.3:
+    if random.random() < 0.2:
         return mutated(random, text, random.choice(('"', ",", ";", '"a\n')))
-    return encoded(random, text + random.choice(("", "\n", "\n\n", "\x1a")))
+    return encoded(random, text + random.choice(("\n", "\n", "\n", "", "\n\n", "\x1a")))
 
 
 def a_table(random: random.Random) -> Input:

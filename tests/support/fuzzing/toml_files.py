@@ -111,10 +111,10 @@ def plotted(random: random.Random) -> list[str]:
 
 def changed(random: random.Random, text: str) -> bytes:
     """Return a TOML text with changes of its characters or of its tables."""
-    if random.random() < 0.5:
+    if random.random() < 0.4:
         return mutated(random, text, random.choice(("[", "{ a = ", "a.", "[[", '"""', "# ")))
     data = tomllib.loads(text)
-    for _ in range(random.choice((1, 1, 2, 3))):
+    for _ in range(random.choice((1, 1, 1, 2))):
         _change_tables(random, data)
     text = written(data)
     if random.random() < 0.15:
@@ -125,11 +125,13 @@ def changed(random: random.Random, text: str) -> bytes:
 
 def _change_tables(random: random.Random, data: dict[str, Any]) -> None:
     places = list(_places(data))
-    table, key = random.choice(places)
+    leaves = [(table, key) for table, key in places if not isinstance(table[key], dict | list)]
+    table, key = random.choice(leaves if leaves and random.random() < 0.6 else places)
     other, name = random.choice(places)
     match random.randrange(8):
         case 0 | 1:
-            table[key] = random.choice(_STRANGE)
+            near = isinstance(table[key], int | float) and random.random() < 0.5
+            table[key] = table[key] * random.choice((-1, 0.1, 3, 1e6, 0)) if near else random.choice(_STRANGE)
         case 2:
             table[key] = random.choice(TEXTS)
         case 3:
