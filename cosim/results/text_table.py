@@ -39,7 +39,9 @@ class TextTable:
     row 0 where there is any row.
     """
 
-    def __init__(self, variables: Sequence[ResultVariable] = (), changes: Sequence[Change] = ()) -> None:
+    def __init__(
+        self, variables: Sequence[ResultVariable] = (), changes: Sequence[tuple[int, tuple[str, ...]]] = ()
+    ) -> None:
         self.variables, self.changes = tuple(variables), tuple(changes)
 
     @property

@@ -154,8 +154,8 @@ class Override(_InputEvent):
     """The kind of event."""
 
     value: GivenValue
-    """The value, in the input's own unit of measure; true or false for a Boolean, for an enumeration a number
-    or the name of an item."""
+    """The value, in the input's own unit of measure; true or false for a Boolean, a text for a String, for an
+    enumeration a number or the name of an item."""
 
 
 class Bias(_InputEvent):

@@ -143,17 +143,14 @@ def _typed(variable: VariableInfo, value: float, texts: Texts) -> Value:
     return int(value) if variable.type != "Real" and whole else value
 
 
-def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float:
-    """Copy an output to the input that it is connected to.
-
-    Return the value in the input's unit; of a text, its number.
-    """
+def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float | str:
+    """Copy an output to the input that it is connected to; return the value in the input's unit."""
     unit, name = link.source
     receiver, sink = link.sink
     found = units[unit].get(name)
     if isinstance(found, str):
         units[receiver].set(sink, found)
-        return texts.number(found)
+        return found
     value = float(found)
     if not math.isfinite(value):
         raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
@@ -162,12 +159,21 @@ def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float:
     return value
 
 
+def _change(before: float | str, now: float | str) -> float:
+    if isinstance(before, str) or isinstance(now, str):
+        return 0.0 if before == now else math.inf
+    return abs(now - before)
+
+
 def _iterate(units: Mapping[str, Unit], links: tuple[Link, ...], tolerance: float, texts: Texts) -> None:
-    """Pass all outputs on until no value changes by more than `tolerance`. Raises UnitError if some do."""
+    """Pass all outputs on until no value changes by more than `tolerance`, and no text at all.
+
+    Raises UnitError if some do.
+    """
     before = [_pass_on(units, link, texts) for link in links]
     for _ in range(_ITERATIONS):
         now = [_pass_on(units, link, texts) for link in links]
-        changes = [abs(b - a) for a, b in zip(before, now, strict=True)]
+        changes = list(map(_change, before, now))
         if max(changes) <= tolerance:
             return
         before = now

@@ -21,7 +21,7 @@ from typing import Any
 from . import framing, shared
 from .handover import Side
 from .shared import Shared
-from .texts import part_of
+from .texts import is_long, part_of, piece_of
 
 _SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 
@@ -151,8 +151,17 @@ class Server:
         return float(self.texts.number(text))
 
     def do_texts_since(self, count: int) -> list[str]:
-        """Return texts that the master does not know, in order; at least one where there is one."""
+        """Return texts that the master does not know, in order; none where the first is in pieces."""
         return part_of(self.texts.since(count))
+
+    def do_piece_of_text(self, number: int, start: int) -> str:
+        """Return a piece of a text, from a character on; "" behind its end, and where there is no text."""
+        return piece_of(self.texts.text(number), start) if number < len(self.texts) else ""
+
+    def do_get(self, name: str) -> Any:
+        """Return the value of a variable; of a text that is longer than an answer its number, in a list."""
+        value = self.unit.get(name)
+        return [self.texts.number(value)] if is_long(value) else value
 
     def do_bind(self, plan: Any) -> None:
         """Bind the unit to the shared memory."""

@@ -1,6 +1,7 @@
 """The numbers of texts on both sides of an isolated unit: each side has a table of its own.
 
-A text crosses the socket once, when it is new; then its numbers are known to the master.
+A text crosses the socket once, when it is new; then its numbers are known to the master. One that is longer
+than an answer comes in pieces.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from ..unit import UnitError
 from . import framing
 
 _PART = framing.LONGEST // 16  # characters of an answer, of which JSON may make six bytes each
+_LONGEST = 1 << 26  # characters of a text: what is more is no text of a unit that can be trusted
 
 
 class TextExchange:
@@ -40,21 +42,50 @@ class TextExchange:
         """Return the run's number of a text of the child. Raises UnitError for a number that no text has."""
         while not 0.0 <= number < len(self._here):
             news = self._request("texts_since", len(self._here)) if number >= 0.0 else None
+            if news == []:
+                news = [self._in_pieces(len(self._here))]
             if not news or not isinstance(news, list) or not all(isinstance(text, str) for text in news):
                 raise UnitError(f"unit '{self._name}': its process wrote {number!r}, which no text has")
-            self._here += [self._texts.number(text) for text in news]
+            self._here += [self._texts.number(as_c_text(text)) for text in news]
         return self._here[int(number)]
+
+    def _in_pieces(self, number: int) -> str | None:
+        """Return a text that is longer than an answer; None for a number that no text has."""
+        pieces, size = [], 0
+        while piece := self._request("piece_of_text", number, size):
+            if not isinstance(piece, str):
+                return None
+            pieces.append(piece)
+            size += len(piece)
+            if size > _LONGEST:
+                raise UnitError(
+                    f"unit '{self._name}': its process sent a text of more than {_LONGEST} characters"
+                )
+        return "".join(pieces) or None
+
+
+def as_c_text(text: str) -> str:
+    """Return a text of a foreign process as a C text can be: up to a NUL, without half a character."""
+    return text.partition("\0")[0].encode(errors="replace").decode()
 
 
 def part_of(texts: list[str]) -> list[str]:
-    """Return the first texts of a list, as many as an answer holds. Raises UnitError for a longer one."""
+    """Return the first texts of a list, as many as an answer holds: none where the first is longer."""
     part: list[str] = []
     size = 0
     for text in texts:
         size += len(text)
-        if size > _PART and part:
-            break
         if size > _PART:
-            raise UnitError(f"a text of {len(text)} characters; an isolated unit passes on {_PART}")
+            break
         part.append(text)
     return part
+
+
+def piece_of(text: str, start: int) -> str:
+    """Return the piece of a text from a character on that an answer holds; "" behind its end."""
+    return text[start : start + _PART]
+
+
+def is_long(value: object) -> bool:
+    """Return True for a text that no answer holds."""
+    return isinstance(value, str) and len(value) > _PART

@@ -22,7 +22,7 @@ from ..fmi.log import UnitLog
 from ..unit import NO_VALUES, UnitError, floats
 from . import framing, handover, shared
 from .process import Process, ProcessLimits
-from .texts import TextExchange
+from .texts import TextExchange, as_c_text
 from .waiting import WAITING
 
 _FREEING = 2.0  # s
@@ -189,6 +189,7 @@ class IsolatedUnit:
             for b, t in pairs
             if b.feedthrough and b.type != "String"
         ]
+        self._texts = plan.texts
         self._exchange = TextExchange(self.name, plan.texts, self._call)
         of_texts = [(b, t) for b, t in pairs if b.type == "String"]
         self._texts_in, self._texts_out, self._texts_through = (
@@ -218,10 +219,14 @@ class IsolatedUnit:
         self._time, self._key = self._limits.step, "step_timeout"
 
     def get(self, name: str) -> Value:
-        value = self._call("get", name)
-        if not isinstance(value, bool | int | float | str):
-            raise UnitError(f"unit '{self.name}': its process sent no value for {name}")
-        return value
+        match self._call("get", name):
+            case str() as text:
+                return as_c_text(text)
+            case bool() | int() | float() as value:
+                return value
+            case [float() as number]:
+                return self._texts.text(self._exchange.from_child(number))
+        raise UnitError(f"unit '{self.name}': its process sent no value for {name}")
 
     def set(self, name: str, value: Value) -> None:
         self._call("set", name, value)

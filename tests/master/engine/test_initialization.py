@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from evcosim.cosim.errors import ConfigError
+from evcosim.master.engine.initialization import _change
 from evcosim.master.unit import UnitError
 from support.mocks import MockUnit, column, plan_of, real, started
 
@@ -49,3 +52,9 @@ def test_a_loop_that_does_not_converge_says_so():
     plan = plan_of(units, {"connect": RING, "experiment": {"algebraic_loops": "iterate"}})
     with pytest.raises(UnitError, match="does not converge"):
         started(units, plan)
+
+
+def test_a_text_that_changes_is_never_within_a_tolerance():
+    assert _change("on", "off") == _change("on", 1.0) == math.inf
+    assert _change("on", "on") == 0.0
+    assert _change(1.0, -0.5) == 1.5

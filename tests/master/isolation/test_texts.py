@@ -9,7 +9,7 @@ import pytest
 
 from evcosim.cosim.texts import Texts
 from evcosim.master.isolation import framing
-from evcosim.master.isolation.texts import TextExchange, part_of
+from evcosim.master.isolation.texts import TextExchange, is_long, part_of, piece_of
 from evcosim.master.unit import UnitError
 
 
@@ -23,6 +23,9 @@ class Child:
         self.requests += 1
         if name == "learn_text":
             return self.texts.number(*arguments)
+        if name == "piece_of_text":
+            number, start = arguments
+            return piece_of(self.texts.text(number), start) if number < len(self.texts) else ""
         return part_of(self.texts.since(*arguments))
 
 
@@ -44,8 +47,31 @@ def test_more_texts_than_an_answer_holds_come_in_parts() -> None:
     exchange = TextExchange("a", here, child)
     assert here.text(exchange.from_child(numbers[-1])) == long[-1]
     assert child.requests > 1
-    with pytest.raises(UnitError, match=r"a text of \d+ characters; an isolated unit passes on \d+"):
-        part_of(["x" * framing.LONGEST])
+
+
+def test_a_text_that_no_answer_holds_comes_in_pieces() -> None:
+    here, child = Texts(), Child()
+    longest = "\N{SNOWMAN}" * framing.LONGEST
+    assert part_of([longest, "x"]) == [] and is_long(longest) and not is_long("x")
+    numbers = [child.texts.number(text) for text in ("before", longest, "after")]
+    exchange = TextExchange("a", here, child)
+    assert [here.text(exchange.from_child(number)) for number in numbers] == ["before", longest, "after"]
+    with pytest.raises(UnitError, match=r"its process wrote 4.0, which no text has"):
+        exchange.from_child(4.0)
+
+
+def test_a_text_without_an_end_is_an_error() -> None:
+    def endless(name: str, *_: Any) -> Any:
+        return [] if name == "texts_since" else "x" * (1 << 20)
+
+    with pytest.raises(UnitError, match=r"sent a text of more than \d+ characters"):
+        TextExchange("a", Texts(), endless).from_child(1.0)
+
+
+def test_what_no_c_text_holds_is_taken_out() -> None:
+    texts = Texts()
+    exchange = TextExchange("a", texts, lambda *_: ["a\ud800b\0c"])
+    assert texts.text(exchange.from_child(1.0)) == "a?b"
 
 
 @pytest.mark.parametrize("number", [5.0, -1.0, math.nan, math.inf])
