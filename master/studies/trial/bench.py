@@ -146,13 +146,17 @@ class Bench:
         )
         return System(self.system.path, file)
 
+    def _fitting(self, name: str, value: float) -> float:
+        """Return the value that an input of its type can have."""
+        return value if self.interface.variables[name].type == "Real" else float(round(value))
+
     def _driven(self, drive: InputCourses) -> Scenario:
         """Return a scenario that drives the inputs, with the unit's own parameters and starts."""
         stimuli = [
             StimulusEntry(
                 to=f"{self.unit}.{name}",
                 unit=self.ours.variables[name].unit or None,
-                table=[(self.start + t, value) for t, value in points],
+                table=[(self.start + t, self._fitting(name, value)) for t, value in points],
             )
             for name, points in drive.items()
             if name in self.inputs

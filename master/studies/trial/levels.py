@@ -56,6 +56,8 @@ def _level(v: VariableInfo, limits: tuple[float, float]) -> Level:
         step = half if math.isfinite(half) else math.copysign(1.0, half)
     else:
         step = math.copysign(min(abs(half), usual), half)
+    if v.type == "Integer":
+        step = math.copysign(math.ceil(abs(step)), step)
     return Level(rest, rest + step, limits)
 
 

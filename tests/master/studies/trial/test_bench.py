@@ -10,7 +10,7 @@ import pytest
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import MapTables, UnitEntry, load_system
 from evcosim.master.studies.trial.bench import Bench, Deadline, OutOfTime, largest
-from support.c_fmu import vehicle_fmu
+from support.c_fmu import mixed_fmu, vehicle_fmu
 
 NAMES = ("throttle", "speed", "power", "nothing like it")
 DRIVE = {"throttle": [(0.0, 0.0), (0.5, 50.0)]}
@@ -65,3 +65,18 @@ def test_nothing_runs_after_the_deadline():
 def test_the_largest_magnitude():
     assert largest(np.array([1.0, -3.0, 2.0])) == 3.0
     assert largest(np.array([])) == 0.0
+
+
+def test_an_integer_input_gets_whole_numbers(tmp_path):
+    """The waves of a trial pass between two of them."""
+    mixed_fmu(tmp_path / "mixed.fmu", 2)
+    (tmp_path / "one.toml").write_text(
+        'name = "one"\n[experiment]\nstop_time = 1.0\nstep_size = 0.1\n[units.a]\nfmu = "mixed.fmu"\n'
+    )
+    system = load_system(str(tmp_path / "one.toml"))
+    entry, scenario = system.file.units["a"], load_scenario(system, None)
+    one = Bench(system, scenario, "a", entry, None, ("count", "y"), 1.0)
+    drive = {"count_in": [(0.0, 0.4), (0.5, 1.6)], "u": [(0.0, 0.4)]}
+    found = one.run(drive, deadline())
+    assert [found["count"][k] for k in (1, 5, 6, 10)] == [1.0, 1.0, 3.0, 3.0]
+    assert found["y"][1] == pytest.approx(0.04)
