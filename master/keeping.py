@@ -66,13 +66,16 @@ class KeptRun:
 def ended(results: Results, finished: bool, error: BaseException | None) -> Results:
     """Return the results of a run at its end, whose manifest says how it ended: "done" at the stop time.
 
-    A loop of one's own may leave it before ("stopped").
+    A unit may have asked for the end before ("ended", with a sentence under this key), and a loop of one's
+    own may leave it ("stopped").
     """
     manifest = results.manifest
     if isinstance(error, KeyboardInterrupt):
         manifest["status"] = "interrupted"
     elif error is not None:
         manifest["status"], manifest["error"] = "failed", str(error) or type(error).__name__
+    elif "ended" in manifest:
+        manifest["status"] = "ended"
     else:
         manifest["status"] = "done" if finished else "stopped"
     return results

@@ -52,7 +52,7 @@ def manifest(
         "outside": list(prepared.outside),
         "warnings": list(warnings),
         "loop_seconds": round(loop_seconds, 6),
-    }
+    } | ({"ended": engine.ending.text} if engine.ending.text else {})
 
 
 _NO_SETTINGS = {"title", "source", "figure", "metrics", "identification", "budget"}

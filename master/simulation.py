@@ -129,24 +129,35 @@ class Simulation:
 
     @property
     def finished(self) -> bool:
-        """True once the stop time is reached; without `to_stop`, stepping on beyond it is allowed."""
-        return self._engine.k >= self.plan.steps
+        """True once the stop time is reached, or a unit has ended the run.
+
+        Without `to_stop`, stepping on beyond the stop time is allowed.
+        """
+        return not self.steps_left
+
+    @property
+    def ended(self) -> str:
+        """A sentence on the unit that asked to end the simulation, and when; "" while none has."""
+        return self._engine.ending.text
 
     @property
     def steps_left(self) -> int:
-        """The number of communication steps left to the stop time."""
-        return max(0, self.plan.steps - self._engine.k)
+        """The number of communication steps left to the stop time, or to the end that a unit asked for."""
+        return max(0, min(self.plan.steps, self._engine.ending.step) - self._engine.k)
 
     def step(self, steps: int = 1) -> None:
         """Do `steps` communication steps.
 
-        Raises RunError naming unit, time and reason; the results up to then are kept. ConfigError for a
-        number that is none of steps or leads too far, and with `to_stop` for more than are left.
+        They are fewer where a unit asks to end the simulation; after that a step is a RunError. Raises
+        RunError naming unit, time and reason; the results up to then are kept. ConfigError for a number that
+        is none of steps or leads too far, and with `to_stop` for more than are left.
         """
         if not isinstance(steps, Integral) or isinstance(steps, bool) or steps < 0:
             raise ConfigError(f"steps = {short(steps)}: a run does 0 steps or more, a whole number")
         if not steps <= LATEST / self.plan.clock.step:
             raise ConfigError(f"steps = {short(steps)}: a run goes up to {LATEST:g} s")
+        if steps and self._engine.k >= self._engine.ending.step:
+            raise RunError(f"the run is over: {self.ended}")
         if self.plan.clock.told and steps > self.steps_left:
             raise ConfigError(
                 f"steps = {steps}: {self.steps_left} are left to the stop time {self.plan.clock.stop} s, "

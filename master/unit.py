@@ -50,6 +50,10 @@ class Unit(Protocol):
     """True for a unit in a process of its own."""
 
     @property
+    def asked_end(self) -> float | None:
+        """The time [s] at which it asked to end the simulation, NaN if it does not tell; None: it did not."""
+
+    @property
     def warnings(self) -> int:
         """The number of calls that ended with a warning and of log messages of status Warning."""
 

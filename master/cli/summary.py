@@ -23,6 +23,7 @@ def show(finished: FinishedRun) -> None:
     fields = [
         ("run", _name(manifest)),
         ("time", _time(finished)),
+        *([("ended", manifest["ended"])] if "ended" in manifest else []),
         ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
     ]
     if isolated := [name for name, unit in manifest["units"].items() if unit["isolation"] == "process"]:
@@ -50,6 +51,7 @@ def as_data(finished: FinishedRun) -> dict[str, Any]:
     return {key: manifest[key] for key in keys} | {
         "algorithm": manifest["experiment"]["algorithm"],
         "error": manifest.get("error"),
+        "ended": manifest.get("ended"),
         "simulated_seconds": _simulated(finished),
         "real_time_factor": _factor(finished),
         "warnings": finished.remarks,

@@ -6,6 +6,7 @@ results, bit for bit.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
 import sys
@@ -17,17 +18,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.can.channel import MessageChannel
-from ...cosim.can.quantization import ChannelError
 from ...cosim.clock import Clock
 from ...cosim.errors import RunError
-from ...cosim.plan.plan import MessagePlan, Plan
+from ...cosim.plan.plan import Plan
 from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ..unit import Unit, floats
+from .ending import EndedWithin, Ending
 from .profile import Profile
-from .schedule import Action, Waiting, schedule, waiting
+from .schedule import Action, schedule, waiting
+from .sender import Sender
 from .text_notes import TextNotes
 
 Act = Callable[[int], None]
@@ -61,11 +63,14 @@ class Effect:
 class Turn:
     """One unit in the schedule: its actions, and the overrides and biases of its inputs by slot.
 
-    `memory` has shape (size,); `times` are those of the unit's FMU steps.
+    `memory` has shape (size,); `times` are those of the unit's FMU steps. `ending` gets its request for the
+    end of the run.
     """
 
-    def __init__(self, unit: Unit, plan: UnitPlan, memory: memoryview[float], clock: Clock) -> None:
-        self.unit, self.plan, self.memory = unit, plan, memory
+    def __init__(
+        self, unit: Unit, plan: UnitPlan, memory: memoryview[float], clock: Clock, ending: Ending
+    ) -> None:
+        self.unit, self.plan, self.memory, self.ending = unit, plan, memory, ending
         self.take = compile_routes(plan.routes, memory)
         self.times = TurnTimes(clock, plan.every, plan.substeps)
         outputs = [group for group in plan.groups if group.kind != "input"]
@@ -93,10 +98,21 @@ class Turn:
         self.unit.start_step(self.times.steps(k))
 
     def end(self, k: int) -> None:
-        """Wait for the step and read the outputs. Raises RunError when one is NaN or infinite."""
+        """Wait for the step and read the outputs.
+
+        Raises RunError when one is NaN or infinite, EndedWithin when the unit ended within the step.
+        """
         self.unit.finish_step()
+        if self.unit.asked_end is not None:
+            self._request_end(k, self.unit.asked_end)
         self.unit.get_outputs()
         self.check_finite()
+
+    def _request_end(self, k: int, asked: float) -> None:
+        clock, end = self.times.clock, k + self.plan.every
+        if clock.told:
+            end = min(end, clock.steps)
+        self.ending.request(self.unit.name, asked, (k, end), (clock.at(k), clock.at(end)))
 
     def publish(self, k: int) -> None:
         """Make the outputs after the step, but for the sampled ones, those valid at the next point."""
@@ -123,38 +139,6 @@ class Turn:
                     if not math.isfinite(value):
                         unit = f" {v.unit}" if v.unit else ""
                         raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
-
-
-class Sender:
-    """A message in the schedule: its actions; `waiting` has the slots of values on a bus with a delay."""
-
-    def __init__(
-        self, plan: MessagePlan, channel: MessageChannel, memory: memoryview[float], waiting: Waiting | None
-    ) -> None:
-        self.plan, self.channel, self.memory, self.waiting = plan, channel, memory, waiting
-
-    def send(self, k: int) -> None:
-        """Sample all signals. Raises RunError naming sender and signal if a value cannot be sent."""
-        try:
-            self.channel.transmit(self.memory, k)
-        except ChannelError as error:
-            raise self.failed(error) from error
-        if self.waiting is not None:
-            row = self.waiting.row((k - self.plan.first) // self.plan.every)
-            for i, (slot, _) in enumerate(self.plan.arrivals, row):
-                self.memory[i] = self.memory[slot]
-
-    def failed(self, error: ChannelError) -> RunError:
-        """Return the error of a run for one of the channel."""
-        name = f"{self.plan.bus}.{self.plan.message.name}.{error.signal}"
-        return RunError(f"{self.plan.senders.get(error.signal, '')} via {name}: {error.rule}")
-
-    def deliver(self, k: int) -> None:
-        """Copy the values sampled `delay` steps ago to the mailboxes."""
-        assert self.waiting is not None  # only messages with a delay are delivered
-        row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
-        for i, (_, mailbox) in enumerate(self.plan.arrivals, row):
-            self.memory[mailbox] = self.memory[i]
 
 
 class Engine:
@@ -188,7 +172,8 @@ class Engine:
         self._chunk = min(_FIRST, self._most)
         for unit_plan in plan.units:
             units[unit_plan.name].bind(self.memory, unit_plan)
-        self.turns = [Turn(units[p.name], p, self.view, plan.clock) for p in plan.units]
+        self.ending = Ending()
+        self.turns = [Turn(units[p.name], p, self.view, plan.clock, self.ending) for p in plan.units]
         self.senders = [
             Sender(m, MessageChannel(m.message, m.routes, m.settings, log_raw), self.view, self.late.get(i))
             for i, m in enumerate(plan.messages)
@@ -226,14 +211,15 @@ class Engine:
     # ---- stepping
 
     def advance(self, steps: int, progress: Callable[[int], None] | None = None) -> None:
-        """Do `steps` steps in chunks, calling `progress` with k after each.
+        """Do `steps` steps in chunks, calling `progress` with k after each; fewer if a unit ends it.
 
         The rows recorded before an error or Ctrl-C are kept. Raises RunError naming unit, time and reason.
         """
         end = self.k + steps
-        while self.k < end:
+        while self.k < min(end, self.ending.step):
             self._apply_events()
-            self._advance_chunk(min(self._chunk, end - self.k, self._steps_to_event()))
+            left = min(end, self.ending.step) - self.k
+            self._advance_chunk(min(self._chunk, left, self._steps_to_event()))
             if progress is not None:
                 progress(self.k)
 
@@ -246,7 +232,9 @@ class Engine:
         self.whole = False
         self.chunks += 1
         try:
-            self._run(count, drives, rows)
+            with contextlib.suppress(EndedWithin):
+                self._run(count, drives, rows)
+            self._finish_begun()
             self.whole = True
         except RunError as error:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
@@ -256,6 +244,12 @@ class Engine:
             for sender in self.senders:
                 sender.channel.flush()
         self._adapt(count, done, time.perf_counter() - begin)
+
+    def _finish_begun(self) -> None:
+        """Wait for the units that had begun a step when another one ended within it."""
+        if self.ending.step == self.k:
+            for turn in self.turns:
+                turn.unit.finish_step()
 
     def _stimuli(self, count: int) -> NDArray[np.float64]:
         """Return the stimuli at the next `count` communication points, shape (drives, count)."""

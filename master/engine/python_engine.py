@@ -24,6 +24,7 @@ class PythonEngine(Engine):
         self._under_way = first, wide
         acts = self._acts(first, drives, wide)
         clock, end = time.perf_counter, time.perf_counter() + CHUNK_SECONDS
+        ending = self.ending
         try:
             for k in range(first, first + count):
                 # the actions of the schedule in order, each at the steps at which it is due
@@ -31,8 +32,8 @@ class PythonEngine(Engine):
                     act(k)
                 # the step is done: an error in a later one leaves its row
                 self.k = k + 1
-                # the caller looks at progress, events and Ctrl-C
-                if clock() > end:
+                # the caller looks at progress, events and Ctrl-C; a unit may have asked for the end
+                if clock() > end or ending.step <= self.k:
                     break
         finally:
             np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])

@@ -55,6 +55,10 @@ class Action:
         """True if the action is due at each step."""
         return self.every == 1 and self.first == 0
 
+    def due(self, k: int) -> bool:
+        """Return True if the action is due at step k."""
+        return k >= self.first and (k - self.first) % self.every == 0
+
 
 def schedule(plan: Plan) -> tuple[Action, ...]:
     """Return the actions of a communication step, in order."""

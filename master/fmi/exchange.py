@@ -11,6 +11,7 @@ the outputs there are those after it.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 import math
@@ -39,6 +40,10 @@ _SHOWN = 3
 _CLOSE = 16 * sys.float_info.epsilon  # of a time: what the solver cannot step over
 
 
+class _Ending(Exception):
+    """The FMU asks to end the simulation; `asked_end` has the time."""
+
+
 class ModelExchange(Instance):
     """An `Instance` with a solver. A class for a version of FMI defines, beside what stands there:
 
@@ -65,6 +70,7 @@ class ModelExchange(Instance):
         tolerance: float | None = None,
     ) -> None:
         self._solver: Cvode | None = None
+        self._stepping = False  # its first discrete states are known
         self._begins_anew = self._nominals_changed = True
         self._inputs: dict[bool, list[Place]] = {True: [], False: []}  # continuous ones, discrete ones
         self._held: dict[bool, list[float]] = {True: [], False: []}  # their values, as last given to the FMU
@@ -109,6 +115,7 @@ class ModelExchange(Instance):
         self._iterate(self._first_update())
         self._settle()
         self._held[False] = [self._number(self.get(v.name)) for _, v in self._inputs[False]]
+        self._stepping = True
 
     def _number(self, value: Value) -> float:
         assert self._bound_to is not None  # steps follow `bind`
@@ -220,7 +227,7 @@ class ModelExchange(Instance):
             update()
             update, answer = self._update, self._answer
             if answer.terminateSimulation:
-                self._give_up("asks to terminate the simulation")
+                self._ask_to_end()
             self._nominals_changed |= bool(answer.nominalsOfContinuousStatesChanged)
             if not answer.newDiscreteStatesNeeded:
                 break
@@ -238,6 +245,11 @@ class ModelExchange(Instance):
         self._iterate()
         self._settle()
 
+    def _handle_change(self, change: Call | None = None) -> None:
+        """Handle an event that a change of an input makes, before a step; the FMU may ask to end there."""
+        with contextlib.suppress(_Ending):
+            self._handle_event(change)
+
     def _settle(self) -> None:
         """Take over nominal values and domains after an event."""
         if self._nominals_changed and self._solver is not None:
@@ -253,6 +265,13 @@ class ModelExchange(Instance):
     def _give_up(self, why: str) -> NoReturn:
         raise UnitError(f"unit '{self.name}': {why}, at t = {self._time.value:.12g} s{self._said()}")
 
+    def _ask_to_end(self) -> NoReturn:
+        """Note that the FMU asks to end the simulation now, and leave what is under way."""
+        if not self._stepping:
+            self._give_up("asks to end the simulation before the first step")
+        self.asked_end = self._time.value
+        raise _Ending
+
     # ---- the calls of `unit.Unit`
 
     def _take_inputs(self) -> None:
@@ -264,26 +283,30 @@ class ModelExchange(Instance):
         held[True] = continuous
         if discrete != held[False]:
             held[False] = discrete
-            self._handle_event(one_after_the_other(self._set_discrete, self._set_continuous))
+            self._handle_change(one_after_the_other(self._set_discrete, self._set_continuous))
         else:
             self._set_continuous()
             self._begins_anew = True
             if self._domains_now() != self._domains:
-                self._handle_event()
+                self._handle_change()
 
     def set(self, name: str, value: Value) -> None:
         """Set a variable; after the initialization this is an event."""
         change = functools.partial(super().set, name, value)
         if self._initialized:
-            self._handle_event(change)
+            self._handle_change(change)
         else:
             change()
 
     def start_step(self, steps: FmuSteps) -> None:
         """Integrate over the steps. No step of the solver is longer than one of them."""
+        if self.asked_end is not None:  # as it got its inputs
+            return
         try:
             for end in steps.ends():
                 self._advance(end)
+        except _Ending:
+            return
         except SolverError as error:
             self._give_up(f"CVODE cannot go on: {error}{self._why_not()}")
 
@@ -335,7 +358,7 @@ class ModelExchange(Instance):
             return False
         self._complete()
         if self._wants_end:
-            self._give_up("asks to terminate the simulation")
+            self._ask_to_end()
         return bool(self._wants_event)
 
     def free(self) -> None:

@@ -16,6 +16,7 @@ from .exchange import ModelExchange
 from .fmu import Fmu, FmuError
 from .instance import Instance
 from .library import Library
+from .step_status import beside
 from .transfer import Call, StepCall, one_after_the_other
 
 _FALSE, _TRUE = ctypes.c_char(0), ctypes.c_char(1)  # fmiBoolean
@@ -130,7 +131,7 @@ class Fmi1Unit(Fmi1Instance):
                 self.judge_step(status)
 
     def judge_step(self, status: int) -> None:
-        self._judge_step("fmiDoStep", status)
+        self._judge("fmiDoStep", status, beside(status, self.fmi, self._library, self._component))
 
     def terminate(self) -> None:
         if self._initialized:

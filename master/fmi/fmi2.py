@@ -10,6 +10,7 @@ from fmpy.fmi2 import fmi2EventInfo
 from ...cosim.plan.unit_plan import FmuSteps
 from .exchange import ModelExchange
 from .instance import Instance
+from .step_status import asked_end, beside
 from .transfer import Call, StepCall
 
 _INVISIBLE, _LOGGING = ctypes.c_int(0), ctypes.c_int(1)  # fmi2Boolean
@@ -62,9 +63,13 @@ class Fmi2Unit(Instance):
             status = self._do_step(self._component, self._time, self._step_size, self._no_set_state)
             if status:
                 self.judge_step(status)
+                if self.asked_end is not None:
+                    break
 
     def judge_step(self, status: int) -> None:
-        self._judge_step("fmi2DoStep", status)
+        self.asked_end = asked_end(status, self._library, self._component)
+        if self.asked_end is None:
+            self._judge("fmi2DoStep", status, beside(status, self.fmi, self._library, self._component))
 
 
 class Fmi2ModelExchange(ModelExchange, Fmi2Unit):

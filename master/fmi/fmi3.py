@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -70,7 +71,7 @@ class Fmi3Unit(Instance):
         self._do_step = self.function("fmi3DoStep")
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double()
         self._event, self._ending, self._early = (ctypes.c_bool() for _ in range(3))
-        self._reached = ctypes.c_double()
+        self._reached = ctypes.c_double(math.nan)  # an FMU that does not write it has done the step
         self.step_call = StepCall(self._do_step, (self._event, self._ending, self._early, self._reached))
         self._step_arguments = (
             self._component, self._time, self._step_size, _TRUE, ctypes.byref(self._event),
@@ -82,14 +83,16 @@ class Fmi3Unit(Instance):
             status = self._do_step(*self._step_arguments)
             if status or self._ending or self._early:
                 self.judge_step(status)
+                if self.asked_end is not None:
+                    break
 
     def judge_step(self, status: int) -> None:
-        """Judge a step, which may neither end the simulation nor, since that is not allowed, end early."""
+        """Judge a step. It may ask to end the simulation, but not end early, since that is not allowed."""
         if status:
             self._judge("fmi3DoStep", status)
         if self._ending:
-            raise UnitError(f"unit '{self.name}': fmi3DoStep asks to terminate the simulation{self._said()}")
-        if self._early:
+            self.asked_end = math.inf if math.isnan(self._reached.value) else self._reached.value
+        elif self._early:
             raise UnitError(
                 f"unit '{self.name}': fmi3DoStep returned early, at t = {self._reached.value:g} s, though "
                 f"early return is not allowed{self._said()}"

@@ -36,7 +36,6 @@ from .library import Library, load_library
 from .log import STATUS, UnitLog
 from .refusal import why_refused
 from .state import States
-from .step_status import beside
 from .tolerance import tolerance_of
 from .transfer import Call, Copy, StepCall, Transfer, fits, one_after_the_other, rule
 from .types import REAL, FmiType, fmi_type
@@ -63,6 +62,7 @@ class Instance:
     """The number of statuses of the version."""
     step_call: StepCall | None = None
     """The C step function with its arguments; None before `exit_initialization`."""
+    asked_end: float | None = None
 
     def __init__(
         self,
@@ -375,17 +375,10 @@ class Instance:
         if status:
             self._judge(f"{name} of {of}" if of else name, status)
 
-    def _judge(self, what: str, status: int) -> None:
+    def _judge(self, what: str, status: int, also: str = "") -> None:
         if status > _WARNING or status < 0:
-            self._fail(what, status)
-        self.log.warnings += 1
-
-    def _judge_step(self, what: str, status: int) -> None:
-        """Judge the status of a step, with the reason that FMI 1.0 and 2.0 give for one that was not done."""
-        also = beside(status, self.fmi, self._library, self._component)
-        if also:
             self._fail(what, status, also)
-        self._judge(what, status)
+        self.log.warnings += 1
 
     def _fail(self, what: str, status: int, also: str = "") -> NoReturn:
         """Raise UnitError; `also` is a clause that follows the status, with its punctuation."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from typing import Any
 
 from .library import Library
@@ -17,17 +18,28 @@ def beside(status: int, fmi: str, library: Library, component: Any) -> str:
         return ": it computes the step asynchronously, which is not supported"
     if status != _DISCARD:
         return ""
-    known = []
-    time, ending = ctypes.c_double(), ctypes.c_int()
-    if _answered(library, f"{fmi}GetRealStatus", component, _LAST_SUCCESSFUL_TIME, time):
-        known.append(f"it got to t = {time.value:g} s")
-    if (
-        fmi == "fmi2"
-        and _answered(library, "fmi2GetBooleanStatus", component, _TERMINATED, ending)
-        and ending
-    ):
-        known.append("it asks to terminate the simulation")
-    return ": " + ", ".join(known) if known else ""
+    reached = _last_time(fmi, library, component)
+    return "" if reached is None else f": it got to t = {reached:g} s"
+
+
+def asked_end(status: int, library: Library, component: Any) -> float | None:
+    """Return the time [s] to which a unit of FMI 2.0 got that asks to end the simulation; NaN: unknown.
+
+    None for any other status than Discard, and for a step that it could not do.
+    """
+    ending = ctypes.c_int()
+    if status != _DISCARD or not _answered(library, "fmi2GetBooleanStatus", component, _TERMINATED, ending):
+        return None
+    if not ending:
+        return None
+    reached = _last_time("fmi2", library, component)
+    return math.nan if reached is None else reached
+
+
+def _last_time(fmi: str, library: Library, component: Any) -> float | None:
+    time = ctypes.c_double()
+    known = _answered(library, f"{fmi}GetRealStatus", component, _LAST_SUCCESSFUL_TIME, time)
+    return time.value if known else None
 
 
 def _answered(library: Library, name: str, component: Any, kind: Any, answer: Any) -> bool:

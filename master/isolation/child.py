@@ -133,6 +133,8 @@ class Server:
         slots = self.slots
         if self.unit is not None:
             slots[shared.WARNINGS] = self.unit.warnings
+            if self.unit.asked_end is not None:
+                slots[shared.ASKS_END], slots[shared.ASKED_END] = 1.0, self.unit.asked_end
         slots[shared.FRAME] = 1.0 if frame else 0.0
         self.side.post(number)
         if frame:

@@ -26,7 +26,7 @@ from ..warned import KINDS, WarningKinds
 REQUEST, KIND, MASTER_SLEEPS, SPIN, STEPS = range(5)
 STEPS_END = STEPS + len(FmuSteps._fields)
 # the child's side
-ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES, _WARNED = range(16, 22)
+ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES, _WARNED, ASKS_END, ASKED_END = range(16, 24)
 
 CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
 """Kinds of requests: the call in a frame; steps; steps after the outputs that feed through; outputs alone."""

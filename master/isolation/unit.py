@@ -74,6 +74,10 @@ class IsolatedUnit:
         return self._shared.warnings()
 
     @property
+    def asked_end(self) -> float | None:
+        return self._slots[shared.ASKED_END] if self._slots[shared.ASKS_END] else None
+
+    @property
     def warned(self) -> Mapping[str, int]:
         return {_printable(text): count for text, count in self._shared.warned()}
 
@@ -263,6 +267,8 @@ class IsolatedUnit:
         self._request(shared.STEP_SHOWN if self._shows else shared.STEP)
 
     def finish_step(self) -> None:
+        if not self._pending:
+            return
         self._finish()
         self._fresh = True
         if self._shows:

@@ -59,6 +59,7 @@ class MockUnit:
         self.steps: list[tuple[float, float]] = []
         self.log: list[str] = []
         self.apart = False
+        self.asked_end: float | None = None
         self.warnings = 0
         self.warned: dict[str, int] = {}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from support.c_fmu import SOURCES, compile_fmu
@@ -20,8 +21,10 @@ _VARIABLES = [
 ]
 
 
-def watch_fmu(path: Path, fmi: int = 2, annotations: str = "", tool: str = "cc") -> Path:
-    """The unit at `path` in FMI 1.0, 2.0 or 3.0; with vendors' `annotations`, and the `tool`."""
+def watch_fmu(
+    path: Path, fmi: int = 2, annotations: str = "", tool: str = "cc", flags: Sequence[str] = ()
+) -> Path:
+    """The unit at `path` in FMI 1.0, 2.0 or 3.0; with vendors' `annotations`, `tool`, compiler `flags`."""
     variables, outputs = [], []
     for i, (name, reference, causality, variability, kind, start) in enumerate(_VARIABLES, 1):
         about = (
@@ -50,4 +53,4 @@ def watch_fmu(path: Path, fmi: int = 2, annotations: str = "", tool: str = "cc")
         f'<fmiModelDescription fmiVersion="{fmi}.0" modelName="watch" generationTool="{tool}" {token}>{kind}'
         f"{annotations}<ModelVariables>{''.join(variables)}</ModelVariables>{structure}</fmiModelDescription>"
     )
-    return compile_fmu(path, SOURCES / "watch.c", description, "watch", fmi, [f"-DFMI={fmi}"])
+    return compile_fmu(path, SOURCES / "watch.c", description, "watch", fmi, [f"-DFMI={fmi}", *flags])

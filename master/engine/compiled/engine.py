@@ -7,7 +7,7 @@ import ctypes
 import sys
 import time
 from collections.abc import Iterator
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,9 @@ class CompiledEngine(Engine):
         if self._raised is not None:
             raise self._raised
         if result != L.DONE:
-            self._raise(program, result)
+            if result != L.RAISED:
+                self._recheck(program, result)
+            self._finish_step(program, rows, first)
 
     def rows_under_way(self) -> NDArray[np.float64]:
         rows = self._rows
@@ -67,13 +69,33 @@ class CompiledEngine(Engine):
             return np.empty((0, len(self.columns)))
         return rows[: int(self._state[L.STEPS_DONE])].copy()
 
-    def _raise(self, program: Program, result: int) -> NoReturn:
-        """Repeat the check at which the kernel stopped with the code `result`, and raise its exception."""
+    def _recheck(self, program: Program, result: int) -> None:
+        """Repeat the check at which the kernel stopped with the code `result`, and raise its exception.
+
+        Return for a step whose unit asked to end the simulation.
+        """
         called = int(self._state[L.CALLED])
         at = self._places[int(self._state[L.AT])]
         recheck = program.rechecks[at] if called < 0 else program.call_rechecks[called]
         recheck(result, int(self._state[L.DETAIL]))
-        raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+        if self.turns[self.schedule[program.actions[at]].index].unit.asked_end is None:
+            raise AssertionError(f"operation {at} ended with {result}, and nothing is wrong with it")
+
+    def _finish_step(self, program: Program, rows: NDArray[np.float64], first: int) -> None:
+        """Do the actions of a step behind the one at which the kernel stopped since a unit asks for the end.
+
+        It was the last operation of its action, and the stimuli, which the kernel has alone, stand before all
+        units. `rows` are those of the chunk, which began at step `first`.
+        """
+        k, at = self.k, program.actions[self._places[int(self._state[L.AT])]]
+        for place, action in enumerate(self.schedule[at + 1 :], at + 1):
+            act = program.acts[place]
+            if action.kind == "record":
+                rows[k - first] = self.memory[self.columns]
+            elif act is not None and action.due(k):
+                act(k)
+        self._state[L.STEPS_DONE] += 1
+        self.k = k + 1
 
     @contextlib.contextmanager
     def _crash_report(self, program: Program) -> Iterator[None]:
@@ -145,16 +167,17 @@ class CompiledEngine(Engine):
     def _act_for_kernel(self, what: int, k: int) -> int:
         """Do action `what` in step k, or (negative) find the raw value of a value out of range.
 
-        Return 1 if an error was raised, else 0.
+        Return 1 to stop the kernel: an error was raised, or a unit asked for the end of the run; else 0.
         """
         assert self._program is not None  # the kernel follows it
         try:
             if what >= 0:
                 act = self._program.acts[what]
                 assert act is not None  # the kernel drives and records by itself
+                end = self.ending.step
                 act(k)
-            else:
-                self._raw_value(-1 - what, k)
+                return int(self.ending.step != end)
+            self._raw_value(-1 - what, k)
             return 0
         except BaseException as error:  # no exception can pass through the kernel
             self._raised = error

@@ -16,9 +16,10 @@ from ...fmi.instance import Instance
 from ...fmi.transfer import Copy, Transfer
 from ...fmi.types import STRING
 from ...unit import Unit
-from ..engine import Act, Engine, Sender, Turn
+from ..engine import Act, Engine, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
+from ..sender import Sender
 from . import tables as L
 from .codes import effect_kind
 from .items import Cells, format_of, item_row, mapped, signal_row, times_row

@@ -111,6 +111,8 @@ class Bench:
         with self.loaded(drive, deadline, substeps) as simulation:
             deadline.check()
             simulation.run(lambda *_: deadline.check())
+            if simulation.ended:
+                raise RunError(f"{simulation.ended}, before the end of the trial")
             results = simulation.results
         columns = {}
         for name in self.outputs:

@@ -1,13 +1,14 @@
-"""FMI 1.0 and 2.0 say more of a step that was not done: how far it got, and whether it wants to end."""
+"""FMI 1.0 and 2.0 say more of a step that was not done: how far it got, and that it asks for the end."""
 
 from __future__ import annotations
 
 import ctypes
+import math
 from typing import Any
 
 import pytest
 
-from evcosim.master.fmi.step_status import beside
+from evcosim.master.fmi.step_status import asked_end, beside
 
 
 class Answering:
@@ -47,9 +48,6 @@ def test_a_pending_step_is_not_supported() -> None:
 def test_a_discarded_step() -> None:
     assert clause(2) == ""
     assert clause(2, fmi2GetRealStatus=(0, 0.25)) == ": it got to t = 0.25 s"
-    both = {"fmi2GetRealStatus": (0, 0.25), "fmi2GetBooleanStatus": (0, 1)}
-    assert clause(2, **both) == ": it got to t = 0.25 s, it asks to terminate the simulation"
-    assert clause(2, fmi2GetBooleanStatus=(0, 0)) == ""
     assert clause(2, fmi2GetRealStatus=(2, 0.25)) == ""  # it does not know either
 
 
@@ -58,7 +56,26 @@ def test_fmi_1_has_the_time_alone() -> None:
     assert clause(2, "fmi", **answers) == ": it got to t = 1.5 s"
 
 
-def test_what_is_looked_up_is_the_last_successful_time_and_the_end() -> None:
+def asked(status: int, **answers: tuple[int, float]) -> float | None:
+    library: Any = Answering(**answers)
+    return asked_end(status, library, None)
+
+
+def test_a_discarded_step_after_which_the_unit_asks_for_the_end() -> None:
+    both = {"fmi2GetRealStatus": (0, 0.25), "fmi2GetBooleanStatus": (0, 1)}
+    assert asked(2, **both) == 0.25
+    assert [asked(status, **both) for status in (0, 1, 3, 4, 5)] == [None] * 5
+    assert asked(2, fmi2GetRealStatus=(0, 0.25)) is None
+    assert asked(2, fmi2GetRealStatus=(0, 0.25), fmi2GetBooleanStatus=(0, 0)) is None
+    assert asked(2, fmi2GetRealStatus=(0, 0.25), fmi2GetBooleanStatus=(3, 1)) is None  # it does not know
+
+
+def test_an_end_at_an_unknown_time() -> None:
+    for answers in ({}, {"fmi2GetRealStatus": (2, 0.25)}):
+        assert math.isnan(asked(2, fmi2GetBooleanStatus=(0, 1), **answers) or 0.0)
+
+
+def test_what_is_looked_up_is_the_end_and_the_last_successful_time() -> None:
     library: Any = Answering(fmi2GetRealStatus=(0, 0.25), fmi2GetBooleanStatus=(0, 1))
-    beside(2, "fmi2", library, None)
-    assert library.kinds == [2, 3]  # fmi2LastSuccessfulTime, fmi2Terminated
+    asked_end(2, library, None)
+    assert library.kinds == [3, 2]  # fmi2Terminated, fmi2LastSuccessfulTime

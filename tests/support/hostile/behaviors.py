@@ -237,12 +237,6 @@ STATUSES = [
         "returned early, at t = -0.95 s",
         versions=(3,),
     ),
-    in_step(
-        "terminate_simulation",
-        "asks to terminate the simulation",
-        "asks to terminate the simulation",
-        versions=(3,),
-    ),
     harmless("event", "needs an event that nobody handles", versions=(3,)),
     Case(
         "get_error",

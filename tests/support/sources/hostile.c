@@ -334,7 +334,7 @@ EXPORT int F(DoStep)(Unit *c, double t, double h, bool no_set_state, bool *event
     bool late = c->time >= 0.0499;
     int status = step(c, h);
     *event = late && act("event");
-    *end = late && act("terminate_simulation");
+    *end = false;
     *early = late && (act("early_return") || act("backwards"));
     *reached = act("backwards") ? t - 1.0 : act("early_return") ? t + h / 2.0 : t + h;
     return status;

@@ -92,13 +92,13 @@ def test_a_vehicle_that_needs_smaller_steps_goes_on_with_them(tmp_path: Path) ->
 # ---- FMUs that misbehave
 
 
-def mixed(folder: Path, behavior: int, **limits: float) -> Trial:
+def mixed(folder: Path, behavior: int, fmi: int = 2, **limits: float) -> Trial:
     """sources/mixed.c, which misbehaves from 0.5 s on, in the place of the scooter's battery."""
     tables = {
         "inputs": {"power": {"variable": "u", "unit": "W"}},
         "outputs": {"voltage": {"variable": "y", "unit": "V"}},
     }
-    fmu = mixed_fmu(folder / "mixed.fmu", 2, behavior)
+    fmu = mixed_fmu(folder / "mixed.fmu", fmi, behavior)
     entry = UnitEntry(fmu=str(fmu), map=MapTables.model_validate(tables))
     return tried("scooter.battery", ("power", "voltage"), entry, **{"answer": 0.5, **limits})
 
@@ -124,6 +124,14 @@ def test_what_an_fmu_does_is_told_and_stops_no_more_than_its_trial(
     assert verdicts(trial)["trial"] == "problem"
     assert "status" not in verdicts(trial)
     assert any(said in remark for remark in trial.proposal.remarks)
+
+
+def test_an_fmu_that_ends_the_trial(tmp_path: Path) -> None:
+    trial = mixed(tmp_path, 3, fmi=3)
+    assert text(trial, "constant inputs") == (
+        "unit 'battery' asked to end the simulation at t = 0.51 s, before the end of the trial"
+    )
+    assert not trial.passed
 
 
 def test_a_trial_ends_in_time(tmp_path: Path) -> None:
