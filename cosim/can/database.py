@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..errors import ConfigError, nearest
 
+_FRAME = 64  # bytes of a CAN FD frame
 _FLOAT_MAX = {32: struct.unpack("<f", b"\xff\xff\x7f\x7f")[0], 64: math.ldexp(2.0 - 2.0**-52, 1023)}
 
 
@@ -142,9 +143,10 @@ def prefix(place: str) -> str:
 def check_signal(message: Message, signal: Signal, place: str = "") -> None:
     """Raise ConfigError, which starts with `place`, when a receiver could read another value than was sent.
 
-    The rules: the message is not multiplexed and its start values are raw values; a finite scale other than 0
-    and a finite offset; floats of 32 or 64 bits; minimum <= maximum, some value between them can be sent, and
-    none of them is sent as the "not available" code.
+    The rules: the message is not multiplexed, a frame holds it, and its start values are raw values; a finite
+    scale other than 0 and a finite offset, with which all raw values are doubles; floats of 32 or 64 bits;
+    minimum <= maximum, some value between them can be sent, and none of them is sent as the "not available"
+    code.
     """
     # each relies on the one before: limits in raw steps need a scale
     if problem := _message_problem(message) or _unsupported(signal) or _range_problem(signal):
@@ -155,6 +157,8 @@ def _message_problem(message: Message) -> str:
     """Return the rule that the message breaks, with the values; "" for none. So do the next two."""
     if message.multiplexed:
         return "the message is multiplexed; a connection needs one whose frames all hold the same signals"
+    if message.length > _FRAME:
+        return f"the message has {message.length} bytes, and a frame holds {_FRAME} at most"
     for s in message.signals.values():
         if problem := _length_problem(s):
             return f"{s.name} is {problem}"

@@ -101,6 +101,19 @@ def test_contradictions(tmp_path: Path, signal: str, says: str) -> None:
     assert says in refusal(write(tmp_path, signal))
 
 
+def test_a_scale_whose_values_are_no_doubles(tmp_path: Path) -> None:
+    signal = 'S : 0|8@1+ (1e308,0) [0|0] "" B'
+    assert "raw values of 8 unsigned bits are beyond 1.8e+308" in refusal(write(tmp_path, signal))
+
+
+def test_a_message_that_no_frame_holds_stops_who_asks_for_it(tmp_path: Path) -> None:
+    path = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', length=1785)
+    assert "the message has 1785 bytes, and a frame holds 64 at most" in refusal(path)
+    assert load_dbc(path).messages["M"].length == 1785
+    too_long = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', length=1786)
+    assert "line 6: message 'M' has 1786 bytes; at most 1785 are read" in refusal(too_long)
+
+
 def test_a_start_value_that_does_not_fit(tmp_path: Path) -> None:
     path = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', tail='BA_ "GenSigStartValue" SG_ 1 S 256;\n')
     assert "the start value 256 of S is no raw value of 8 unsigned bits" in refusal(path)
