@@ -112,18 +112,25 @@ class CsvFile:
         return np.asarray(found, dtype=np.float64).reshape(-1, len(columns))
 
     def _full_rows(self, empty_lines: bool) -> Iterator[tuple[int, list[str]]]:
-        """Yield the rows with the line that each ends in; an empty one is passed over as in `numbers`."""
-        empty = 0  # the first empty line
+        """Yield the rows with the line that each ends in; an empty one is passed over as in `numbers`.
+
+        At the end of the file, so are rows of spaces and separators, which spreadsheets leave.
+        """
+        blank: list[tuple[int, list[str]]] = []
         with opened(self.path, self.encoding, self.header_lines) as file:
             for line, row in self._rows(file):
-                if not row:
-                    empty = empty or line
+                if not any(map(str.strip, row)):
+                    blank.append((line, row))
                     continue
-                if empty and not empty_lines:
-                    raise self._wrong_length(empty, 0)
-                if len(row) != len(self.names):
-                    raise self._wrong_length(line, len(row))
-                yield line, row
+                for each in (*blank, (line, row)):
+                    if each[1] or not empty_lines:
+                        yield self._full(*each)
+                blank.clear()
+
+    def _full(self, line: int, row: list[str]) -> tuple[int, list[str]]:
+        if len(row) != len(self.names):
+            raise self._wrong_length(line, len(row))
+        return line, row
 
     def _rows(self, file: TextIO) -> Iterator[tuple[int, list[str]]]:
         """Yield the values of each row with the line that it ends in."""

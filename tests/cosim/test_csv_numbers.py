@@ -59,6 +59,16 @@ def test_what_nobody_wants_may_be_anything(tmp_path: Path) -> None:
         file.numbers((0, 1))
 
 
+@pytest.mark.parametrize("end", ["  \n", " \n\t\n", ",\n", " , \n,\n\n", '"",""\n'])
+def test_rows_of_spaces_and_separators_at_the_end_count_for_nothing(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(f"time,a\n0,1\n2,3\n{end}")
+    assert CsvFile.of(path).numbers().tolist() == [[0.0, 1.0], [2.0, 3.0]]
+    path.write_text(f"time,a\n0,1\n{end}2,3\n")
+    with pytest.raises(ConfigError, match=r"a.csv: line 3"):
+        CsvFile.of(path).numbers()
+
+
 def test_empty_lines_at_the_end_count_for_nothing_and_others_if_allowed(tmp_path: Path) -> None:
     between = opened(tmp_path / "a.csv", "t,v\n\n0,1\r\n\r\n\n2,3\n\n\r\n\n")
     assert between.numbers(empty_lines=True).tolist() == [[0.0, 1.0], [2.0, 3.0]]
@@ -126,7 +136,7 @@ def test_a_broken_header_is_refused(text: bytes, said: str, tmp_path: Path) -> N
         (b"t,v\n0,1_000\n", "line 2, column 'v': '1_000' is not a finite number"),
         (b"t,v\n0,1\n1\n", "line 3 has 1 value, the header has 2 columns"),
         (b"t,v\n0,1,2\n1,1,2\n", "line 2 has 3 values, the header has 2 columns"),
-        (b"t,v\n0,1\n  \n", "line 3 has 1 value, the header has 2 columns"),
+        (b"t,v\n0,1\n  \n2,3\n", "line 3 has 1 value, the header has 2 columns"),
         (b'"t\n",v\n0,"1\n"\n1,x\n', "line 5, column 'v': 'x' is not a number"),
         (b"t,v\n0,1\n0,\x81\n", "is not UTF-8 or Windows-1252 text: character maps to <undefined> at byte"),
         (b't,v\n# 1\n0,1\n#\n"1",no\n', "line 5, column 'v': 'no' is not a number"),

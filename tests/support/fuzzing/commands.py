@@ -83,7 +83,7 @@ def a_command(random: random.Random) -> Input:
     words = random.choice(_BEGINNINGS.strip().splitlines()).split()
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         _change(random, words)
-    if words[0] in _NOT_TRIED and not any(word == "nothing" for word in words):
+    if words and words[0] in _NOT_TRIED and not any(word == "nothing" for word in words):
         words.append("nothing")
     kept = [word.replace("\0", "") for word in words if word not in _NOT_TRIED or word == "reproduce"]
     return Input("CLI", kept, dict(_RESULTS))
