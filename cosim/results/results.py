@@ -20,7 +20,7 @@ from ..row_store import Array, Grid, MemoryTable, Table
 from ..writing import replacing
 from .folder_lock import MANIFEST_NAME, status
 from .formats.format import Format
-from .formats.suffixes import CSV, FORMATS, format_of
+from .formats.suffixes import CSV, format_of, reader_of
 from .manifest import read_manifest, write_manifest
 from .rows_file import ROWS_NAME
 from .rows_file import read as read_rows
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results"]
 
 CSV_NAME = "results.csv"
+_CHECKED = 4096  # rows that are looked at at a time before they are written
 PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each variable
 
 
@@ -74,6 +75,7 @@ class Results:
         self._time: Array | None = None
         if not isinstance(time, Grid):
             self._time = np.array(time, dtype=np.float64, ndmin=1)
+            _check_times(self._time)
         self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
@@ -223,14 +225,28 @@ class Results:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the rows into a file, in the format that its suffix names, as .csv does; texts beside it.
 
-        Raises ConfigError for another suffix, and where the file cannot be written; then none is left.
+        Raises ConfigError for another suffix, for a value that is NaN or infinite, which no reader takes, and
+        where the file cannot be written; then none is left.
         """
         path = Path(path)
-        return self._save(path, format_of(path))
+        form = format_of(path)
+        self._check_finite()
+        return self._save(path, form)
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write the rows into a CSV file, whatever its suffix. Raises ConfigError as `save` does."""
+        self._check_finite()
         return self._save(Path(path), CSV)
+
+    def _check_finite(self) -> None:
+        for times, values in self.pieces(self.names, rows=_CHECKED):
+            good = np.isfinite(values)
+            if not good.all():
+                k, j = map(int, np.argwhere(~good)[0])
+                raise ConfigError(
+                    f"{self.names[j]} is {values[k, j]} at t = {times[k]:.6g} s: a file of results holds "
+                    "finite numbers; leave such rows or variables out with `part`"
+                )
 
     def _save(self, path: Path, form: Format) -> Path:
         # the texts first: where the rows of a run stand, its texts do
@@ -247,7 +263,7 @@ class Results:
         Raises ConfigError when a file cannot be written; then none is left under its name half-done.
         """
         folder = Path(folder)
-        self.to_csv(folder / CSV_NAME)
+        self._save(folder / CSV_NAME, CSV)  # whatever was computed: a run's last rows must not be lost
         described = [*self.variables, *self.text_table.variables]
         write_manifest(folder / MANIFEST_NAME, self.manifest, described)
         return folder
@@ -257,9 +273,10 @@ class Results:
         """Read a results folder, its results.csv, or a file in a format that its suffix names.
 
         The folder of a run that lives, or was killed, has results.rows in place of results.csv: the rows that
-        were saved are read, half a row at the end is left out. Any other file is read as CSV: the time [s] is
-        the column of such a name, and without a run.json beside results.csv every variable is a Real without
-        a unit of measure. Raises ConfigError naming file, line, column and value of what is not a number.
+        were saved are read, half a row at the end is left out. A .txt, .tsv or .dat file, or one without a
+        suffix, is read as CSV: the time [s] is the column of such a name, and without a run.json beside
+        results.csv every variable is a Real without a unit of measure. Raises ConfigError for another suffix,
+        and naming file, line, column and value of what is not a number, or the last line that was cut off.
         """
         path = Path(path)
         if path.is_dir():
@@ -267,7 +284,7 @@ class Results:
             path = rows if rows.exists() and not path.exists() else path
         if path.name == ROWS_NAME:
             return _of_rows(path)
-        held = FORMATS.get(path.suffix.lower(), CSV).read(path)
+        held = reader_of(path).read(path)
         manifest, variables = dict(held.manifest), list(held.variables)
         if path.name == CSV_NAME:
             manifest, known = read_manifest(path.with_name(MANIFEST_NAME))
@@ -317,6 +334,19 @@ def _of_rows(path: Path) -> Results:
         manifest.pop(counted_at_the_end, None)
     texts = read_text_rows(path.with_name(TEXT_ROWS_NAME), len(saved.time))
     return Results(saved.time, saved.data, saved.variables, manifest, texts=texts)
+
+
+def _check_times(times: Array) -> None:
+    """Raise ValueError for times [s], shape (n,), of which one is not finite or comes before the last one."""
+    if times.ndim != 1:
+        raise ValueError(f"time has {times.ndim} dimensions: it is a list of numbers")
+    bad = np.flatnonzero(~np.isfinite(times))
+    if len(bad):
+        raise ValueError(f"time[{bad[0]}] = {times[bad[0]]}: times are finite")
+    back = np.flatnonzero(times[1:] < times[:-1])
+    if len(back):
+        k = int(back[0]) + 1
+        raise ValueError(f"time[{k}] = {times[k]!r} comes after {times[k - 1]!r}: time must not decrease")
 
 
 def _table(data: ArrayLike) -> Table:

@@ -19,6 +19,7 @@ from typing import Any
 from ..errors import ConfigError
 from ..writing import remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
+from .formats.csv import cut_row
 from .manifest import manifest_text, read_manifest, write_manifest
 from .results import CSV_NAME, Results
 from .rows_file import ROWS_NAME
@@ -115,8 +116,14 @@ class RunFolder(FolderLock):
     def recover(self) -> Results | None:
         """Make results.csv of the rows of a killed run, and return the results; None: there are no such rows.
 
-        Raises ConfigError where a file cannot be read or written.
+        A results.csv that was cut off within its last row goes without that. Raises ConfigError where a file
+        cannot be read or written.
         """
+        if not self.rows.exists() and self._drop_cut_row():
+            results = Results.read(self.path)
+            results.manifest["status"] = "cut off"
+            self.finish(results)
+            return results
         if not self.rows.exists() and not (self.was_killed and self.has_rows):
             return None
         if not self.was_killed and (self.path / CSV_NAME).exists():  # it was killed after its last word
@@ -128,6 +135,19 @@ class RunFolder(FolderLock):
         self.finish(results)
         remove_drafts(self.path)
         return results
+
+    def _drop_cut_row(self) -> bool:
+        """Leave out the last row of results.csv where it does not end; return True if it does not."""
+        path = self.path / CSV_NAME
+        if not path.is_file() or path.is_symlink():
+            return False
+        try:
+            row = cut_row(path)
+            if row is not None:
+                os.truncate(path, row.begin)
+        except OSError as error:
+            raise ConfigError(f"{path}: cannot be mended: {error.strerror or error}") from error
+        return row is not None
 
     def foreign_files(self) -> list[str]:
         """Return the names of the files in it that no run wrote: they are somebody's own."""
@@ -157,8 +177,9 @@ class RunFolder(FolderLock):
 def recover(folder: Path) -> Results | None:
     """Make results.csv of what a killed run had saved in a folder, and let run.json say that it was killed.
 
-    Return the results; None where no killed run is in the folder. Raises ConfigError for a run that lives,
-    for one that had saved nothing, and for a folder that is none or cannot be written.
+    A results.csv that was cut off is mended. Return the results; None where there is nothing to do. Raises
+    ConfigError for a run that lives, for one that had saved nothing, and for a folder that is none or cannot
+    be written.
     """
     if not folder.is_dir():
         raise ConfigError(f"{folder}: there is no such folder")

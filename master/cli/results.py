@@ -19,7 +19,7 @@ def _group() -> None:
 def recover(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a run that was killed.")],
 ) -> None:
-    """Make results.csv of what a run had saved that was killed.
+    """Make results.csv of what a run had saved that was killed, or leave out its last row that was cut off.
 
     `evcosim plot` and `compare` read such a folder as it is, and the next run into it recovers it.
     """
@@ -27,7 +27,7 @@ def recover(
 
     found = recovered(folder)
     if found is None:
-        print(f"{folder}: no run was killed here, there is nothing to recover")
+        print(f"{folder}: no run was killed here and no row is cut off, there is nothing to recover")
         return
     until = f"up to t = {found.span[1]:.6g} s" if len(found) else "none"
     print(f"{folder}: results.csv has {len(found)} rows, {until}; status: {found.manifest['status']}")

@@ -7,8 +7,9 @@ it.
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from ..recording import Recording
 from ..variable import ResultVariable
 from .format import Contents
 
+_SHOWN = 60
 _ROWS = 4096  # formatted at a time: 40 columns of text then take about 10 MB
 
 
@@ -63,6 +65,11 @@ def read(path: Path) -> Contents:
     """
     file = CsvFile.of(path)
     time = _time_column(file)
+    if (row := cut_row(path)) is not None:
+        raise ConfigError(
+            f"{path}: line {row.line}, the last, does not end: {row.text!r}; the file was cut off. 'evcosim "
+            "results recover' leaves the line out of a run's folder; if nothing is missing, end the line"
+        )
     others = [j for j in range(len(file.names)) if j != time]
     table = file.numbers(truths=others)
     times = table[:, time]
@@ -75,6 +82,30 @@ def read(path: Path) -> Contents:
         )
     variables = [ResultVariable(file.names[j]) for j in others]
     return Contents(times, table[:, 1:] if time == 0 else table[:, others], variables)
+
+
+class CutRow(NamedTuple):
+    """The last line of a file that does not end: its number, the place where it begins, and its text."""
+
+    line: int
+    begin: int
+    text: str
+
+
+def cut_row(path: Path) -> CutRow | None:
+    """Return the last line of a text file, shortened, where it does not end; None: it does, or is the header.
+
+    Raises OSError.
+    """
+    with path.open("rb") as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - 2))
+        if file.read().rstrip(b"\0").endswith((b"\n", b"\r")):  # UTF-16 has a zero behind or before it
+            return None
+        file.seek(0)
+        lines, begin, last = 0, 0, b""
+        for line in file:
+            lines, begin, last = lines + 1, begin + len(last), line
+    return CutRow(lines, begin, last[:_SHOWN].decode("utf-8", "replace")) if lines > 1 else None
 
 
 def _time_column(file: CsvFile) -> int:

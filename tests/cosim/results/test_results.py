@@ -3,6 +3,7 @@ import os
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -243,3 +244,59 @@ def test_what_reads_a_long_run_holds_a_piece_of_it(use: Callable[[Results], obje
 def test_writing_a_long_run_holds_a_piece_of_it(tmp_path: Path) -> None:
     peaks = [reached(count, lambda r: r.to_csv(tmp_path / "a.csv")) for count in (20_000, 60_000)]
     assert peaks[1] - peaks[0] < 0.2 * 8 * 40_000
+
+
+@pytest.mark.parametrize(
+    ("time", "said"),
+    [
+        ([1.0, 0.0], r"^time\[1\] = .*0\.0.* comes after .*1\.0.*: time must not decrease$"),
+        ([0.0, np.nan], r"^time\[1\] = nan: times are finite$"),
+        ([-np.inf, 0.0], r"^time\[0\] = -inf: times are finite$"),
+        ([[0.0, 1.0]], r"^time has 2 dimensions"),
+    ],
+)
+def test_times_that_are_none_are_refused(time: Any, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Results(time, [[1.0], [2.0]], [ResultVariable("a.x")])
+
+
+def test_a_time_may_come_twice() -> None:
+    assert len(Results([0.0, 1.0, 1.0], [[1.0], [2.0], [3.0]], [ResultVariable("a.x")])) == 3
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_what_no_reader_takes_is_not_saved(value: float, tmp_path: Path) -> None:
+    results = Results([0.0, 0.5], [[1.0, 2.0], [3.0, value]], [ResultVariable("a.x"), ResultVariable("a.y")])
+    for write in (results.save, results.to_csv):
+        with pytest.raises(ConfigError, match=rf"^a\.y is {value} at t = 0\.5 s: a file of results"):
+            write(tmp_path / "x.csv")
+    assert list(tmp_path.iterdir()) == []
+    kept = results.part(slice(None), ["a.x"])
+    assert Results.read(kept.save(tmp_path / "x.csv")).data.tolist() == [[1.0], [3.0]]
+
+
+@pytest.mark.parametrize("line_end", [b"\n", b"\r\n"])
+def test_a_file_that_was_cut_off_is_refused_wherever(line_end: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    whole = b"time,a.x" + line_end + b"0.0,1.25" + line_end + b"0.5,2.75" + line_end
+    for end in range(whole.index(b"1.25"), len(whole)):
+        path.write_bytes(whole[:end])
+        if whole[:end].endswith((b"\r", b"\n")):
+            assert len(Results.read(path)) in (1, 2)
+            continue
+        with pytest.raises(ConfigError, match=r"x\.csv: line [23], the last, does not end: '0"):
+            Results.read(path)
+
+
+def test_a_suffix_that_no_reader_has_is_refused_with_those_that_are_known(tmp_path: Path) -> None:
+    for name in ("x.xlsx", "x.mat", "results.csv.gz"):
+        (tmp_path / name).write_text("time,a.x\n0,1\n")
+        with pytest.raises(
+            ConfigError, match=r": results are read from \.csv, \.txt, \.tsv, \.dat, not from '"
+        ):
+            Results.read(tmp_path / name)
+    for name in ("x.txt", "x.TSV", "x.dat", "x"):
+        (tmp_path / name).write_text("time,a.x\n0,1\n")
+        assert len(Results.read(tmp_path / name)) == 1
+    with pytest.raises(ConfigError, match=r"gone\.xlsx: cannot be read: No such file"):
+        Results.read(tmp_path / "gone.xlsx")

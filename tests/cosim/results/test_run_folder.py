@@ -129,3 +129,19 @@ def test_a_folder_that_cannot_be_emptied_is_named(tmp_path: Path) -> None:
     (tmp_path / "results.csv").mkdir()
     with RunFolder(tmp_path) as run, pytest.raises(ConfigError, match=r"cannot be written: .*results.csv"):
         run.begin(ABOUT, VARIABLES)
+
+
+def test_a_csv_that_was_cut_off_within_its_last_row_is_mended(tmp_path: Path) -> None:
+    """Whatever is left of the last row: it may be half a number."""
+    done(tmp_path)
+    whole = (tmp_path / "results.csv").read_bytes()
+    assert recover(tmp_path) is None
+    last = whole.rindex(b"\n", 0, -1) + 1
+    for end in range(last + 1, len(whole)):
+        (tmp_path / "results.csv").write_bytes(whole[:end])
+        with pytest.raises(ConfigError, match=r"results.csv: line 3, the last, does not end: '0.*recover"):
+            Results.read(tmp_path)
+        found = recover(tmp_path)
+        assert found is not None
+        assert (len(found), status(tmp_path)) == (1, "cut off")
+        assert Results.read(tmp_path).data.tolist() == [[1.0]]

@@ -52,7 +52,7 @@ def test_a_killed_run_is_recovered(process, evcosim, tmp_path):
     assert recovered.manifest["status"] == "killed"  # what was killed is kept, the other run is beside it
     assert (
         evcosim("results", "recover", "out").out
-        == "out: no run was killed here, there is nothing to recover\n"
+        == "out: no run was killed here and no row is cut off, there is nothing to recover\n"
     )
     assert recovered.data.tobytes() == kept.data.tobytes()
     assert len(Results.read(tmp_path / "out-stop_time=0.1")) == 11
