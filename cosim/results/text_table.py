@@ -53,8 +53,9 @@ class TextTable:
         """Return the texts of a variable in the first `count` rows, shape (count,)."""
         j = self.names.index(name)
         found = np.full(count, "", dtype=object)
-        for row, texts in self.changes:
-            found[row:] = texts[j]
+        ends = [row for row, _ in self.changes[1:]]
+        for (row, texts), end in zip(self.changes, [*ends, count], strict=False):
+            found[row:end] = texts[j]
         return found
 
     def final(self) -> tuple[str, ...]:

@@ -80,7 +80,11 @@ def _of_csv(
     values: NDArray[np.float64] = np.empty(len(texts))
     for k, text in enumerate(texts):
         if text not in known:
-            known[text] = number(_value(text, variable), rows.at(k, 1))
+            value = _value(text, variable)
+            try:
+                known[text] = number(value, "")
+            except ConfigError:  # only then the file is read again for the line
+                known[text] = number(value, rows.at(k, 1))
         values[k] = known[text]
     return held(clock.on_points(times), values)
 

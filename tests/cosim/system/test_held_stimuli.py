@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.clock import Clock
+from evcosim.cosim.csv_numbers import CsvFile
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.held_stimuli import held_stimulus
@@ -45,6 +46,22 @@ def test_a_unit_of_measure_converts_numbers_and_no_names() -> None:
     assert values(COUNT, [0], Affine(60.0, 0.0), constant=2) == [120]
     with pytest.raises(ConfigError, match=r"here.constant: n is an Integer, not 0.5"):
         values(COUNT, [0], Affine(0.25, 0.0), constant=2)
+
+
+def test_a_file_is_read_again_for_the_place_of_a_wrong_value_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Many different values else take a time that grows with the square of their number."""
+    path, read = tmp_path / "in.csv", []
+    line_of = CsvFile.line_of
+    monkeypatch.setattr(CsvFile, "line_of", lambda self, row: read.append(row) or line_of(self, row))
+    path.write_text("time,n\n" + "".join(f"{k},{k}\n" for k in range(100)))
+    assert values(COUNT, [0, 99], csv=str(path)) == [0, 99]
+    assert read == []
+    path.write_text(path.read_text() + "100,x\n")
+    with pytest.raises(ConfigError, match=r"in.csv: line 102, column 'n': n is a finite Integer number"):
+        values(COUNT, [0], csv=str(path))
+    assert read == [100]
 
 
 def test_a_csv_holds_numbers_truths_and_names_of_items(tmp_path: Path) -> None:
