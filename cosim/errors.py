@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
+from .visible import visible
+
 
 class Recorded(Protocol):
     """The recording of a failed run: n rows of m variables.
@@ -48,6 +50,9 @@ class Recorded(Protocol):
 class ConfigError(ValueError):
     """Bad input, found before any step. The message names the place, the rule and the values."""
 
+    def __str__(self) -> str:
+        return visible(super().__str__())
+
 
 class RunError(RuntimeError):
     """A run that failed: the message names the unit, the time and the reason.
@@ -56,6 +61,9 @@ class RunError(RuntimeError):
     """
 
     results: Recorded | None = None
+
+    def __str__(self) -> str:
+        return visible(super().__str__())
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

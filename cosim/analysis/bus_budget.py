@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 from ..can.bus_settings import BusVariation
 from ..results.metrics import Metric
+from ..visible import visible
 from ..writing import markdown_table
 
 
@@ -166,19 +167,21 @@ def as_markdown(budget: Budget, figure: str) -> str:
     """Return a page: the requirement, where each series breaks, the table, the figure in file `figure`."""
     name = " ".join(part for part in (budget.system, budget.scenario) if part)
     headers, *rows = _without_emphasis([("variation", "", budget.metric, "verdict"), *budget.rows()])
-    return "\n".join(
-        [
-            f"# Bus budget of {name}",
-            "",
-            f"{budget.rule}. Each variation by itself; * is the system as it is.",
-            "",
-            *(f"- {each.name}: {budget.summary(each)}" for each in budget.series),
-            "",
-            *markdown_table(headers, rows),
-            "",
-            f"![{budget.metric} over each variation]({figure})",
-            "",
-        ]
+    return visible(
+        "\n".join(
+            [
+                f"# Bus budget of {name}",
+                "",
+                f"{budget.rule}. Each variation by itself; * is the system as it is.",
+                "",
+                *(f"- {each.name}: {budget.summary(each)}" for each in budget.series),
+                "",
+                *markdown_table(headers, rows),
+                "",
+                f"![{budget.metric} over each variation]({figure})",
+                "",
+            ]
+        )
     )
 
 

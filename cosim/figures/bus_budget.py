@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..analysis.bus_budget import Budget, Point, Series
 from ..can.bus_settings import BusVariation
+from ..visible import flowing, on_one_line, visible
 from .canvas import canvas
 from .style import COLORS
 from .text import pretty
@@ -37,7 +38,7 @@ def draw_budget(budget: Budget) -> Figure:
         for panel in axes[0][1:]:
             panel.tick_params(labelleft=False)
         unit = f" [{pretty(budget.unit)}]" if budget.unit not in ("", "1") else ""
-        axes[0][0].set_ylabel("\n".join(textwrap.wrap(f"{budget.metric}{unit}", 44)))
+        axes[0][0].set_ylabel("\n".join(textwrap.wrap(f"{flowing(budget.metric)}{unit}", 44)))
         handles, labels = axes[0][0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
         return figure
@@ -96,8 +97,10 @@ def _place(point: Point, budget: Budget, low: float, high: float) -> tuple[float
 
 
 def _label(panel: Axes, budget: Budget, series: Series) -> None:
-    panel.set_title(f"{series.name}\n{budget.summary(series)}", fontsize=10.0)
-    panel.set_xticks(range(len(series.points)), [_tick(p.label) for p in series.points], fontsize=9.0)
+    panel.set_title(visible(f"{series.name}\n{budget.summary(series)}"), fontsize=10.0)
+    panel.set_xticks(
+        range(len(series.points)), [_tick(on_one_line(p.label)) for p in series.points], fontsize=9.0
+    )
     panel.set_xlim(-0.6, len(series.points) - 0.4)
     panel.grid(visible=False, axis="x")
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from ..visible import visible
 from .style import WIDTH, style
 
 if TYPE_CHECKING:
@@ -56,5 +57,5 @@ def grid(
         rows, columns, squeeze=False, sharex=share_x, height_ratios=heights, width_ratios=widths
     )
     if title:
-        figure.suptitle(title, fontsize=12, fontweight="bold")
+        figure.suptitle(visible(title), fontsize=12, fontweight="bold")
     return figure, axes

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..results.results import Results
 from ..system.figure_spec import FigureSpec
+from ..visible import flowing
 from .axes import TimeAxis
 from .canvas import canvas, grid
 from .check import check
@@ -48,7 +49,7 @@ def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None 
             draw_panel(panel_axes, results, panel, time_axis, limit)
         time_axis.finish(panels)
         if spec.note:
-            note = "\n".join(textwrap.wrap(spec.note, 130))
+            note = "\n".join(textwrap.wrap(flowing(spec.note), 130))
             figure.supxlabel(note, x=0.01, ha="left", fontsize=8.5, color="#505050")
         figure.align_ylabels(panels)
         return figure

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..analysis.first_order import Estimate, FirstOrder, Fit, Prediction
 from ..analysis.frequency_response import FrequencyResponse
 from ..row_store import Array
+from ..visible import flowing
 from .canvas import canvas
 from .style import COLORS
 from .text import pretty
@@ -35,6 +36,8 @@ def bode(
 
     `published` is a gain and a pole [Hz] to be drawn beside the fitted model.
     """
+    from matplotlib.ticker import LogFormatter
+
     data = response.within(swept)
     ratios = (1.3, 1.0, 0.7)
     with canvas(3, height=7.1 / 3, title=title, share_x=True, ratios=ratios) as (figure, grid):
@@ -58,6 +61,7 @@ def bode(
         coherence.set_ylabel("Coherence [1]")
         coherence.set_ylim(0.0, 1.05)
         coherence.set_xscale("log")
+        coherence.xaxis.set_minor_formatter(LogFormatter())  # as by default, but without formulas
         coherence.set_xlim(*swept)
         coherence.set_xlabel("frequency [Hz]")
         coherence.xaxis.set_major_formatter("{x:g}")
@@ -114,7 +118,8 @@ def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
             found.time, found.predicted, color=COLORS[1], linestyle=dashes, linewidth=1.4, label="model,\n"
             "re-initialized in\ndecelerations",
         )  # fmt: skip # one line of text in two
-        top.set_ylabel(f"{label}\n[{pretty(unit)}]" if unit else label)
+        name = flowing(label)
+        top.set_ylabel(f"{name}\n[{pretty(unit)}]" if unit else name)
         if shown:
             panels[1].plot(found.time, found.esr, color=COLORS[0], marker=".", ms=3, label="in accelerations")
             mean = f"mean, {found.mean_esr:.2f} %"
@@ -154,7 +159,7 @@ def over_working_points(
         center = float(np.mean([fit.gain.value for fit in fits]))
         low, high = gain.get_ylim()
         gain.set_ylim(min(low, 0.8 * center, 1.2 * center), max(high, 0.8 * center, 1.2 * center))
-        pole.set_xlabel(axis)
+        pole.set_xlabel(flowing(axis))
         gain.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
         figure.align_ylabels()
         return figure

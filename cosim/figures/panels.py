@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..results.results import Results
 from ..system.figure_spec import PanelSpec
+from ..visible import on_one_line
 from .axes import TimeAxis, fit_value_axis, label_value_axis
 from .lines import draw_signal
 from .style import DASHES, NAMED_DASHES, Stroke
@@ -50,4 +51,4 @@ def _name_states(axes: Axes, results: Results, panel: PanelSpec) -> None:
         kind, states = next(iter(shown))
         states = ((0, "false"), (1, "true")) if kind == "Boolean" else states
         if states:
-            axes.set_yticks([value for value, _ in states], [name for _, name in states])
+            axes.set_yticks([value for value, _ in states], [on_one_line(name) for _, name in states])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,5 +38,7 @@ def write(figure: Figure, path: Path) -> None:
         )
     dated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
     metadata = {dated[kind]: None} if kind in dated else None
-    with style(), replacing(path) as file:
+    with style(), warnings.catch_warnings(), replacing(path) as file:
+        # a letter that the font lacks, or no room beside a long name: the figure shows it
+        warnings.simplefilter("ignore", UserWarning)
         figure.savefig(file, format=kind, metadata=metadata)

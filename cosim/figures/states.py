@@ -8,6 +8,7 @@ import numpy as np
 
 from ..results.results import Results
 from ..row_store import Array
+from ..visible import on_one_line
 from .axes import TimeAxis
 from .style import SHADES
 
@@ -22,7 +23,7 @@ def draw_states(panels: list[Axes], results: Results, name: str, time_axis: Time
     from matplotlib.patches import Patch
 
     time, values = _course(results, name)
-    handles = [Patch(visible=False, label=f"{name}:")]
+    handles = [Patch(visible=False, label=f"{on_one_line(name)}:")]
     for place, (value, text) in enumerate(results.variable(name).items):
         face = SHADES[place % len(SHADES)]
         hatch = "///" if place >= len(SHADES) else None
@@ -30,7 +31,9 @@ def draw_states(panels: list[Axes], results: Results, name: str, time_axis: Time
         for axes in panels if spans else []:
             bars = axes.broken_barh(spans, (0.0, 1.0), transform=axes.get_xaxis_transform())
             bars.set(facecolor=face, hatch=hatch, edgecolor="#C0C0C0", linewidth=0.0, zorder=0.1)
-        handles.append(Patch(facecolor=face, hatch=hatch, edgecolor="#808080", linewidth=0.6, label=text))
+        handles.append(
+            Patch(facecolor=face, hatch=hatch, edgecolor="#808080", linewidth=0.6, label=on_one_line(text))
+        )
     legend = panels[0].legend(
         handles=handles,
         loc="lower left",

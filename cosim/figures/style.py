@@ -50,6 +50,7 @@ _RC = {
     "figure.dpi": _DPI,
     "savefig.dpi": _DPI,
     "svg.hashsalt": "evcosim",
+    "text.parse_math": False,  # names and units are no formulas, whatever signs stand in them
 }
 
 

@@ -7,6 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from ..system.system import Connection, SystemFile
+from ..visible import on_one_line
 from .canvas import canvas
 
 if TYPE_CHECKING:
@@ -103,8 +104,25 @@ def _draw_unit(axes: Axes, place: _Place, name: str, fmu: str) -> None:
     corner = (place.x - _BOX[0] / 2, place.bottom)
     style = "round,pad=0,rounding_size=0.12"
     axes.add_patch(FancyBboxPatch(corner, *_BOX, boxstyle=style, facecolor="#F4F6F8", edgecolor=_INK, lw=1.2))
-    axes.text(place.x, 0.16, name, ha="center", va="center", fontsize=9.5, fontweight="bold", color=_INK)
-    axes.text(place.x, -0.2, fmu.rsplit("/", 1)[-1], ha="center", va="center", fontsize=7.5, color="#505050")
+    axes.text(
+        place.x,
+        0.16,
+        on_one_line(name),
+        ha="center",
+        va="center",
+        fontsize=9.5,
+        fontweight="bold",
+        color=_INK,
+    )
+    axes.text(
+        place.x,
+        -0.2,
+        on_one_line(fmu.rsplit("/", 1)[-1]),
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        color="#505050",
+    )
 
 
 def _draw_arcs(axes: Axes, places: dict[str, _Place], arcs: dict[tuple[str, str], list[str]]) -> None:
@@ -126,7 +144,7 @@ def _draw_arcs(axes: Axes, places: dict[str, _Place], arcs: dict[tuple[str, str]
             "zorder": 5.0,
             "bbox": paper,
         }
-        axes.text((begin + end) / 2, y + 0.07, "\n".join(texts), **label)
+        axes.text((begin + end) / 2, y + 0.07, "\n".join(map(on_one_line, texts)), **label)
         y += 0.3 + _LINE * len(texts)
 
 
@@ -147,7 +165,14 @@ def _draw_buses(axes: Axes, system: SystemFile, places: dict[str, _Place]) -> No
         axes.plot([-_PITCH * 0.45, last], [y, y], color=_BUS, lw=4, solid_capstyle="round")
         about = f"{name}   {bus.dbc.rsplit('/', 1)[-1]}, {bus.bitrate // 1000} kbit/s"
         axes.text(
-            -_PITCH * 0.45, y - 0.12, about, ha="left", va="top", fontsize=9, color=_BUS, fontweight="bold"
+            -_PITCH * 0.45,
+            y - 0.12,
+            on_one_line(about),
+            ha="left",
+            va="top",
+            fontsize=9,
+            color=_BUS,
+            fontweight="bold",
         )
         for (unit, sends), texts in ends.items():
             _draw_bus_end(axes, places[unit], y, sends, texts, first=0 if sends else sent)
@@ -160,7 +185,7 @@ def _draw_bus_end(axes: Axes, place: _Place, y: float, sends: bool, texts: list[
     _arrow(axes, high, low, _BUS) if sends else _arrow(axes, low, high, _BUS)
     side: dict[str, Any] = {"ha": "right" if sends else "left", "va": "top", "fontsize": 7.5, "color": _INK}
     for i, text in enumerate(texts, first):
-        axes.text(x - 0.08 if sends else x + 0.08, place.bottom - 0.12 - _LINE * i, text, **side)
+        axes.text(x - 0.08 if sends else x + 0.08, place.bottom - 0.12 - _LINE * i, on_one_line(text), **side)
 
 
 def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float], color: str) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 
+from ..visible import flowing, on_one_line
+
 
 def pretty(unit: str) -> str:
     """Return a unit's name as print has it: m/s2 as m/s², N.m as N·m."""
     raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda m: m[0].translate(raised), unit).replace(".", "·")
+    printed = re.sub(r"(?<=[A-Za-z])-?\d+", lambda m: m[0].translate(raised), unit).replace(".", "·")
+    return on_one_line(printed)
 
 
 def broken(text: str, width: int) -> str:
@@ -18,7 +21,7 @@ def broken(text: str, width: int) -> str:
     has none of them stays longer.
     """
     lines = [""]
-    for word in text.split():
+    for word in flowing(text).split():
         for i, part in enumerate(_parts(word, width)):
             gap = " " if i == 0 and lines[-1] else ""
             if lines[-1] and len(lines[-1]) + len(gap) + len(part) > width:

@@ -14,6 +14,7 @@ from ..units.conversion import conversion
 from ..units.definition import contradiction, defined
 from ..units.measure import Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure, UnknownUnitError
 from ..units.spellings import NO_UNIT
+from ..visible import visible_json
 
 Definitions = Mapping[str, UnitOfMeasure]
 
@@ -178,7 +179,7 @@ def _refused(source: End, target: End, place: str, error: ConfigError) -> Config
     end, other = (source, target) if source.bus or not target.bus else (target, source)
     named = end.unit.strip() in NO_UNIT
     if end.bus and (named or isinstance(error, UnknownUnitError | OpenUnitError)):
-        unit, known = (json.dumps(text, ensure_ascii=False) for text in (end.unit, other.unit))
+        unit, known = map(_quoted, (end.unit, other.unit))
         said = f"; say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}"
     elif isinstance(error, UnknownUnitError | OpenUnitError):
         said = f"; say what {end.name} is in: `unit` in the unit's `map`"
@@ -200,5 +201,10 @@ def check_texts(units: Mapping[str, str], texts: set[str], place: str) -> list[s
         try:
             defined(unit)
         except UnknownUnitError as error:
-            raise ConfigError(f"{place}: {json.dumps(text, ensure_ascii=False)}: {error}") from error
+            raise ConfigError(f"{place}: {_quoted(text)}: {error}") from error
     return [f"{place}: no signal has the unit of measure [{text}]" for text in units if text not in texts]
+
+
+def _quoted(text: str) -> str:
+    """Return a text as a TOML file can hold it, between double quotes."""
+    return visible_json(json.dumps(text, ensure_ascii=False))

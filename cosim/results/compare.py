@@ -25,6 +25,7 @@ from ..row_store import Array
 from ..units.conversion import conversion
 from ..units.definition import defined
 from ..units.measure import Affine
+from ..visible import on_one_line
 from .results import Results, ResultVariable
 from .text_table import shown_text
 
@@ -100,7 +101,7 @@ class Comparison:
         for names, side in ((self.only_a, "first"), (self.only_b, "second")):
             if names:
                 lines.append(f"only in the {side}: {', '.join(names)}")
-        return "\n".join([*lines, *self.remarks])
+        return "\n".join(on_one_line(line) for line in (*lines, *self.remarks))
 
 
 def _cells(row: VariableDifference) -> tuple[str, ...]:

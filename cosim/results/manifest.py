@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import ConfigError, short
 from ..reading import content
+from ..visible import visible_json
 from ..writing import replacing
 from .variable import ResultVariable
 
@@ -34,8 +35,7 @@ def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[
 def manifest_text(about: Mapping[str, Any], indent: int | None = 2) -> bytes:
     """Return facts as JSON; without an indent it is one line."""
     text = json.dumps(_jsonable(about), indent=indent, allow_nan=False, ensure_ascii=False)
-    # a path that is no UTF-8 has lone surrogates, which JSON knows as \udc80
-    return text.encode(errors="backslashreplace")
+    return visible_json(text).encode()
 
 
 def read_manifest(path: Path) -> tuple[dict[str, Any], dict[str, ResultVariable]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from pydantic import Field
 from ..errors import ConfigError, nearest
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
+from ..visible import visible, visible_toml
 from ..writing import write_text
 from .matching import LIKENESS, Match, is_open
 from .requirements import ROLES, Role
@@ -129,7 +131,10 @@ def write(
     from tomlkit import dumps
 
     relative = os.path.relpath(fmu, path.parent or Path("."))
-    write_text(path, dumps(_document(relative, place, matches, entry, proposal or Proposal(), likeness)))
+    if re.search("[\ud800-\udfff]", relative):
+        raise ConfigError(f"{fmu}: the bytes of this name are no UTF-8, so that no TOML file can hold it")
+    document = _document(relative, place, matches, entry, proposal or Proposal(), likeness)
+    write_text(path, visible_toml(dumps(document)))
 
 
 def _document(
@@ -243,7 +248,7 @@ def _commented(value: object, text: str) -> Item:
     import tomlkit
 
     item = tomlkit.item(value)
-    item.comment(_on_one_line(text))
+    item.comment(_in_a_comment(text))
     item.trivia.comment_ws = "  "
     return item
 
@@ -251,9 +256,9 @@ def _commented(value: object, text: str) -> Item:
 def _comment(text: str) -> Comment:
     from tomlkit import comment
 
-    return comment(_on_one_line(text))
+    return comment(_in_a_comment(text))
 
 
-def _on_one_line(text: str) -> str:
+def _in_a_comment(text: str) -> str:
     """Return the text of a comment: a name of an FMU must not end its line."""
-    return "".join(c if c.isprintable() else " " for c in text)
+    return visible(text.replace("\n", " "))

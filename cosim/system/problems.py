@@ -14,6 +14,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import nearest
+from ..visible import visible_json
 
 _LONGEST = 80
 """Characters of a value that a sentence shows at most."""
@@ -119,7 +120,7 @@ def shown(value: Any) -> str:
             return str(value).lower()
         case str():
             literal = value.isprintable() and "'" not in value
-            return f"'{value}'" if literal else json.dumps(value, ensure_ascii=False)
+            return f"'{value}'" if literal else visible_json(json.dumps(value, ensure_ascii=False))
         case list() | tuple():
             return f"[{', '.join(map(shown, value))}]"
         case Mapping():

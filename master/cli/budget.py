@@ -70,10 +70,11 @@ def _write(folder: Path, found: Budget) -> list[str]:
     from ...cosim.analysis.bus_budget import as_data, as_markdown
     from ...cosim.figures import draw as figures
     from ...cosim.figures.bus_budget import draw_budget
+    from ...cosim.visible import visible_json
     from ...cosim.writing import write_text
 
     write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
-    write_text(folder / _DATA, json.dumps(as_data(found), indent=2, ensure_ascii=False) + "\n")
+    write_text(folder / _DATA, visible_json(json.dumps(as_data(found), indent=2, ensure_ascii=False)) + "\n")
     drawn = figures.save(draw_budget(found), folder, _FIGURE)
     return [_PAGE, _DATA, *(path.name for path in drawn)]
 

@@ -12,6 +12,8 @@ from typing import Any
 
 import typer
 
+from ...cosim.visible import on_one_line
+
 VARIABLE = "_EVCOSIM_COMPLETE"
 """The environment variable by which a shell requests completions."""
 
@@ -109,7 +111,8 @@ def scenarios(ctx: typer.Context) -> list[str]:
     words = [ctx.params.get("system"), ctx.params.get("target"), *ctx.args]
     named = next((word for word in words if word and not word.startswith("-")), None)
     folders = [f for name in systems() for f in _folders(name)] if named is None else _folders(named)
-    return sorted({file.stem for folder in folders for file in folder.glob("*.toml")})
+    names = {file.stem for folder in folders for file in folder.glob("*.toml")}
+    return sorted(name for name in names if on_one_line(name) == name)
 
 
 def _folders(system: str) -> list[Path]:

@@ -15,6 +15,8 @@ from typing import Any
 
 import typer
 
+from ...cosim.visible import flowing, on_one_line, raw_stream, visible, visible_json, visible_stream
+
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
 _NARROW = 24  # a text is not wrapped to fewer columns
 _GAP, _BELOW = "  ", "    "
@@ -26,7 +28,7 @@ Show = Callable[[float], None]
 
 def print_json(data: Any) -> None:
     """Print JSON; a number that is not finite becomes null."""
-    print(json.dumps(finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+    print(visible_json(json.dumps(finite(data), indent=2, ensure_ascii=False, allow_nan=False)))
 
 
 def finite(data: Any) -> Any:
@@ -46,6 +48,7 @@ def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Se
     The last column is wrapped; if the terminal is too narrow for it, it stands below the others. No text is
     cut off: a line may be longer than the terminal is wide. `cosim.writing` has the tables of pages.
     """
+    rows = [[on_one_line(text) for text in row[:-1]] + [flowing(row[-1])] for row in rows]
     shown = [i for i in range(len(headers)) if any(row[i] for row in rows)]
     *fixed, last = shown or [len(headers) - 1]
     widths = {i: max(len(text) for text in (headers[i], *(row[i] for row in rows))) for i in shown}
@@ -69,6 +72,7 @@ def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Se
 
 def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
     """Print names and values side by side, the values wrapped."""
+    fields = [(on_one_line(name), flowing(value)) for name, value in fields]
     width = max((len(name) for name, _ in fields), default=0)
     for name, value in fields:
         head = " " * indent + name.ljust(width) + _GAP
@@ -97,7 +101,7 @@ def _width() -> int:
 
 
 def _print_bold(text: str) -> None:
-    typer.secho(text, bold=True)  # plain where stdout is no terminal
+    typer.secho(visible(text), file=raw_stream(sys.stdout), bold=True)  # plain where it is no terminal
 
 
 def number(value: float) -> str:
@@ -121,8 +125,11 @@ def progress_bar(text: str, start: float, stop: float, wanted: bool) -> Iterator
         TimeRemainingColumn(),
     )
     # refreshed from here: a thread of its own would take the interpreter away from the units
-    with Progress(*columns, console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
-        task = progress.add_task(text, total=stop - start)
+    console = Console(file=raw_stream(sys.stderr))
+    with Progress(*columns, console=console, transient=True, auto_refresh=False) as progress:
+        # rich has streams of its own now, which print above the bar
+        sys.stdout, sys.stderr = map(visible_stream, (sys.stdout, sys.stderr))
+        task = progress.add_task(on_one_line(text), total=stop - start)
         last = time.perf_counter()
 
         def show(reached: float) -> None:

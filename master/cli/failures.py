@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import typer
 
+from ...cosim.visible import raw_stream, visible, visible_stream
 from . import interrupts, outputs
 
 _SCREEN = 20  # lines of a message at most
@@ -21,6 +23,22 @@ def guarded(command: Any, arguments: Sequence[str]) -> int:
     debug = "--debug" in arguments or os.environ.get("EVCOSIM_DEBUG", "0") not in ("", "0")
     arguments = [argument for argument in arguments if argument != "--debug"]
     _print_what_the_terminal_can()
+    with visible_streams():
+        return _guarded(command, arguments, debug)
+
+
+@contextlib.contextmanager
+def visible_streams() -> Iterator[None]:
+    """Print what stands in files and FMUs so that it neither steers the terminal nor hides anything."""
+    kept = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = map(visible_stream, kept)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = map(raw_stream, (sys.stdout, sys.stderr))
+
+
+def _guarded(command: Any, arguments: Sequence[str], debug: bool) -> int:
     try:
         with command.make_context("evcosim", arguments) as context:
             code = command.invoke(context)
@@ -64,9 +82,11 @@ def open_closed_streams() -> None:
 
 def complain(message: str, whole: bool = False) -> None:
     """Print a message on stderr: at most a screen, unless `whole`."""
-    lines = message.strip().splitlines() or ["no reason given"]
+    lines = visible(message.strip()).split("\n") if message.strip() else ["no reason given"]
     if len(lines) > _SCREEN and not whole:
         lines[_SCREEN - 1 :] = [f"... and {len(lines) - _SCREEN + 1} more lines; --debug shows them"]
+    # a name with a line feed must not make another message of what follows
+    lines[1:] = [f"  {line}" if line.lstrip().startswith("evcosim:") else line for line in lines[1:]]
     print("evcosim: " + "\n".join(lines), file=sys.stderr)
 
 

@@ -145,9 +145,10 @@ def _end_with(why: str, code: int, failed: bool = False) -> NoReturn:
             with contextlib.suppress(Exception):  # as above
                 take_away()
     cursor = "\r\x1b[K\x1b[?25h" if _is_terminal() else ""  # a progress bar hides it
-    text = f"{cursor}evcosim: {why}{said}\n"
+    # None while nothing was read yet that could stand in the text
+    shown = getattr(sys.modules.get("evcosim.cosim.visible"), "visible", str)(f"evcosim: {why}{said}")
     with contextlib.suppress(OSError):
-        os.write(2, text.encode("utf-8", "replace"))
+        os.write(2, f"{cursor}{shown}\n".encode("utf-8", "replace"))
     _exit(code)
 
 

@@ -16,6 +16,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from ...cosim.visible import on_one_line
+
 _SIGNALS = ("SIGSEGV", "SIGABRT", "SIGBUS", "SIGFPE", "SIGILL")
 _STDERR = 2
 _ADVICE = """Run again with --isolation process: then the run says which unit ended, in which step and how,
@@ -66,7 +68,7 @@ class CrashReport:
 
     def add(self, unit: object, name: str, file: str, in_python: bool) -> Callable[[], None]:
         """Take up a unit in this process, and return a call that notes that it is called now."""
-        shown = f"{name} ({file})"
+        shown = on_one_line(f"{name} ({file})")
         text = _Text(f"\nevcosim: this process crashed; the unit called last was {shown}\n")
         self._units[unit] = shown, text
         self._kept.append(text)  # the note may be called once more when the unit was removed

@@ -79,7 +79,7 @@ class IsolatedUnit:
 
     @property
     def warned(self) -> Mapping[str, int]:
-        return {_printable(text): count for text, count in self._shared.warned()}
+        return dict(self._shared.warned())
 
     # ---- requests
 
@@ -149,7 +149,7 @@ class IsolatedUnit:
             raise UnitError(f"unit '{self.name}': its process sent an invalid answer to {self._asked}")
         if "error" in answer:
             of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
-            raise (FmuError if of_the_file else UnitError)(_printable(str(answer["error"])))
+            raise (FmuError if of_the_file else UnitError)(str(answer["error"]))
         return answer.get("value")
 
     def _ended(self, error: Exception) -> NoReturn:
@@ -160,7 +160,7 @@ class IsolatedUnit:
             how = self._process.ending()
         self._process.kill()
         said = [f"unit '{self.name}': its process {how}, asked for {self._asked}"]
-        said += [f"{what}:\n{_printable(text)}" for what, text in self._last_words() if text]
+        said += [f"{what}:\n{text}" for what, text in self._last_words() if text]
         raise UnitError("\n".join(said)) from error
 
     def _last_words(self) -> list[tuple[str, str]]:
@@ -216,7 +216,7 @@ class IsolatedUnit:
         inputs: Mapping[str, Value] = NO_VALUES,
     ) -> str:
         notice = self._call("enter_initialization", start_time, stop_time, dict(values), dict(inputs))
-        return _printable(str(notice or ""))
+        return str(notice or "")
 
     def exit_initialization(self) -> None:
         self._call("exit_initialization")
@@ -324,8 +324,3 @@ def _of_outputs(ours: SlotGroup, theirs: SlotGroup) -> _Places:
 def _of_through(ours: SlotGroup, theirs: SlotGroup) -> _Places:
     if ours.feedthrough:
         yield ours.slot, theirs.slot, ours.feedthrough
-
-
-def _printable(text: str) -> str:
-    """Return the text without characters that steer a terminal."""
-    return "".join(c if c.isprintable() or c in "\n\t" else "\N{REPLACEMENT CHARACTER}" for c in text)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.figures import draw as figures
+from ...cosim.visible import visible
 from ...cosim.writing import markdown_table, write_text
 from .page import VERDICTS, Page, PublishedNumber
 
@@ -37,7 +38,7 @@ def write_page(page: Page, folder: Path) -> list[Path]:
     images = {p.stem: written[2 * i] for i, p in enumerate(page.pictures)}
     for suffix, text in ((".md", _markdown(page)), (".html", _html(page, images))):
         path = folder / f"{page.name}{suffix}"
-        write_text(path, text)
+        write_text(path, visible(text))
         written.append(path)
     return written
 
@@ -54,7 +55,7 @@ def write_index(pages: Sequence[Page], folder: Path) -> Path:
     ]
     lines = ["# Reproduced papers", "", *markdown_table(("system", "paper", *VERDICTS), rows)]
     path = folder / "README.md"
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path, visible("\n".join(lines) + "\n"))
     return path
 
 

@@ -30,6 +30,7 @@ from typing import Any, Generic, SupportsIndex, TypeVar
 
 from ...cosim import leftovers
 from ...cosim.errors import ConfigError, RunError, short
+from ...cosim.visible import visible_stream
 from ..fmi import crash
 
 T = TypeVar("T")
@@ -246,7 +247,7 @@ def _serve(pipe: Connection, folder: str, reports_crash: bool) -> None:
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # which a whole group of processes may get
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    sys.stdout = sys.stderr
+    sys.stdout = sys.stderr = visible_stream(sys.stderr)
     if reports_crash:
         crash.enable()
     os.dup2(2, 1)  # for native code too: the caller's stdout may be read by a machine

@@ -9,6 +9,7 @@ import pytest
 
 from evcosim.cosim import reading
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.visible import visible
 
 
 def test_a_file_is_read_whole(tmp_path: Path) -> None:
@@ -25,7 +26,7 @@ def test_what_is_no_file_is_refused_naming_it(tmp_path: Path) -> None:
     for path, why in refused.items():
         with pytest.raises(ConfigError) as caught:
             reading.content(path, "the table ")
-        assert str(caught.value).startswith(f"{path}: the table cannot be read: ")
+        assert str(caught.value).startswith(f"{visible(str(path))}: the table cannot be read: ")
         assert why in str(caught.value)
 
 

@@ -5,12 +5,18 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures import thinning
+from evcosim.cosim.figures.comparison import draw_comparison
 from evcosim.cosim.figures.draw import draw, save
+from evcosim.cosim.figures.system_diagram import draw_diagram
 from evcosim.cosim.results import results as results_module
 from evcosim.cosim.results.results import Results, ResultVariable
+from evcosim.cosim.system.figure_spec import FigureSpec
+from evcosim.cosim.system.system import SystemFile
+from evcosim.cosim.visible import visible
 from support.outlined_scooter import SPEC, STATES, scooter
 
 
@@ -104,3 +110,40 @@ def test_a_figure_does_not_depend_on_the_pieces_that_a_run_is_read_in(
         ]
         for one, other in zip(a.get_lines(), b.get_lines(), strict=True):
             assert {tuple(xy) for xy in one.get_xydata()} <= {tuple(xy) for xy in other.get_xydata()}
+
+
+FORMULAS = ["$\\frac{", "a$b$c", "$$", "$x^2$", "\\$a$", "50 % of $ and _{", "a\x1b[2Jb\u202e$", "速度"]
+
+
+@pytest.mark.parametrize("text", FORMULAS)
+def test_signs_of_formulas_and_what_steers_are_drawn_as_they_are(tmp_path: Path, text: str) -> None:
+    time = np.arange(5.0)
+    variables = [
+        ResultVariable(f"u.{text}", unit=text, description=text),
+        ResultVariable("u.state", type="Enumeration", causality="output", items=((0, text), (1, f"{text}2"))),
+        ResultVariable("u.other", type="Enumeration", causality="output", items=((0, text), (1, f"{text}2"))),
+    ]
+    data = np.column_stack([time, time % 2, time % 2])
+    results = Results(time, data, variables, {"system": text, "scenario": text})
+    spec = FigureSpec.model_validate(
+        {
+            "title": text,
+            "note": text,
+            "shade": "u.state",
+            "panels": [
+                {"label": text, "unit": text, "signals": [{"name": f"u.{text}", "label": text}]},
+                {"label": text, "signals": ["u.other"]},
+            ],
+        }
+    )
+    system = SystemFile.model_validate({"name": "s", "units": {"u": {"fmu": f"{text}.fmu"}}})
+    figures = [draw(results, spec), draw(results), draw_comparison(results, results), draw_diagram(system)]
+    shown = visible(text)
+    for figure in figures:
+        texts = [each.get_text() for each in figure.findobj(Text)]
+        assert any(shown in each.replace("\n", " ") for each in texts)
+        assert all(visible(each) == each for each in texts)
+        assert not any(each.get_parse_math() for each in figure.findobj(Text) if "$" in each.get_text())
+        save(figure, tmp_path)
+    picture = (tmp_path / "figure.svg").read_text(encoding="utf-8")
+    assert visible(picture) == picture

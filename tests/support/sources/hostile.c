@@ -157,6 +157,7 @@ static void disturb(Unit *u) {
     if (act("own_files")) write_own_library();
     if (act("log_not_utf8")) tell(u, ERROR, "caf\xe9 \xff\xfe");
     if (act("log_escapes")) tell(u, ERROR, "\x1b[2J\x1b]0;title\x07\rover\x9b\x7f\nwritten");
+    if (act("marks")) tell(u, WARNING, "warned \x1b[31m\xe2\x80\xae\x07\tred\r\xc2\x9b\nevcosim: all is well");
     if (act("log_status")) tell(u, 99, "of no status");
     if (act("log_long")) { char *text = malloc(1 << 22); memset(text, 'x', (1 << 22) - 1); text[(1 << 22) - 1] = 0; tell(u, WARNING, text); free(text); }
     if (act("log_foreign")) { void *mine = u->environment; u->environment = (void *)0xdeadbeef; tell(u, WARNING, "to nobody"); u->environment = mine; }
@@ -175,7 +176,7 @@ static int step(Unit *u, double h) {
     if (act("infinity")) u->y = INFINITY;
     if (act("huge")) u->y = 1e69;
     if (act("out_of_range")) u->y = -4.6e5;
-    if (act("warning")) return WARNING;
+    if (act("warning") || act("marks")) return WARNING;
     if (act("discard")) return DISCARD;
     if (act("error") || act("log_not_utf8") || act("log_escapes")) return ERROR;
     if (act("fatal") || act("fatal_crash_in_free")) return FATAL;
@@ -281,7 +282,7 @@ EXPORT int F(GetBoolean)(Unit *c, const Reference *r, size_t n, Boolean *x EXTRA
     return OK;
 }
 EXPORT int F(GetString)(Unit *c, const Reference *r, size_t n, const char **x EXTRA) {
-    for (size_t i = 0; i < n; i++) x[i] = act("null_string") ? NULL : "text";
+    for (size_t i = 0; i < n; i++) x[i] = act("null_string") ? NULL : act("marks") ? "text\x1b]0;title\x07\xe2\x80\xae\xe2\x80\x8b" : "text";
     return OK;
 }
 
