@@ -22,10 +22,19 @@ class CannotBuild(RuntimeError):
 
 def c_library(source: str, out: Path, *flags: str) -> Path:
     """Compile one of the C sources into a shared library. Raises CannotBuild."""
+    return _compiled(source, out, *_FLAGS, *flags)
+
+
+def c_program(source: str, out: Path) -> Path:
+    """Compile one of the C sources into a program. Raises CannotBuild."""
+    return _compiled(source, out, "-O2")
+
+
+def _compiled(source: str, out: Path, *flags: str) -> Path:
     compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         raise CannotBuild("there is no C compiler: install one or set CC")
-    command = [compiler, *_FLAGS, *flags, str(SOURCES / source), "-o", str(out)]
+    command = [compiler, *flags, str(SOURCES / source), "-o", str(out)]
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     if made.returncode:
         raise CannotBuild(f"{' '.join(command)}: {made.stderr.strip()[-500:]}")

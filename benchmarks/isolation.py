@@ -5,8 +5,9 @@ units in the master's process and with each in its own, under both algorithms, i
 take turns. What is printed are microseconds for a unit and step: the median stretch of each, the difference
 between the two, of the medians, of the 10th percentiles and of the fastest stretches, and the ratio of the
 latter two. On a machine that does other things too these say more. Then, the share of a core that the
-processes take while nobody steps. Below the table: the processor time of a process from its start to its end,
-with an FMU that is loaded and initialized and not stepped. Needs a C compiler.
+processes take while nobody steps. Below the table: what a bare handover of a turn costs here, without an FMU
+(sources/handover.c), and the processor time of a process from its start to its end, with an FMU that is
+loaded and initialized and not stepped. Needs a C compiler.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import argparse
 import os
 import platform
 import resource
+import subprocess
 import tempfile
 import time
 from pathlib import Path
@@ -24,6 +26,7 @@ import numpy as np
 from evcosim.master.simulation import Simulation
 
 from .case import Case, Kind
+from .fmus import c_program
 from .runners.evcosim import write_system
 
 _SIGNALS = 10
@@ -52,11 +55,25 @@ def main() -> None:
     for case in cases:
         for algorithm in ("gauss_seidel", "jacobi"):
             print(row(case, algorithm, arguments.stretches), flush=True)
+    counts = sorted({case.units for case in cases})
+    print("\na bare handover and back, fastest and median of 200 stretches:")
+    for units in counts:
+        asleep, looking = floor(units, looking=False), floor(units, looking=True)
+        print(f"  {units} processes: {asleep} asleep until their turn, {looking} all looking")
     in_c, in_python = start_time("c", arguments.starts), start_time("python", arguments.starts)
     print(
         f"\na process from start to end, with no step: {in_c:.0f} ms of processor time with an FMU in C, "
         f"{in_python:.0f} ms with one of pythonfmu (medians of {arguments.starts})"
     )
+
+
+def floor(units: int, looking: bool) -> str:
+    """The time of a turn that does nothing, of which each of so many processes has one in a round."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = c_program("handover.c", Path(folder) / "handover")
+        command = [str(program), str(units), str(int(looking))]
+        said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return " and ".join(f"{int(nanoseconds) / 1000:.1f}" for nanoseconds in said.split())
 
 
 def row(case: Case, algorithm: str, stretches: int) -> str:

@@ -6,6 +6,7 @@ It carries out the master's requests until the socket ends. Its limits hold befo
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import fcntl
 import json
@@ -16,12 +17,16 @@ import signal
 import socket
 import sys
 import threading
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ..machine import slots as S
 from . import framing, shared
 from .handover import Side
 from .shared import Shared
 from .texts import is_long, part_of, piece_of
+
+if TYPE_CHECKING:
+    from .machine_turns import MachineTurns
 
 _SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 
@@ -82,10 +87,11 @@ class Server:
 
     def __init__(self, connection: socket.socket, memory: Shared) -> None:
         self.connection, self.memory, self.slots = connection, memory, memory.slots
-        mine, theirs = (shared.ANSWER, shared.CHILD_SLEEPS), (shared.REQUEST, shared.MASTER_SLEEPS)
-        self.side = Side(connection, memory.slots, mine, theirs, memory.slots[shared.SPIN])
+        mine, theirs = (S.ANSWER, S.CHILD_SLEEPS), (S.REQUEST, S.MASTER_SLEEPS)
+        self.side = Side(connection, memory.slots, mine, theirs, memory.slots[S.SPIN])
         self.unit: Any = None
         self.texts: Any = None
+        self.machine: MachineTurns | None = None
 
     def serve(self, loading: tuple[Any, ...]) -> None:
         """Load the unit, then answer until the master has gone."""
@@ -93,25 +99,42 @@ class Server:
         try:
             self._answer(number, "load", loading)
             while True:
+                if self.machine is not None:
+                    number = self._turns(self.machine, number)
                 number += 1.0
-                frame = b"" if side.comes(number) else side.sleep_until(number, sys.maxsize)
-                if self.slots[shared.KIND] == shared.CALL:
+                looks = self.machine is None  # machine code has looked
+                frame = b"" if looks and side.comes(number) else side.sleep_until(number, sys.maxsize)
+                if self.slots[S.KIND] == S.CALL:
                     self._answer(number, *pickle.loads(frame or side.frame(sys.maxsize)))
-                else:
+                elif self.machine is None or self.slots[S.KIND] == S.OUTPUTS:
                     self._turn(number)
+                else:
+                    number -= 1.0  # machine code does it
         except EOFError:
             os._exit(0)
         except OSError:
             os._exit(framing.LOST)
 
+    def _turns(self, machine: MachineTurns, number: float) -> float:
+        """Do the turns after request `number` in machine code while they come; return the last number."""
+        while True:
+            failure = b""
+            try:
+                number, answered = machine.do(number)
+            except Exception as error:  # as below
+                number, answered, failure = machine.number, False, _failure(error)
+            if answered:
+                return number
+            self._post(number, failure)
+
     def _turn(self, number: float) -> None:
         unit, slots = self.unit, self.slots
-        kind = slots[shared.KIND]
+        kind = slots[S.KIND]
         failure = b""
         try:
-            if kind != shared.OUTPUTS:
+            if kind != S.OUTPUTS:
                 unit.set_inputs()
-                if kind == shared.STEP_SHOWN:
+                if kind == S.STEP_SHOWN:
                     unit.get_feedthrough()
                 unit.start_step(shared.fmu_steps(slots))
                 unit.finish_step()
@@ -132,10 +155,10 @@ class Server:
         """Hand the turn over: the request is done, with a frame where there is an answer or an error."""
         slots = self.slots
         if self.unit is not None:
-            slots[shared.WARNINGS] = self.unit.warnings
+            slots[S.WARNINGS] = self.unit.warnings
             if self.unit.asked_end is not None:
-                slots[shared.ASKS_END], slots[shared.ASKED_END] = 1.0, self.unit.asked_end
-        slots[shared.FRAME] = 1.0 if frame else 0.0
+                slots[S.ASKS_END], slots[S.ASKED_END] = 1.0, self.unit.asked_end
+        slots[S.FRAME] = 1.0 if frame else 0.0
         self.side.post(number)
         if frame:
             framing.send(self.connection, frame)
@@ -164,6 +187,17 @@ class Server:
         """Return the value of a variable; of a text that is longer than an answer its number, in a list."""
         value = self.unit.get(name)
         return [self.texts.number(value)] if is_long(value) else value
+
+    def do_quicken(self, code: bytes) -> bool:
+        """Do the turns from now on in machine code; False: this unit, or this system, does not allow it."""
+        from ..machine.rows import direct
+        from .machine_turns import MachineTurns
+
+        instance = direct(self.unit)
+        if instance is not None:
+            with contextlib.suppress(OSError):
+                self.machine = MachineTurns(code, instance, self.memory, self.connection.fileno())
+        return self.machine is not None
 
     def do_bind(self, plan: Any) -> None:
         """Bind the unit to the shared memory."""

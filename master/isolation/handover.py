@@ -24,6 +24,10 @@ import threading
 import time
 from collections.abc import Callable
 
+import numpy as np
+
+from ..machine import slots as S
+from ..machine.surroundings import wake
 from . import framing
 
 _ORDERED = os.name == "posix" and os.uname().machine in ("x86_64", "amd64", "AMD64", "i386", "i686")
@@ -66,7 +70,9 @@ class Side:
         slots = self._slots
         slots[self._mine] = number
         self._exchange()
-        if not self._spin or slots[self._they_sleep]:
+        if slots[self._they_sleep] == S.ON_WORD:
+            wake(np.asarray(slots).ctypes.data + 8 * self._they_sleep + S.WORD)
+        elif not self._spin or slots[self._they_sleep]:
             self._connection.sendall(framing.BELL)
 
     def _exchange(self) -> None:
@@ -104,7 +110,7 @@ class Side:
     ) -> bytes:
         """Sleep until a number is there, or return a frame that comes first. Raises as `framing.receive`."""
         slots, place = self._slots, self._theirs
-        slots[self._i_sleep] = 1.0
+        slots[self._i_sleep] = S.ON_SOCKET
         self._exchange()
         try:
             while not (self._spin and slots[place] == number):
@@ -114,7 +120,7 @@ class Side:
                 impatience()
             return b""
         finally:
-            slots[self._i_sleep] = 0.0
+            slots[self._i_sleep] = S.AWAKE
 
     def frame(self, most: int, impatience: framing.Impatience = framing.nothing) -> bytes:
         """Receive the next frame, passing over bells. Raises as `framing.receive`."""

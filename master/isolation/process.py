@@ -73,6 +73,13 @@ class Process:
         )
         leftovers.add_child(self._process.pid, functools.partial(_kill, self._process.pid))
 
+    @property
+    def number(self) -> int:
+        """The number of the process. Raises ProcessLookupError when it has been closed."""
+        if self._process is None:
+            raise ProcessLookupError("the process ended")
+        return self._process.pid
+
     def check_alive(self) -> None:
         """Raise EOFError when it has ended, though something that it started may hold its socket open."""
         if self._process is None or self._process.poll() is not None:

@@ -19,17 +19,9 @@ import numpy as np
 
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from ...cosim.texts import Texts
+from ..machine import slots as S
 from ..unit import floats
 from ..warned import KINDS, WarningKinds
-
-# the master's side; the two sides stand apart, so that a core that reads one is not disturbed by the other
-REQUEST, KIND, MASTER_SLEEPS, SPIN, STEPS = range(5)
-STEPS_END = STEPS + len(FmuSteps._fields)
-# the child's side
-ANSWER, FRAME, CHILD_SLEEPS, WARNINGS, _MESSAGES, _WARNED, ASKS_END, ASKED_END = range(16, 24)
-
-CALL, STEP, STEP_SHOWN, OUTPUTS = 0.0, 1.0, 2.0, 3.0
-"""Kinds of requests: the call in a frame; steps; steps after the outputs that feed through; outputs alone."""
 
 _RING, _KEPT, _TEXT = 32, 20, 2048  # first slot, messages, bytes of one
 _RECORD = 2 + _TEXT // 8  # status, length, text
@@ -53,27 +45,30 @@ def create(count: int) -> int:
 
 
 class Shared:
-    """The memory behind a descriptor: `slots` are all of it, `values`, shape (size,), those of the unit."""
+    """The memory behind a descriptor: `slots` are all of it, `values`, shape (size,), those of the unit.
+
+    `address` is where it begins.
+    """
 
     def __init__(self, descriptor: int) -> None:
         self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
         whole = np.frombuffer(self._memory, dtype=np.float64)
-        self.slots = floats(whole)
+        self.slots, self.address = floats(whole), whole.ctypes.data
         self.values = whole[_VALUES:]
         self._kinds = WarningKinds()
 
     def warnings(self) -> int:
         """Return the number of warnings that the child has counted."""
-        return _count(self.slots[WARNINGS])
+        return _count(self.slots[S.WARNINGS])
 
     def hear(self, status: int, text: str) -> None:
         """Keep a log message; the child calls it."""
-        number = _count(self.slots[_MESSAGES])
+        number = _count(self.slots[S.MESSAGES])
         content = text.encode("utf-8", "replace")[:_TEXT]
         self._write(_RING + number % _KEPT * _RECORD, status, content)
-        self.slots[_MESSAGES] = number + 1
+        self.slots[S.MESSAGES] = number + 1
         if status == 1:
-            self.slots[WARNINGS] += 1  # the exact number comes with the answer, if one comes
+            self.slots[S.WARNINGS] += 1  # the exact number comes with the answer, if one comes
             self._warn(text, content)
 
     def _warn(self, text: str, content: bytes) -> None:
@@ -82,21 +77,21 @@ class Shared:
         if number is None:
             return
         place = _WARNED_AT + number * _RECORD
-        if number < _count(self.slots[_WARNED]):
+        if number < _count(self.slots[S.WARNED]):
             self.slots[place] += 1  # in a record of the ring it is the status
         else:
             self._write(place, 1, content)
-            self.slots[_WARNED] = number + 1
+            self.slots[S.WARNED] = number + 1
 
     def warned(self) -> list[tuple[str, int]]:
         """Return the first text of each of the first kinds of warnings, and their number."""
-        number = min(_count(self.slots[_WARNED]), KINDS)
+        number = min(_count(self.slots[S.WARNED]), KINDS)
         found = [self._read(_WARNED_AT + i * _RECORD) for i in range(number)]
         return [(content.decode("utf-8", "replace"), count) for count, content in found]
 
     def heard(self) -> list[tuple[int, str]]:
         """Return the last log messages, at most 20, as (status, text)."""
-        number = _count(self.slots[_MESSAGES])
+        number = _count(self.slots[S.MESSAGES])
         found = []
         for i in range(max(0, number - _KEPT), number):
             status, content = self._read(_RING + i % _KEPT * _RECORD)
@@ -114,7 +109,7 @@ class Shared:
 
 def fmu_steps(slots: memoryview[float]) -> FmuSteps:
     """Return the FMU steps that the master has written."""
-    first, advance, divisor, total, *sizes = slots[STEPS:STEPS_END]
+    first, advance, divisor, total, *sizes = slots[S.STEPS : S.STEPS_END]
     return FmuSteps(first, advance, divisor, _count(total), *sizes)
 
 

@@ -8,7 +8,7 @@ import json
 import os
 import pickle
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NoReturn
 
 import numpy as np
@@ -19,6 +19,9 @@ from ...cosim.interface import UnitInterface, Value
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
+from ..machine import slots as S
+from ..machine import tables as L
+from ..machine.hands import LOOK_TIME, POSSIBLE, Hand, Span
 from ..unit import NO_VALUES, UnitError, floats
 from . import framing, handover, shared
 from .process import Process, ProcessLimits
@@ -49,24 +52,27 @@ class IsolatedUnit:
         self.name, self.fmu, self.interface = name, fmu, interface
         self._limits = limits
         self._asked, self._time, self._key = "loading", limits.loading, "load_timeout"
-        self._number, self._pending, self._loaded = 1.0, True, False
-        self._fresh = self._shows = self._freed = False
+        self._loaded = self._freed = False
+        self._own = np.zeros(L.TURN_SIZE)
+        self._turn = floats(self._own)
+        self._turn[L.REQUESTS] = self._turn[L.PENDING] = 1.0
+        self.hand: Hand | None = None
         self._deadline = 0.0
         there = dataclasses.replace(fmu, path=fmu.path.resolve())  # its working folder is another one
         descriptor = shared.create(2 * len(interface.variables))
         try:
             self._shared = shared.Shared(descriptor)
             self._slots = self._shared.slots
-            self._slots[shared.SPIN] = handover.spin_time()
+            self._slots[S.SPIN], self._turn[L.LOOKING] = handover.spin_time(), LOOK_TIME
             self._process = Process((there, name, interface, tolerance), descriptor, limits)
         finally:
             os.close(descriptor)
         self._side = handover.Side(
             self._process.connection,
             self._slots,
-            (shared.REQUEST, shared.MASTER_SLEEPS),
-            (shared.ANSWER, shared.CHILD_SLEEPS),
-            self._slots[shared.SPIN],
+            (S.REQUEST, S.MASTER_SLEEPS),
+            (S.ANSWER, S.CHILD_SLEEPS),
+            self._slots[S.SPIN],
         )
 
     @property
@@ -75,7 +81,7 @@ class IsolatedUnit:
 
     @property
     def asked_end(self) -> float | None:
-        return self._slots[shared.ASKED_END] if self._slots[shared.ASKS_END] else None
+        return self._slots[S.ASKED_END] if self._slots[S.ASKS_END] else None
 
     @property
     def warned(self) -> Mapping[str, int]:
@@ -90,7 +96,7 @@ class IsolatedUnit:
             self._answer(self._frame())
         self._check_free()
         self._asked = name + (f" of {arguments[0]}" if name in _OF_ONE_VARIABLE else "")
-        self._request(shared.CALL)
+        self._request(S.CALL)
         try:
             framing.send(self._process.connection, pickle.dumps((name, arguments)), self._impatience)
         except OSError as error:
@@ -98,30 +104,30 @@ class IsolatedUnit:
         return self._answer(self._frame())
 
     def _check_free(self) -> None:
-        if self._pending:
+        if self._turn[L.PENDING]:
             raise UnitError(f"unit '{self.name}': was interrupted while it was asked for {self._asked}")
 
     def _request(self, kind: float) -> None:
-        self._slots[shared.KIND] = kind
-        self._number += 1.0
-        self._pending = True
+        self._slots[S.KIND] = kind
+        self._turn[L.REQUESTS] += 1.0
+        self._turn[L.PENDING] = 1.0
         try:
-            self._side.post(self._number)
+            self._side.post(self._turn[L.REQUESTS])
         except OSError as error:
             self._ended(error)
 
     def _finish(self) -> None:
         """Wait until the request is done. Raises UnitError or FmuError with the unit's own message."""
         with WAITING:
-            frame = b"" if self._side.comes(self._number) else self._sleep()
-        if frame or self._slots[shared.FRAME]:
+            frame = b"" if self._side.comes(self._turn[L.REQUESTS]) else self._sleep()
+        if frame or self._slots[S.FRAME]:
             self._answer(frame or self._frame())
-        self._pending = False
+        self._turn[L.PENDING] = 0.0
 
     def _sleep(self) -> bytes:
         self._deadline = time.monotonic() + self._time
         try:
-            return self._side.sleep_until(self._number, framing.LONGEST, self._impatience)
+            return self._side.sleep_until(self._turn[L.REQUESTS], framing.LONGEST, self._impatience)
         except (OSError, EOFError) as error:
             self._ended(error)
 
@@ -140,7 +146,7 @@ class IsolatedUnit:
 
     def _answer(self, frame: bytes) -> Any:
         """Return the value in an answer. Raises FmuError or UnitError for an error or an invalid answer."""
-        self._pending = False
+        self._turn[L.PENDING] = 0.0
         try:
             answer = json.loads(frame)
         except (ValueError, RecursionError):
@@ -206,7 +212,39 @@ class IsolatedUnit:
             for places in (_of_inputs, _of_outputs, _of_through)
         )
         self._memory, self._values = view, ours
+        if POSSIBLE and self._slots[S.SPIN]:
+            self.hand = self._hand(memory, pairs)
         self._call("bind", theirs)
+
+    def _hand(self, memory: NDArray[np.float64], pairs: Sequence[tuple[SlotGroup, SlotGroup]]) -> Hand:
+        """Return what machine code needs to hand over a turn: for each pair, the run's slots and ours."""
+        pairs = [(b, t) for b, t in pairs if b.type != "String"]
+        run, own = memory.ctypes.data, self._shared.values.ctypes.data
+
+        def span(here: int, there: int, count: int, back: bool = True) -> Span:
+            ends = (own + 8 * there, run + 8 * here)
+            return (*(ends if back else ends[::-1]), count)
+
+        inputs = [span(b.slot, t.slot, len(b.variables), False) for b, t in pairs if b.kind == "input"]
+        through = [span(b.slot, t.slot, b.feedthrough) for b, t in pairs if b.feedthrough]
+        outputs = [
+            span(shared.shown(b), shared.shown(t), len(b.variables)) for b, t in pairs if b.kind != "input"
+        ]
+        row = {L.SLOTS: self._shared.address, L.SOCKET: self._process.connection.fileno()}
+        return Hand(
+            row=row | {L.TURN: self._own.ctypes.data},
+            inputs=inputs,
+            outputs=[*through, *outputs],
+            texts_in=self._send_texts if self._texts_in else None,
+            texts_out=self._receive_texts if self._texts_out else None,
+        )
+
+    def quicken(self, code: bytes) -> None:
+        self._call("quicken", code)
+
+    def settle(self, cores: set[int], look: float) -> None:
+        self._slots[S.LOOK] = look
+        os.sched_setaffinity(self._process.number, cores)
 
     def enter_initialization(
         self,
@@ -251,42 +289,50 @@ class IsolatedUnit:
         """Copy the inputs into the shared memory; the unit takes them with the next request."""
         for target, place, values in self._inputs:
             target[place] = values
+        self._send_texts()
+
+    def _send_texts(self) -> None:
         for here, there in self._texts_in:
             self._values[there] = self._exchange.to_child(self._memory[here])
 
     def get_feedthrough(self) -> None:
         """Note that the unit shows outputs before the step that follows."""
-        self._shows = True
+        self._turn[L.SHOWS] = 1.0
 
     def start_step(self, steps: FmuSteps) -> None:
         """Request the steps; the process does them while the caller goes on."""
         self._check_free()
-        for place, number in enumerate(steps, shared.STEPS):
+        for place, number in enumerate(steps, S.STEPS):
             self._slots[place] = number
         self._asked = "a step"
-        self._request(shared.STEP_SHOWN if self._shows else shared.STEP)
+        self._request(S.STEP_SHOWN if self._turn[L.SHOWS] else S.STEP)
 
     def finish_step(self) -> None:
-        if not self._pending:
+        if not self._turn[L.PENDING]:
             return
+        self._asked = "a step"
         self._finish()
-        self._fresh = True
-        if self._shows:
-            self._shows = False
+        self._turn[L.FRESH] = 1.0
+        if self._turn[L.SHOWS]:
+            self._turn[L.SHOWS] = 0.0
             for target, place, values in self._through:
                 target[place] = values
             self._take_texts(self._texts_through)
 
     def get_outputs(self) -> None:
         """Copy the outputs out of the shared memory, where a step has left them, else after a request."""
-        if not self._fresh:
+        if not self._turn[L.FRESH]:
             self._check_free()
             self._asked = "its outputs"
-            self._request(shared.OUTPUTS)
+            self._request(S.OUTPUTS)
             self._finish()
-        self._fresh = False
+        self._turn[L.FRESH] = 0.0
         for target, place, values in self._outputs:
             target[place] = values
+        self._take_texts(self._texts_out)
+
+    def _receive_texts(self) -> None:
+        self._take_texts(self._texts_through)
         self._take_texts(self._texts_out)
 
     def _take_texts(self, places: list[tuple[int, int]]) -> None:
@@ -300,7 +346,7 @@ class IsolatedUnit:
         """Release everything; a unit that does not answer within two seconds is ended."""
         if not self._freed:
             self._freed = True
-            if not self._pending:  # one that still works hears nothing
+            if not self._turn[L.PENDING]:  # one that still works hears nothing
                 self._time = min(_FREEING, self._time)
                 with contextlib.suppress(UnitError, ConfigError):  # what fails now changes no result
                     self._call("free")

@@ -25,10 +25,12 @@ import numba
 from ....cosim import leftovers
 from ...builtin import cache_folder, keep, kept
 from ...fmi import types
-from . import call, kernel, tables
+from ...machine import access, calling, flat, handing, serving, slots, tables
+from . import kernel
 
-SOURCES: tuple[ModuleType, ...] = (kernel, call, tables, types)
+SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types)
 """The modules of this project that the machine code is made of: `kernel` and those that it imports."""
+_SERVING: tuple[ModuleType, ...] = (serving, flat, *SOURCES[1:])
 _made: dict[bool, Any] = {}
 
 
@@ -46,14 +48,35 @@ def compiled(timed: bool = False) -> tuple[int, str]:
     return int(_made[timed].address), notice
 
 
+def served() -> bytes | None:
+    """Return the machine code of the turns of an isolated unit, from the cache or compiled now.
+
+    None: it needs more than its own bytes on this machine, so that Python does the turns there.
+    """
+    name = f"turns-{_digest(_SERVING)}.bin"
+    code = kept(name)
+    if code is None:
+        try:
+            code = flat.flat(serving.run)
+        except flat.NotFlatError:
+            return None
+        keep(name, code)  # a cache that keeps nothing is told by the engine's own
+    return code
+
+
 def _name(timed: bool) -> str:
-    """Return the name of the entry: another one for other sources, in another place, on another processor."""
-    parts = [Path(module.__file__ or "").read_bytes() for module in SOURCES]
-    parts += [numba.__version__.encode(), str(kernel.__file__).encode()]  # numba's files name that place
+    """Return the name of the kernel's entry: another one in another place, too, which numba's files name."""
+    digest = _digest(SOURCES, str(kernel.__file__).encode())
+    return f"engine-{digest}-{'timed' if timed else 'plain'}.zip"
+
+
+def _digest(modules: tuple[ModuleType, ...], *more: bytes) -> str:
+    """Return a digest of these sources and of this processor."""
+    parts = [Path(module.__file__ or "").read_bytes() for module in modules]
+    parts += [numba.__version__.encode(), *more]
     parts += [llvmlite.binding.get_host_cpu_name().encode()]
     parts += [llvmlite.binding.get_host_cpu_features().flatten().encode()]
-    digest = hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
-    return f"engine-{digest}-{'timed' if timed else 'plain'}.zip"
+    return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
 
 
 def _through_the_cache(function: Any, name: str) -> tuple[Any, str]:

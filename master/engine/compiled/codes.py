@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import assert_never
 
 from ....cosim.can.quantization import SignalOperation
+from ...machine import tables as L
 from ..engine import Effect
-from . import tables as L
 
 
 def effect_kind(effect: Effect) -> int:

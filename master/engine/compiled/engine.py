@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import sys
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,10 +12,14 @@ from numpy.typing import NDArray
 
 from ....cosim.can.quantization import ChannelError
 from ...fmi import crash
+from ...machine import tables as L
+from ...machine.hands import HandedOver
+from ...machine.rows import collect_warnings
+from ...machine.surroundings import Surroundings, address
 from ..engine import CHUNK_SECONDS, Engine
-from . import tables as L
-from .cache import compiled
-from .program import Program, address
+from .cache import compiled, served
+from .placement import Placement
+from .program import Program
 
 _Python = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64)
 _RELEASING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)  # gives up Python's lock while it runs
@@ -121,7 +123,6 @@ class CompiledEngine(Engine):
         self._python = _Python(self._act_for_kernel)
         self._state = np.zeros(L.STATE_SIZE, dtype=np.int64)
         self._numbers = np.zeros(L.NUMBERS_SIZE)
-        self._ticks = np.zeros(2, dtype=np.int64)
         self._raws = np.zeros(max(1, len(program.signals)))
         self._logs = np.zeros(max(1, len(program.logged)), dtype=np.int64)
         self._times = np.zeros(len(program.ops))
@@ -131,36 +132,36 @@ class CompiledEngine(Engine):
         )  # fmt: skip # beside their places
         self._state[L.STOP_STEP] = clock.steps
         self._state[L.PYTHON] = address(self._python)
-        self._set_clock()
+        self._surroundings = Surroundings(self._state, self._numbers)
         tables: dict[int, NDArray[Any]] = {
             L.STATE: self._state, L.NUMBERS: self._numbers, L.MEMORY: self.memory, L.ROUTES: program.routes,
             L.EFFECTS: program.effect_table, L.CALLS: program.calls, L.ITEMS: program.items,
             L.UNITS: program.units, L.SIGNALS: program.signal_table, L.SINKS: program.sinks,
             L.RAWS: self._raws, L.WAITS: program.waits, L.ARRIVALS: program.arrivals,
-            L.COLUMNS: program.columns, L.LOGS: self._logs, L.TICKS: self._ticks, L.TIMES_OF_OPS: self._times,
+            L.COLUMNS: program.columns, L.LOGS: self._logs, L.TIMES_OF_OPS: self._times,
+            L.HANDS: program.hands, L.SPANS: program.spans,
         }  # fmt: skip # the others are a chunk's own
         self._addresses = np.zeros(L.TABLES, dtype=np.int64)
-        for place, array in tables.items():
+        for place, array in (tables | self._surroundings.tables).items():
             self._addresses[place] = array.ctypes.data
         kind = _HOLDING if program.holds_python else _RELEASING
         function, self.notice = compiled(timed=self.profile is not None)
         self._kernel = kind(function)
+        self._quicken()
 
-    def _set_clock(self) -> None:
-        """Give the kernel the address of the system's clock, its arguments, and the seconds of its ticks."""
-        ticks = self._ticks.ctypes.data
-        if sys.platform == "win32":
-            frequency = ctypes.c_int64()
-            ctypes.windll.kernel32.QueryPerformanceFrequency(ctypes.byref(frequency))
-            function, arguments = ctypes.windll.kernel32.QueryPerformanceCounter, (ticks, 0)
-            seconds = (1.0 / frequency.value, 0.0)
-        else:
-            function, arguments = ctypes.CDLL(None).clock_gettime, (time.CLOCK_MONOTONIC, ticks)
-            seconds = (1.0, 1e-9)
-        self._clock = function  # whose address is in the table
-        self._state[L.CLOCK] = address(function)
-        self._state[[L.CLOCK_A, L.CLOCK_B]] = arguments
-        self._numbers[[L.TICK_0, L.TICK_1]] = seconds
+    def _adapt(self, count: int, done: int, seconds: float) -> None:
+        super()._adapt(count, done, seconds)
+        self._placement.judge(seconds, done * len(self._placement.units))
+
+    def _quicken(self) -> None:
+        """Let the processes of isolated units do their turns in machine code, where it can hand them over."""
+        units = [turn.unit for turn in self.turns]
+        handed = [unit for unit in units if isinstance(unit, HandedOver) and unit.hand is not None]
+        code = served() if handed else None
+        self._placement = Placement(handed if code is not None else [])
+        if code is not None:
+            for unit in handed:
+                unit.quicken(code)
 
     # ---- calls from the kernel, and its outcome
 
@@ -221,11 +222,8 @@ class CompiledEngine(Engine):
     def _collect_noted(self, program: Program) -> None:
         """Add warnings and saturations to those of units and channels."""
         self._state[L.NOTED] = 0
-        for table, instances in ((program.calls, program.called), (program.units, program.stepped)):
-            if table[:, L.WARNINGS].any():
-                for i, instance in enumerate(instances):
-                    instance.log.warnings += int(table[i, L.WARNINGS])
-                table[:, L.WARNINGS] = 0
+        collect_warnings(program.calls, program.called)
+        collect_warnings(program.units, program.stepped)
         signals = program.signal_table
         for i in np.flatnonzero(signals[:, L.TIMES]).tolist():
             sender, place = program.signals[i]

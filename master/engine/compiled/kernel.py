@@ -15,163 +15,14 @@ CALLS or UNITS, `o` of OPS; `k` is the step.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from ...fmi.types import LARGEST_WHOLE, REAL_CODES, WIDE_CODES
-from . import tables as L
-from .call import (  # fmt: skip # names
-    call_2,
-    do_step,
-    do_step_3,
-    number,
-    peek,
-    put_number,
-    put_value,
-    put_word,
-    size_of,
-    transfer,
-    transfer_3,
-    value_at,
-    word,
-)
+from ...machine import tables as L
+from ...machine.access import call_2, number, put_number, put_word, word
+from ...machine.calling import call, clock, inlined, step
+from ...machine.handing import collect, request
 
 LARGEST = 1.7976931348623157e308
-WIDEST = float(LARGEST_WHOLE)
 LOOK = 32  # steps at most between two readings of the clock
-
-inlined = njit(forceinline=True, error_model="numpy")
-
-
-# ---- the units
-
-
-@inlined
-def fill(t, m, c, kind):
-    """Fill the buffer of call c from the memory; return the place of a value that does not fit, else -1."""
-    at = word(c, L.VALUES)
-    item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
-    for j in range(word(c, L.COUNT)):
-        value = number(m, word(item, L.SLOT))
-        value = number(item, L.FACTOR) * value + number(item, L.ADDEND)
-        if not number(item, L.LOW) <= value <= number(item, L.HIGH):
-            return j
-        if kind not in REAL_CODES and (value != np.floor(value) or not chosen(item, value)):
-            return j
-        at += put_value(at, kind, value)
-        item += 8 * L.ITEM
-    return -1
-
-
-@inlined
-def chosen(item, value):
-    """Return True if a whole number is one of an enumeration's, where the item has gaps between them."""
-    count = word(item, L.CHOICES)
-    for j in range(count):
-        if number(word(item, L.NUMBERS_OF), j) == value:
-            return True
-    return count == 0
-
-
-@inlined
-def take(t, m, c, kind):
-    """Copy the buffer of call c to the memory; return the place of a value that no double holds, else -1."""
-    at = word(c, L.VALUES)
-    item = word(t, L.ITEMS) + 8 * L.ITEM * word(c, L.FIRST_ITEM)
-    whole, size, wide = np.int64(WIDEST), size_of(kind), kind in WIDE_CODES
-    for j in range(word(c, L.COUNT)):
-        value = value_at(at, kind)
-        # 2**53 + 1 is rounded to 2**53
-        if wide and (abs(value) > WIDEST or (abs(value) == WIDEST and abs(peek(at, np.int64)) > whole)):
-            return j
-        at += size
-        put_number(m, word(item, L.SLOT), number(item, L.FACTOR) * value + number(item, L.ADDEND))
-        item += 8 * L.ITEM
-    return -1
-
-
-@inlined
-def stopped(t, row, detail, result):
-    """Note the row of the call at which the kernel stops, and the detail; return `result`."""
-    put_word(word(t, L.STATE), L.CALLED, row)
-    put_word(word(t, L.STATE), L.DETAIL, detail)
-    return result
-
-
-@inlined
-def warned(t, c):
-    """Count that the function in row c returned Warning."""
-    put_word(c, L.WARNINGS, word(c, L.WARNINGS) + 1)
-    put_word(word(t, L.STATE), L.NOTED, 1)
-
-
-@inlined
-def call(t, m, row):
-    """Do the C call in a row, with its values converted before or after it; return DONE or an error."""
-    c = word(t, L.CALLS) + 8 * L.CALL_WIDTH * row
-    kind = word(c, L.FORMAT)
-    if L.IN_PLACE < kind < L.GETS:
-        place = fill(t, m, c, kind)
-        if place >= 0:
-            return stopped(t, row, place, L.NO_FIT)
-    if word(c, L.TWICE):
-        status = transfer_3(
-            word(c, L.FUNCTION),
-            word(c, L.COMPONENT),
-            word(c, L.REFERENCES),
-            word(c, L.COUNT),
-            word(c, L.VALUES),
-        )
-    else:
-        status = transfer(
-            word(c, L.FUNCTION),
-            word(c, L.COMPONENT),
-            word(c, L.REFERENCES),
-            word(c, L.COUNT),
-            word(c, L.VALUES),
-        )
-    if status:
-        if status != 1:
-            return stopped(t, row, np.int64(status), L.BAD_STATUS)
-        warned(t, c)
-    if kind > L.GETS:
-        place = take(t, m, c, kind - L.GETS)
-        if place >= 0:
-            return stopped(t, row, place, L.NO_FIT)
-    return L.DONE
-
-
-@inlined
-def step(t, c, k, now, time):
-    """Do the steps of the turn at step k of the unit in row c; return DONE or an error.
-
-    `time` [s] is t_k, where the first of them begins, and `now` its numerator.
-    """
-    advance, size = number(c, L.ADVANCE), number(c, L.STEP_SIZE)
-    landing = size
-    if k == word(c, L.LAST_TURN):
-        advance, size = number(c, L.LAST_ADVANCE), number(c, L.LAST_SIZE)
-        landing = number(c, L.LANDING_SIZE)
-    answers, count = word(c, L.ANSWERS), word(c, L.STEPS)
-    for j in range(count):
-        if j > 0:
-            time = (now * number(c, L.TIME_FACTOR) + j * advance) / number(c, L.DIVISOR)
-        if j == count - 1:
-            size = landing
-        if answers:
-            status = do_step_3(
-                word(c, L.FUNCTION), word(c, L.COMPONENT), time, size,
-                word(c, L.EVENT), word(c, L.ENDING), word(c, L.EARLY), word(c, L.REACHED),
-            )  # fmt: skip # as C has it
-        else:
-            status = do_step(word(c, L.FUNCTION), word(c, L.COMPONENT), time, size)
-        if status:
-            if status != 1:
-                put_word(word(t, L.STATE), L.DETAIL, np.int64(status))
-                return L.BAD_STATUS
-            warned(t, c)
-        if answers and (peek(word(c, L.ENDING), np.int8) != 0 or peek(word(c, L.EARLY), np.int8) != 0):
-            return L.BAD_END
-    return L.DONE
 
 
 @inlined
@@ -268,6 +119,27 @@ def wait(t, m, o, k):
 
 
 @inlined
+def numerator(t, k):
+    """Return the numerator of t_k, from its count."""
+    numbers = word(t, L.NUMBERS)
+    if k == word(word(t, L.STATE), L.STOP_STEP):
+        return number(numbers, L.CLOCK_STOP)
+    return number(numbers, L.CLOCK_FIRST) + k * number(numbers, L.CLOCK_ADVANCE)
+
+
+@inlined
+def end_of_turn(t, o, k):
+    """Return the time [s] at which the turn that begins at step k ends."""
+    return numerator(t, k + word(o, L.EVERY)) / number(word(t, L.NUMBERS), L.CLOCK_DIVISOR)
+
+
+@inlined
+def python_act(t, o, k):
+    """Let Python do the action of operation o in step k; return DONE or RAISED."""
+    return L.DONE if call_2(word(word(t, L.STATE), L.PYTHON), word(o, L.C), k) == 0 else L.RAISED
+
+
+@inlined
 def operate(t, m, o, s, k, now, time):
     """Do the operation in row o, in step k (s of the chunk) at `time` [s], whose numerator is `now`."""
     kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
@@ -314,19 +186,15 @@ def operate(t, m, o, s, k, now, time):
             e += 8 * L.EFFECT_WIDTH
     elif kind == L.KEEP or kind == L.DELIVER:
         wait(t, m, o, k)
-    elif call_2(word(word(t, L.STATE), L.PYTHON), a, k) != 0:
-        return L.RAISED
+    elif kind == L.REQUEST_TURN:
+        if not request(t, o, k, now, end_of_turn(t, o, k)):
+            return python_act(t, o, k)
+    elif kind == L.COLLECT_TURN:
+        if not collect(t, o):
+            return python_act(t, o, k)
+    else:
+        return python_act(t, o, k)
     return L.DONE
-
-
-@inlined
-def clock(t):
-    """Return the reading of the clock [s]."""
-    state, seconds = word(t, L.STATE), word(t, L.NUMBERS)
-    call_2(word(state, L.CLOCK), word(state, L.CLOCK_A), word(state, L.CLOCK_B))
-    return np.float64(word(word(t, L.TICKS), 0)) * number(seconds, L.TICK_0) + np.float64(
-        word(word(t, L.TICKS), 1)
-    ) * number(seconds, L.TICK_1)
 
 
 @inlined
@@ -345,9 +213,7 @@ def follow(t, timed):
             last, look = now, s + interval
         # the communication point t_k and its numerator, from its count
         k = word(state, L.START_STEP) + s
-        now = number(numbers, L.CLOCK_FIRST) + k * number(numbers, L.CLOCK_ADVANCE)
-        if k == word(state, L.STOP_STEP):
-            now = number(numbers, L.CLOCK_STOP)
+        now = numerator(t, k)
         time = now / number(numbers, L.CLOCK_DIVISOR)
         # the operations in order, each at the steps at which it is due
         o = word(t, L.OPS)

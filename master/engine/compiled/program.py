@@ -2,45 +2,23 @@
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable, Sequence
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from ...fmi.fmi1 import Fmi1Unit
-from ...fmi.fmi2 import Fmi2Unit
-from ...fmi.fmi3 import Fmi3Unit
 from ...fmi.instance import Instance
-from ...fmi.transfer import Copy, Transfer
+from ...fmi.transfer import Call, Copy, Transfer
 from ...fmi.types import STRING
+from ...machine import tables as L
+from ...machine.hands import Hand, HandedOver
+from ...machine.rows import CallRows, Cells, KernelTable, Recheck, direct, fill, table
 from ...unit import Unit
 from ..engine import Act, Engine, Turn
 from ..profile import Part, part_of
 from ..schedule import Action
 from ..sender import Sender
-from . import tables as L
 from .codes import effect_kind
-from .items import Cells, format_of, item_row, mapped, signal_row, times_row
+from .rows import mapped, signal_row, times_row
 
-KernelTable = NDArray[np.int64]
-"""Rows of 8-byte numbers, int64 or the bits of float64, shape (rows, columns)."""
-
-Recheck = Callable[[int, int], None]
-"""Repeats the check at which the kernel stopped, given its code and detail, and raises the exception."""
-
-_DIRECT = (Fmi1Unit, Fmi2Unit, Fmi3Unit)
 _NO_LOG = -1
-
-
-def direct(turn: Turn) -> Instance | None:
-    """Return the instance whose C functions the kernel calls itself; None: Python does the unit's actions.
-
-    Python does those of units that need more than these calls: isolated, Model Exchange, written in Python.
-    """
-    unit: object = turn.unit
-    return unit if isinstance(unit, Instance) and type(unit) in _DIRECT else None
 
 
 class Program:
@@ -54,36 +32,38 @@ class Program:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._rows: dict[str, list[Cells]] = {
-            name: []
-            for name in ("ops", "routes", "calls", "items", "units", "signals", "sinks", "waits", "arrivals")
+            name: [] for name in ("ops", "routes", "signals", "sinks", "waits", "arrivals", "hands", "spans")
         }
+        self._units = units = CallRows(engine.view)
+        self._rows |= {"calls": units.calls, "items": units.items, "units": units.units}
         self._apart = engine.profile is not None  # a profile measures parts that are else one operation
         self.rechecks: list[Recheck] = []
-        self.call_rechecks: list[Recheck] = []
+        self.call_rechecks = units.rechecks
         self.actions: list[int] = []
         self.effects: list[tuple[int, int, Turn]] = []  # operation, its first row of EFFECTS, and the unit
         self.signals: list[tuple[Sender, int]] = []  # the message of each row, and the signal's place in it
         self.logged: list[Sender] = []
-        self.called: list[Instance] = []  # the instance of each row of CALLS
-        self.stepped: list[Instance] = []  # and of UNITS
-        self._kept: list[NDArray[np.float64]] = []  # arrays whose addresses are in the tables
+        self.called, self.stepped = units.called, units.stepped  # the instances of CALLS and UNITS
         self._effect_rows = 0
+        self._handed: dict[str, int] = {}  # rows of HANDS by unit
         self._waiting: dict[int, int] = {}
         self.acts: list[Act | None] = [
             None if action.kind in ("drive", "record") else engine.act(action) for action in engine.schedule
         ]
         for at, action in enumerate(engine.schedule):
             self._action(at, action)
-        self.ops = _table(self._rows["ops"], L.OPERATION)
-        self.routes = _table(self._rows["routes"], L.ROUTE)
-        self.effect_table = _table([{}] * self._effect_rows, L.EFFECT_WIDTH)
-        self.calls = _table(self._rows["calls"], L.CALL_WIDTH)
-        self.items = _table(self._rows["items"], L.ITEM)
-        self.units = _table(self._rows["units"], L.UNIT)
-        self.signal_table = _table(self._rows["signals"], L.SIGNAL)
-        self.sinks = _table(self._rows["sinks"], L.ROUTE)
-        self.waits = _table(self._rows["waits"], L.WAIT)
-        self.arrivals = _table(self._rows["arrivals"], 2)
+        self.ops = table(self._rows["ops"], L.OPERATION)
+        self.routes = table(self._rows["routes"], L.ROUTE)
+        self.effect_table = table([{}] * self._effect_rows, L.EFFECT_WIDTH)
+        self.calls = table(self._rows["calls"], L.CALL_WIDTH)
+        self.items = table(self._rows["items"], L.ITEM)
+        self.units = table(self._rows["units"], L.UNIT)
+        self.signal_table = table(self._rows["signals"], L.SIGNAL)
+        self.sinks = table(self._rows["sinks"], L.ROUTE)
+        self.waits = table(self._rows["waits"], L.WAIT)
+        self.arrivals = table(self._rows["arrivals"], 2)
+        self.hands = table(self._rows["hands"], L.HAND)
+        self.spans = table(self._rows["spans"], L.SPAN)
         self.columns = engine.columns.astype(np.int64)
 
     @property
@@ -107,7 +87,7 @@ class Program:
                 continue
             self.ops[op, L.B] = len(turn.effects)
             for i, (slot, effect) in enumerate(turn.effects.items(), row):
-                _fill(
+                fill(
                     self.effect_table, i,
                     {L.SLOT: slot, L.EFFECT_KIND: effect_kind(effect), L.VALUE_OF: float(effect.value)},
                 )  # fmt: skip # a row
@@ -120,7 +100,7 @@ class Program:
         for at, op in zip(self.actions, self.ops.tolist(), strict=True):
             action = self._engine.schedule[at]
             what = ""
-            if action.kind == "begin" and (op[L.KIND], op[L.A]) != (L.PYTHON_ACT, at):
+            if action.kind == "begin" and (op[L.KIND], op[L.C]) != (L.PYTHON_ACT, at):
                 what = "step" if op[L.KIND] == L.STEP else "set"
             found.append(part_of(action, self._engine.plan, what, self._engine.is_apart(action)))
         return found
@@ -143,7 +123,7 @@ class Program:
         elif action.kind == "record":
             self._operation(at, action, L.RECORD, 0, len(self._engine.columns))
         elif action.kind == "note":
-            self._operation(at, action, L.PYTHON_ACT, at)
+            self._operation(at, action, L.PYTHON_ACT, c=at)
         elif action.kind == "deliver":
             self._operation(at, action, L.DELIVER, self._wait(i))
         elif action.kind == "send":
@@ -160,20 +140,58 @@ class Program:
             self._turn(at, action, self._engine.turns[i])
 
     def _turn(self, at: int, action: Action, turn: Turn) -> None:
-        instance = direct(turn)
-        if instance is None:
-            self._operation(at, action, L.PYTHON_ACT, at)
+        instance, unit = direct(turn.unit), turn.unit
+        if instance is None and isinstance(unit, HandedOver) and unit.hand is not None:
+            self._hand(at, action, turn, unit.hand)
+        elif instance is None:
+            self._operation(at, action, L.PYTHON_ACT, c=at)
         elif action.kind == "begin":
             self._begin(at, action, turn, instance)
         else:
             self._end(at, action, turn, instance)
 
-    def _begin(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
+    def _hand(self, at: int, action: Action, turn: Turn, hand: Hand) -> None:
+        """Add the operations of an isolated unit: the kernel hands its turn over, or takes it back."""
+        if action.kind == "end":
+            self._operation(at, action, L.COLLECT_TURN, self._handed[turn.plan.name], c=at)
+            if hand.texts_out is not None:
+                self._python(at, action, hand.texts_out)
+            self._check(at, action, turn)
+            return
+        self._affect(at, action, turn)
+        if hand.texts_in is not None:
+            self._python(at, action, hand.texts_in)
+        row = {**hand.row, **times_row(turn.times), L.FIRST_SPAN: self._count("spans")}
+        row |= {L.SHOWN: int(turn.has_feedthrough), L.INPUTS: len(hand.inputs), L.BACK: len(hand.outputs)}
+        if turn.times.last is not None:
+            row[L.LAST_END] = turn.times.last.end
+        self._operation(at, action, L.REQUEST_TURN, self._count("hands"), c=at)
+        self._handed[turn.plan.name] = self._count("hands")
+        self._rows["hands"].append(row)
+        self._rows["spans"] += [
+            {L.ORIGIN: origin, L.TARGET: target, L.LENGTH: length}
+            for origin, target, length in (*hand.inputs, *hand.outputs)
+        ]
+
+    def _affect(self, at: int, action: Action, turn: Turn) -> None:
+        """Add the operation of the unit's overrides and biases."""
         inputs = sum(len(b.variables) for b in turn.plan.groups if b.kind == "input")
         if inputs:
             op = self._operation(at, action, L.EFFECT, self._effect_rows)
             self.effects.append((op, self._effect_rows, turn))
             self._effect_rows += inputs
+
+    def _check(self, at: int, action: Action, turn: Turn) -> None:
+        """Add the operations that look for outputs that are not finite."""
+
+        def recheck(result: int, detail: int) -> None:
+            turn.check_finite()
+
+        for check in _checks(turn):
+            self._operation(at, action, L.CHECK, 0, *check, recheck=recheck)
+
+    def _begin(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
+        self._affect(at, action, turn)
         calls = self._count("calls")
         for transfer in (*instance.inputs, *instance.through):
             if isinstance(transfer, Copy):
@@ -183,24 +201,12 @@ class Program:
                 calls = self._calls(at, action, calls)
                 self._texts(at, action, instance, transfer)
             else:
-                self._call(instance, transfer)
+                self._units.add_call(instance, transfer)
         if self._apart:
             calls = self._calls(at, action, calls)
-        step = instance.step_call
-        assert step is not None  # a unit that has been initialized has one
-        row: dict[int, int | float] = {
-            L.FUNCTION: address(step.pointer), L.COMPONENT: instance.component, L.ANSWERS: len(step.answers),
-        }  # fmt: skip # a row
-        row |= times_row(turn.times)
-        row |= {L.EVENT + i: ctypes.addressof(answer) for i, answer in enumerate(step.answers)}
-
-        def recheck(result: int, detail: int) -> None:
-            instance.judge_step(detail if result == L.BAD_STATUS else 0)
-
+        recheck = self._units.add_unit(instance, times_row(turn.times))
         count = self._count("calls") - calls
-        self._operation(at, action, L.STEP, self._count("units"), calls, count, recheck=recheck)
-        self._rows["units"].append(row)
-        self.stepped.append(instance)
+        self._operation(at, action, L.STEP, self._count("units") - 1, calls, count, recheck=recheck)
 
     def _end(self, at: int, action: Action, turn: Turn, instance: Instance) -> None:
         def recheck(result: int, detail: int) -> None:
@@ -212,8 +218,8 @@ class Program:
                 first = self._calls(at, action, first)
                 self._texts(at, action, instance, transfer)
             else:
-                self._call(instance, transfer)
-        checks = [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]
+                self._units.add_call(instance, transfer)
+        checks = _checks(turn)
         if checks and self._count("calls") > first:  # with the last call goes the first check
             self._calls(at, action, first, self._count("calls") - 1)
             self._operation(at, action, L.CALL, self._count("calls") - 1, *checks.pop(0), recheck=recheck)
@@ -224,8 +230,11 @@ class Program:
 
     def _texts(self, at: int, action: Action, instance: Instance, transfer: Transfer) -> None:
         """Add an operation for a C call with texts, which Python makes."""
-        call = instance.binding.calls([transfer])
-        self._operation(at, action, L.PYTHON_ACT, len(self.acts))
+        self._python(at, action, instance.binding.calls([transfer]))
+
+    def _python(self, at: int, action: Action, call: Call) -> None:
+        """Add an operation for a call that Python makes in each step."""
+        self._operation(at, action, L.PYTHON_ACT, c=len(self.acts))
         self.acts.append(lambda k: call())
 
     def _calls(self, at: int, action: Action, first: int, end: int | None = None) -> int:
@@ -235,40 +244,13 @@ class Program:
             self._operation(at, action, L.CALL, row)
         return count
 
-    def _call(self, instance: Instance, transfer: Transfer) -> None:
-        """Add a row of CALLS, and the rows of ITEMS for its values."""
-
-        def recheck(result: int, detail: int) -> None:
-            if result == L.BAD_STATUS:
-                instance.judge_transfer(transfer, detail)
-            item = transfer.items[detail]
-            sent = item.scale * self._engine.view[item.slot] + item.offset
-            value = transfer.values[detail] if transfer.gets else sent
-            instance.refuse(transfer, detail, value)
-
-        self.call_rechecks.append(recheck)
-        self._rows["calls"].append(
-            {
-                L.FUNCTION: address(transfer.pointer),
-                L.COMPONENT: instance.component,
-                L.REFERENCES: ctypes.addressof(transfer.references),
-                L.COUNT: len(transfer.references),
-                L.VALUES: ctypes.addressof(transfer.values),
-                L.TWICE: int(instance.fmi == "fmi3"),
-                L.FORMAT: format_of(transfer),
-                L.FIRST_ITEM: self._count("items"),
-            }
-        )
-        self._rows["items"] += [item_row(transfer, item, self._kept) for item in transfer.items]
-        self.called.append(instance)
-
     # ---- the channel
 
     def _send(self, at: int, action: Action) -> None:
         sender = self._engine.senders[action.index]
         channel = sender.channel
         if any(operation.kind == "exact" for operation in channel.operations):
-            self._operation(at, action, L.PYTHON_ACT, at)  # integers that no double holds
+            self._operation(at, action, L.PYTHON_ACT, c=at)  # integers that no double holds
             return
         log = _NO_LOG
         if channel.logs:
@@ -343,21 +325,6 @@ def _cannot_fail(result: int, detail: int) -> None:
     """Do nothing: no value stops the operation."""
 
 
-def _fill(table: KernelTable, i: int, row: Cells) -> None:
-    """Write a row of a table: floats as float64, other numbers as int64."""
-    numbers = table.view(np.float64)
-    for column, value in row.items():
-        (numbers if isinstance(value, float) else table)[i, column] = value
-
-
-def _table(rows: Sequence[Cells], width: int) -> KernelTable:
-    """Return rows as a table, shape (rows, width); it has at least one row, so that it has an address."""
-    made = np.zeros((max(1, len(rows)), width), dtype=np.int64)
-    for i, row in enumerate(rows):
-        _fill(made, i, row)
-    return made
-
-
-def address(function: Any) -> int:
-    """Return the address of a C function."""
-    return ctypes.cast(function, ctypes.c_void_p).value or 0
+def _checks(turn: Turn) -> list[tuple[int, int]]:
+    """Return first slot and number of the values of a unit that must be finite."""
+    return [(b.latest if b.kind == "continuous" else b.slot, len(values)) for values, b in turn.read]

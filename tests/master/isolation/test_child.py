@@ -10,6 +10,8 @@ from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmu import Fmu, read_fmu
 from evcosim.master.isolation.process import ProcessLimits
 from evcosim.master.isolation.unit import IsolatedUnit
+from evcosim.master.machine.hands import POSSIBLE
+from evcosim.master.simulation import Simulation
 from support.c_fmu import mixed_fmu
 
 # packages, some of 100 ms and more of a process's start, and rooms of this project that lead to them
@@ -49,3 +51,16 @@ def test_a_unit_in_c_needs_nothing_of_those_in_python(
 ) -> None:
     modules = modules_of(read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 2)), monkeypatch)
     assert not modules.intersection(("pythonfmu", "evcosim.fmus", "evcosim.models"))
+
+
+@pytest.mark.skipif(not POSSIBLE, reason="a handover needs futexes and the order of stores of x86")
+def test_a_process_with_machine_code_loads_no_compiler(tmp_path: Path) -> None:
+    path = tmp_path / "one.toml"
+    fmu = mixed_fmu(tmp_path / "mixed.fmu", 2)
+    path.write_text(f"name = 'one'\n[units.a]\nfmu = '{fmu}'\n[experiment]\nstop_time = 0.1\n")
+    with Simulation(path, engine="compiled", isolation="process") as simulation:
+        simulation.step(5)
+        process = simulation.units["a"]._process.number
+        mapped = Path(f"/proc/{process}/maps").read_text()
+    assert "evcosim-code" in mapped
+    assert "llvmlite" not in mapped and "numba" not in mapped

@@ -14,6 +14,7 @@ from evcosim.cosim.interface import UnitInterface, VariableInfo
 from evcosim.cosim.plan.unit_plan import Route, SlotGroup, SlotGroupKind, UnitPlan
 from evcosim.master.isolation import shared
 from evcosim.master.isolation.shared import Shared
+from evcosim.master.machine import slots as S
 from evcosim.master.simulation import simulate
 from support.pairs import pair
 
@@ -42,11 +43,11 @@ def test_one_side_reads_what_the_other_writes(memory: tuple[Shared, Shared]) -> 
     master, child = memory
     assert master.values.shape == (10,)
     child.values[:] = range(10)
-    child.slots[shared.ANSWER] = 7.0
+    child.slots[S.ANSWER] = 7.0
     assert master.values.tolist() == list(range(10))
-    assert master.slots[shared.ANSWER] == 7.0
-    master.slots[shared.REQUEST] = 8.0
-    assert child.slots[shared.REQUEST] == 8.0
+    assert master.slots[S.ANSWER] == 7.0
+    master.slots[S.REQUEST] = 8.0
+    assert child.slots[S.REQUEST] == 8.0
 
 
 def test_the_child_cannot_make_it_smaller(memory: tuple[Shared, Shared]) -> None:
@@ -76,7 +77,7 @@ def test_the_first_kinds_of_warnings_are_kept(memory: tuple[Shared, Shared]) -> 
         child.hear(0, "chatter")
     assert master.warned() == [("a at 0 s", 50), ("b at 50 s", 50), ("c at 100 s", 50)]
     assert master.warnings() == 200
-    child.slots[shared._WARNED] = 2.0**60
+    child.slots[S.WARNED] = 2.0**60
     assert master.warned() == []
 
 
@@ -84,11 +85,11 @@ def test_the_first_kinds_of_warnings_are_kept(memory: tuple[Shared, Shared]) -> 
 def test_a_count_that_is_none_is_taken_as_0(memory: tuple[Shared, Shared], claim: float) -> None:
     master, child = memory
     child.hear(1, "message")
-    child.slots[shared.WARNINGS] = claim
+    child.slots[S.WARNINGS] = claim
     assert master.warnings() == 0
     child.slots[shared._RING + 1] = claim  # the length of the message
     assert [len(text) for _, text in master.heard()] == [0]
-    child.slots[shared._MESSAGES] = claim
+    child.slots[S.MESSAGES] = claim
     assert master.heard() == []
 
 

@@ -21,7 +21,9 @@ def test_ctrl_c_does_not_wait_for_a_unit_that_hangs(tmp_path: Path) -> None:
     command = [sys.executable, "-c", start, "run", str(path), "-o", str(tmp_path / "out"), "--no-plot"]
     command += ["--engine", "python"]  # the other one may have to be compiled first
     running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    time.sleep(4.0)  # it has started, and hangs at t = 0.5 s
+    rows = tmp_path / "out" / "results.rows"
+    while not rows.exists() and running.poll() is None:  # written when it has hung at t = 0.5 s for a second
+        time.sleep(0.05)
     begin = time.monotonic()
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=20)

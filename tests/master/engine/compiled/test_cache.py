@@ -12,6 +12,8 @@ from types import ModuleType
 import pytest
 
 from evcosim.master.engine.compiled import cache, kernel
+from evcosim.master.machine import flat, serving
+from evcosim.master.machine.hands import POSSIBLE
 
 
 def imported(module: ModuleType) -> set[str]:
@@ -42,6 +44,35 @@ def test_another_source_gives_another_entry(
     changed.write_bytes(Path(cache.SOURCES[place].__file__ or "").read_bytes() + b"\n")
     monkeypatch.setattr(cache.SOURCES[place], "__file__", str(changed))
     assert cache._name(False) != before
+
+
+def test_the_sources_of_the_turns_are_all_that_they_import() -> None:
+    known, new = set(), {serving.__name__}
+    while new:
+        known |= new
+        new = {name for each in new for name in imported(importlib.import_module(each))} - known
+    assert {module.__name__ for module in cache._SERVING} == known | {flat.__name__}
+
+
+@pytest.mark.skipif(not POSSIBLE, reason="an object file of another system has another format")
+def test_the_turns_come_from_the_cache_and_heal(
+    own_cache: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = cache.served()
+    (entry,) = own_cache.glob("turns-*.bin")
+    monkeypatch.setattr(flat, "flat", lambda function: code)  # compiling once is enough
+    assert code is not None and cache.served() == code
+    entry.write_bytes(entry.read_bytes()[:-1])
+    assert cache.served() == code
+    assert "is damaged" in capsys.readouterr().err
+
+
+def test_turns_that_are_not_flat_stay_with_python(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(function: object) -> bytes:
+        raise flat.NotFlatError
+
+    monkeypatch.setattr(flat, "flat", refuse)
+    assert cache.served() is None
 
 
 def test_another_processor_and_the_kernel_with_a_profile_have_entries_of_their_own(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from evcosim.master.engine.compiled import tables as L
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.initialization import initialize
+from evcosim.master.machine import tables as L
 from support.mocks import TICK, MockUnit, clock, column, plan_of, probe, real, started
 
 

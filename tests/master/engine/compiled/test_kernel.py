@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from evcosim.master.engine.compiled import kernel
-from evcosim.master.engine.compiled import tables as L
+from evcosim.master.machine import tables as L
 
 HALVES = [0.5, 1.5, 2.5, 0.49999999999999994, 1e15 + 0.5, 2.0**50 - 0.5]  # raw values in doubles end at 2**50
 RANDOM = [random.Random(1).uniform(-1e6, 1e6) for _ in range(200)]

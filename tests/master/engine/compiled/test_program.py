@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evcosim.master.engine.compiled import tables as L
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.compiled.program import Program, _joined, direct
 from evcosim.master.engine.initialization import initialize
+from evcosim.master.machine import tables as L
 from evcosim.master.simulation import Simulation
 from support.c_fmu import mixed_fmu
 from support.mocks import TICK, clock, plan_of, probe
@@ -35,7 +35,7 @@ def kinds(program):
 
 def test_units_written_in_python_are_acts_of_python():
     program, engine = program_of_mocks()
-    assert [direct(turn) for turn in engine.turns] == [None, None]
+    assert [direct(turn.unit) for turn in engine.turns] == [None, None]
     assert kinds(program).count(L.PYTHON_ACT) == 4  # begin and end of each
     assert not program.holds_python
     acts = [program.actions[i] for i, kind in enumerate(kinds(program)) if kind == L.PYTHON_ACT]
@@ -62,12 +62,12 @@ def test_the_tables_of_a_unit_in_c(tmp_path, texts):
     with Simulation(path, engine="compiled", isolation="none") as simulation:
         program = simulation._engine._program
         (turn,) = simulation._engine.turns
-        instance = direct(turn)
+        instance = direct(turn.unit)
         assert kinds(program).count(L.STEP) == 1
         # Python makes the calls that move texts and notes the texts of a row, nothing else
         schedule = simulation._engine.schedule
         notes = [at for at, action in enumerate(schedule) if action.kind == "note"]
-        acts = [op[L.A] for op in program.ops.tolist() if op[L.KIND] == L.PYTHON_ACT]
+        acts = [op[L.C] for op in program.ops.tolist() if op[L.KIND] == L.PYTHON_ACT]
         assert acts == ([len(schedule), *notes] if texts else []) and len(notes) == texts
         assert program.stepped == [instance]
         assert set(program.called) == {instance}

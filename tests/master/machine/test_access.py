@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from evcosim.master.engine.compiled.call import put_value, size_of, value_at
 from evcosim.master.fmi.types import BOOLEAN, BUFFERS, REAL
+from evcosim.master.machine.access import put_value, size_of, value_at
 
 
 @njit

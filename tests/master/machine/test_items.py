@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.interface import VariableInfo
-from evcosim.master.engine.compiled import tables as L
-from evcosim.master.engine.compiled.items import format_of, item_row
 from evcosim.master.fmi.transfer import Item, Transfer
 from evcosim.master.fmi.types import BOOLEAN, TYPES
+from evcosim.master.machine import tables as L
+from evcosim.master.machine.items import format_of, item_row
 
 ENUMERATION = next(t for t in TYPES if t.name == "Enumeration")
 

@@ -1,47 +1,14 @@
-"""Rows of the kernel's tables: how it moves each value of a C call (ITEMS), steps a unit, sends a signal."""
+"""Rows of the kernel's tables that come from the plan: times of a unit, maps, signals."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-
-import numpy as np
-from numpy.typing import NDArray
 
 from ....cosim.can.channel import SignalRoute
 from ....cosim.can.quantization import SignalOperation
 from ....cosim.plan.turns import TurnTimes
 from ....cosim.units.measure import Affine
-from ...fmi.transfer import Item, Transfer
-from . import tables as L
+from ...machine import tables as L
+from ...machine.rows import Cells
 from .codes import raw_mode
-
-Cells = Mapping[int, int | float]
-"""The numbers of one row by column; the others are 0."""
-
-
-def item_row(transfer: Transfer, item: Item, kept: list[NDArray[np.float64]]) -> dict[int, int | float]:
-    """Return the numbers of a row by column.
-
-    An enumeration that leaves numbers out has an array of those that it has, which is added to `kept`.
-    """
-    (low, high), choices = transfer.type.doubles, item.variable.choices
-    row: dict[int, int | float] = {
-        L.SLOT: item.slot, L.FACTOR: item.scale, L.ADDEND: item.offset, L.LOW: low, L.HIGH: high
-    }  # fmt: skip # a row
-    if choices:
-        row |= {L.LOW: float(choices[0]), L.HIGH: float(choices[-1])}
-        if choices[-1] - choices[0] >= len(choices):
-            numbers = np.array(choices, dtype=np.float64)
-            kept.append(numbers)
-            row |= {L.CHOICES: len(choices), L.NUMBERS_OF: numbers.ctypes.data}
-    return row
-
-
-def format_of(transfer: Transfer) -> int:
-    """Return the code of a call's buffer."""
-    if not transfer.items:
-        return L.IN_PLACE
-    return transfer.type.code + (L.GETS if transfer.gets else 0)
 
 
 def times_row(times: TurnTimes) -> Cells:

@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from ...fmi.types import BOOLEAN, BUFFERS, REAL, FmiType
+from ..fmi.types import BOOLEAN, BUFFERS, REAL, FmiType
 
 _INT, _LONG = ir.IntType(32), types.int64
 _TRUE = ir.Constant(_INT, 1)
@@ -64,9 +64,27 @@ def do_step_3(typingctx, function, component, time, step_size, event, ending, ea
 
 
 @intrinsic
+def call_0(typingctx, function):
+    """Call function()."""
+    return _calling([])
+
+
+@intrinsic
 def call_2(typingctx, function, a, b):
     """Call function(a, b)."""
     return _calling([_LONG] * 2)
+
+
+@intrinsic
+def call_4(typingctx, function, a, b, c, d):
+    """Call function(a, b, c, d)."""
+    return _calling([_LONG] * 4)
+
+
+@intrinsic
+def call_6(typingctx, function, a, b, c, d, e, f):
+    """Call function(a, b, c, d, e, f)."""
+    return _calling([_LONG] * 6)
 
 
 @intrinsic
@@ -120,6 +138,72 @@ def put_word(typingctx, table, place, value):
 def put_number(typingctx, table, place, value):
     """Write a float64 to a place of the table at an address."""
     return _writing(types.float64)
+
+
+# ---- numbers that two processes share: float64, moved as the 8 bytes that they are
+
+
+def _place(builder: Any, address: Any, place: Any) -> Any:
+    return builder.gep(builder.inttoptr(address, ir.IntType(64).as_pointer()), [place])
+
+
+@intrinsic
+def seen(typingctx, table, place):
+    """Return the float64 at a place, with all that was written before it."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        found = builder.load_atomic(_place(builder, values[0], values[1]), "acquire", 8)
+        return builder.bitcast(found, ir.DoubleType())
+
+    return types.float64(_LONG, _LONG), implement
+
+
+@intrinsic
+def publish(typingctx, table, place, value):
+    """Write a float64 to a place, after all that was written before it."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        bits = builder.bitcast(values[2], ir.IntType(64))
+        builder.store_atomic(bits, _place(builder, values[0], values[1]), "release", 8)
+        return context.get_dummy_value()
+
+    return types.void(_LONG, _LONG, types.float64), implement
+
+
+@intrinsic
+def exchange(typingctx, table, place, value):
+    """Write a float64 to a place before anything is read that follows; return the one that stood there."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        bits = builder.bitcast(values[2], ir.IntType(64))
+        found = builder.atomic_rmw("xchg", _place(builder, values[0], values[1]), bits, "seq_cst")
+        return builder.bitcast(found, ir.DoubleType())
+
+    return types.float64(_LONG, _LONG, types.float64), implement
+
+
+@intrinsic
+def replace(typingctx, table, place, old, new):
+    """Write `new` to a place where `old` stands, as one; return True if it did."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        old, new = (builder.bitcast(value, ir.IntType(64)) for value in values[2:])
+        at = _place(builder, values[0], values[1])
+        found = builder.cmpxchg(at, old, new, "seq_cst", "seq_cst")
+        return builder.extract_value(found, 1)
+
+    return types.boolean(_LONG, _LONG, types.float64, types.float64), implement
+
+
+@intrinsic
+def fence(typingctx):
+    """Let nothing that is read after it be read before what was written."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        builder.fence("seq_cst")
+        return context.get_dummy_value()
+
+    return types.void(), implement
 
 
 # ---- values of FMI types, by the codes of `fmi.types`

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 STATE, NUMBERS, MEMORY, OPS, ROUTES, EFFECTS, CALLS, ITEMS, UNITS, SIGNALS, SINKS, RAWS, WAITS = range(13)
 ARRIVALS, COLUMNS, ROWS_OF_RUN, DRIVES, LOGS, LOG, TICKS, TIMES_OF_OPS = range(13, 21)
-TABLES = 21
+HANDS, SPANS, BELL, NAP_TIME = range(21, 25)
+TABLES = 25
 """The tables, in the order of their addresses."""
 
 # ---- operations: the actions of the schedule as primitives that the kernel executes without Python
@@ -28,7 +29,9 @@ DRIVE = 7  # slot A gets the value of stimulus B
 EFFECT = 8  # B EFFECTS from row A on
 KEEP = 9  # the values that the message in row A of WAITS has sent are copied to its waiting slots
 DELIVER = 10  # and from there to the mailboxes
-PYTHON_ACT = 11  # calls Python, which does action A as the python engine does
+REQUEST_TURN = 11  # the turn of the isolated unit in row A of HANDS is requested; C: the action
+COLLECT_TURN = 12  # and its outputs are taken when it is done; Python does action C where that takes long
+PYTHON_ACT = 13  # calls Python, which does action C as the python engine does, or moves texts
 
 SOURCE, SINK, SCALE, ADD = range(4)
 ROUTE = 4
@@ -63,6 +66,27 @@ UNIT = 17
 addresses; the times of the steps, as in `plan.turns`, and their size [s]; the k of the turn before the stop
 time, what is between its FMU steps, their size [s], and that of its last one."""
 
+# ---- turns of isolated units
+
+SLOTS, SOCKET, TURN = range(3)
+SHOWN, FIRST_SPAN, INPUTS, BACK, LAST_END = range(17, 22)
+HAND = 22
+"""Columns of HANDS, beside STEPS and the times of UNITS: addresses of the shared memory and of the side's own
+numbers, the descriptor of its socket; the time [s] at which the last turn ends. For the master, SHOWN is 1 if
+outputs feed through, and INPUTS rows of SPANS from FIRST_SPAN on take values there, the next BACK rows take
+them back. For the process of the unit, INPUTS, SHOWN and BACK are the numbers of its OPS: those that set
+inputs, show outputs that feed through, and get outputs."""
+REQUESTS, PENDING, SHOWS, FRESH, LOOKING, PAUSE, PAUSES = range(7)
+TURN_SIZE = 7
+"""Places in the own numbers of a side: the number of the last request; 1 while it is not done, if it shows
+outputs that feed through, and if its outputs are in the shared memory, but not yet in the run's; the time [s]
+that the master looks for the answer, which the process could not be trusted with; how often more, and how
+often after the last look, it sleeps at once."""
+
+ORIGIN, TARGET, LENGTH = range(3)
+SPAN = 3
+"""Columns of SPANS: addresses, and the number of slots that are copied."""
+
 # ---- the channel
 
 FROM, MODE, SATURATES, TO, RECEIVERS, TIMES, FIRST_TIME = range(7)
@@ -81,16 +105,20 @@ mailbox)."""
 # ---- a chunk
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
-CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP = range(9, 14)
-STATE_SIZE = 14
+CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP, YIELD, SYSCALL, FUTEX, SEND_BELL = range(9, 18)
+STATE_SIZE = 18
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
-of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time."""
-CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1 = range(8)
-NUMBERS_SIZE = 8
+of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time; addresses of C functions that
+give the core away, call the system, and send, and the number of the system call futex."""
+CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1, NAP = range(9)
+NUMBERS_SIZE = 9
 """Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of
-a chunk, a value that Python converts, and the seconds in one unit of each number in TICKS."""
+a chunk, a value that Python converts, and the seconds in one unit of each number in TICKS; the time [s] after
+which a side that sleeps on a word goes to sleep on its socket. NAP_TIME is the same as C has it."""
 
-DONE, BAD_STATUS, BAD_END, NO_FIT, NOT_FINITE, RAISED = range(6)
-"""Return values of the kernel. DETAIL is the status of a call, or the place of a value that does not fit."""
+DONE, BAD_STATUS, BAD_END, NO_FIT, NOT_FINITE, RAISED, NOTHING_CAME, OTHER_REQUEST, WARNED = range(9)
+"""Return values of the kernel, and of the turns in the process of a unit, where the last three are: no
+request has come, one that is none of a turn, a turn is done with warnings and not yet answered. DETAIL is the
+status of a call, or the place of a value that does not fit."""
