@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 _WHOLE = r"\s*[+-]?\d+\s*"
+_COUNT = r"\s*\+?\d+\s*"
 _COUNTED = ("numberOfEventIndicators", "numberOfContinuousStates")
 _TIMES = ("startTime", "stopTime", "tolerance", "stepSize")
 _CAPABILITIES = {
@@ -25,10 +26,9 @@ def mend_attributes(root: Any) -> list[str]:
     defects = []
     if root.get("fmiVersion") == "1.0" and root.get("numberOfContinuousStates") is None:
         root.set("numberOfContinuousStates", "0")
-    for name in _COUNTED:
-        if root.get(name) is not None and not _is_number(root.get(name), _WHOLE):
-            defects.append(f"{name} = {root.get(name)!r} is no number; 0 is assumed")
-            root.set(name, "0")
+    for name in wrong_counts(root):
+        defects.append(f"{name} = {root.get(name)!r} is no number; 0 is assumed")
+        root.set(name, "0")
     for name, pattern in _CAPABILITIES.items():
         for kind in root.findall(f"*[@{name}]"):
             if not _is_number(kind.get(name), pattern):
@@ -40,6 +40,11 @@ def mend_attributes(root: Any) -> list[str]:
                 defects.append(f"DefaultExperiment: {name} = {given!r} is no finite number; it is ignored")
                 del experiment.attrib[name]
     return defects + _mend_units(root) + _mend_types(root)
+
+
+def wrong_counts(root: Any) -> list[str]:
+    """Return the names of the counts of states and event indicators that are no numbers from 0 on."""
+    return [name for name in _COUNTED if (n := root.get(name)) is not None and not _is_number(n, _COUNT)]
 
 
 def _mend_units(root: Any) -> list[str]:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from .archive import FmuError
-from .attributes import mend_attributes
+from .attributes import mend_attributes, wrong_counts
 from .structure import mend_structure
 from .supplement import negated_aliases, sampled_outputs, supplement
 from .types import INTEGER, REAL, FmiType, Kind, fmi_type
@@ -108,6 +108,7 @@ def _parsed(path: Path, xml: bytes) -> Any:
     if root.find("ModelVariables") is None:
         raise FmuError(f"{place} has no <ModelVariables>")
     _check_identifiers(place, root)
+    _check_counts(place, root)
     return root
 
 
@@ -143,6 +144,16 @@ def _odd_identifiers(root: Any) -> list[str]:
         for name in names
         if name is not None and not _PLAIN.fullmatch(name)
     ]
+
+
+def _check_counts(place: str, root: Any) -> None:
+    """Raise FmuError for a wrong count of states or event indicators where there is Model Exchange alone."""
+    if root.find("CoSimulation" if root.get("fmiVersion") != "1.0" else "Implementation") is not None:
+        return
+    for name in wrong_counts(root):
+        raise FmuError(f"{place}: {name} = {root.get(name)!r} is no number, and Model Exchange needs it")
+    if root.get("fmiVersion") == "1.0" and root.get("numberOfContinuousStates") is None:
+        raise FmuError(f"{place} has no numberOfContinuousStates, and Model Exchange needs it")
 
 
 def _mend(path: Path, root: Any) -> list[str]:

@@ -22,6 +22,7 @@ __all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
 
 _DESCRIPTION = "modelDescription.xml"
 _SHOWN_DEFECTS = 5
+_MOST_STATES, _MOST_INDICATORS = 20_000, 1_000_000  # a Jacobian of 3 GB
 
 
 @dataclasses.dataclass(frozen=True)
@@ -163,12 +164,25 @@ def _elsewhere(names: tuple[str, ...]) -> str:
 
 def check_runnable(fmu: Fmu) -> None:
     """Raise FmuError unless this master can run the FMU on this machine."""
+    if fmu.interface_type == "model_exchange":
+        _check_size(fmu)
     if fmu.binary not in fmu.entries:
         compile_it = f"; it has its sources: evcosim compile {fmu.path}" if fmu.c_sources else ""
         raise FmuError(
             f"{fmu.path}: has no binary for this machine: {fmu.binary} is missing; it has binaries for "
             f"{', '.join(fmu.platforms) or 'no platform'}{compile_it}"
         )
+
+
+def _check_size(fmu: Fmu) -> None:
+    """Raise FmuError for more states than the solver has room for: its Jacobian holds their square."""
+    md = fmu.description
+    for what, count, most in (
+        ("continuous states", md.numberOfContinuousStates, _MOST_STATES),
+        ("event indicators", md.numberOfEventIndicators, _MOST_INDICATORS),
+    ):
+        if int(count or 0) > most:
+            raise FmuError(f"{fmu.path}: has {count} {what}; Model Exchange solves {most:,} at most")
 
 
 def is_true(kind: Any, capability: str) -> bool:

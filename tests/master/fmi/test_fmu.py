@@ -15,7 +15,7 @@ from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi.fmu import Fmu, FmuError, check_runnable, is_true, read_fmu
 from evcosim.master.simulation import simulate
 from support.c_fmu import mixed_fmu
-from support.descriptions import GOOD, changed, described
+from support.descriptions import GOOD, changed, described, redescribed
 from support.equations import equations_fmu
 
 
@@ -121,6 +121,40 @@ def test_an_fmu_without_a_binary_for_this_machine(tmp_path: Path) -> None:
         check_runnable(other)
     with pytest.raises(FmuError, match=r"is missing; it has binaries for no platform$"):
         check_runnable(dataclasses.replace(fmu, entries=()))
+
+
+COUNTS = {
+    "numberOfContinuousStates": 'numberOfContinuousStates="2"',
+    "numberOfEventIndicators": 'numberOfEventIndicators="1"',
+}
+
+
+@pytest.mark.parametrize("name", COUNTS)
+@pytest.mark.parametrize("count", ["-5", "x", "1e3", "", "1_0"])
+def test_model_exchange_needs_its_counts(tmp_path: Path, name: str, count: str) -> None:
+    path = redescribed(equations_fmu(tmp_path / "a.fmu", "ball", 1), (COUNTS[name], f'{name}="{count}"'))
+    with pytest.raises(FmuError, match=f"{name} = '{count}' is no number, and Model Exchange needs it"):
+        read_fmu(path)
+
+
+def test_model_exchange_of_fmi_1_counts_its_states(tmp_path: Path) -> None:
+    path = equations_fmu(tmp_path / "a.fmu", "ball", 1)
+    with pytest.raises(FmuError, match="has no numberOfContinuousStates, and Model Exchange needs it"):
+        read_fmu(redescribed(path, ('numberOfContinuousStates="2"', "")))
+
+
+@pytest.mark.parametrize(
+    ("fmi", "name"),
+    [(1, "numberOfContinuousStates"), (1, "numberOfEventIndicators"), (2, "numberOfEventIndicators")],
+)
+@pytest.mark.parametrize("count", ["100000000", "3000000000000", "9" * 40])
+def test_more_than_the_solver_has_room_for_is_refused(
+    tmp_path: Path, fmi: int, name: str, count: str
+) -> None:
+    fmu = equations_fmu(tmp_path / "a.fmu", "ball", fmi)
+    fmu = read_fmu(redescribed(fmu, (COUNTS[name], f'{name}="{count}"')))
+    with pytest.raises(FmuError, match=rf"has {count} [a-z ]+; Model Exchange solves [\d,]+ at most"):
+        check_runnable(fmu)
 
 
 def test_an_fmu_of_pythonfmu_is_known_by_its_resources(tmp_path: Path) -> None:
