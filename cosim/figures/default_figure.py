@@ -44,21 +44,20 @@ _QUANTITIES = {
 
 MAX_PANELS = 6
 MAX_SIGNALS = 8
+_BESIDE = 20.0  # how much larger than the others of its panel a constant may be
 
 
 def default_spec(results: Results) -> FigureSpec:
     """Return a figure for any results: signals that measure the same quantity together.
 
-    Inputs that repeat an output are left out (see `_repeats`), and the note has those that never change. The
+    Inputs that repeat an output are left out (see `_repeats`), and the note has those of `_constant`. The
     enumeration that changes first shades the panels, the others have a panel. Of more than six panels or
     eight signals in one, those that change stay, outputs first, and the note names the others. Raises
     ConfigError without a variable.
     """
     shade = _shading(results)
     distinct = [v for v in _distinct(results) if v is not shade]
-    constant = [v for v in distinct if v.causality == "input" and not _changes(results, v)]
-    if len(constant) == len(distinct):
-        constant = []
+    constant = _constant(results, distinct)
     shown = [v for v in distinct if v not in constant]
     groups: dict[object, list[ResultVariable]] = {}
     for v in shown:
@@ -77,7 +76,7 @@ def default_spec(results: Results) -> FigureSpec:
     drawn = {signal.name for panel in chosen for signal in panel.signals}
     left_out = [v.name for v in shown if v.name not in drawn]
     final = results.final()
-    note = _note("Constant", [_constant(v, final[v.name]) for v in constant]), _note("Not shown", left_out)
+    note = _note("Constant", [_with_value(v, final[v.name]) for v in constant]), _note("Not shown", left_out)
     return FigureSpec(
         shade=shade.name if shade else None, panels=chosen, note="; ".join(filter(None, note)) or None
     )
@@ -95,7 +94,32 @@ def _note(about: str, texts: list[str]) -> str:
     return f"{about}: {', '.join(texts[:8])}{more}" if texts else ""
 
 
-def _constant(variable: ResultVariable, value: Value) -> str:
+def _constant(results: Results, variables: list[ResultVariable]) -> list[ResultVariable]:
+    """Return the inputs that never change and say no more than their value; none if all are such.
+
+    One that stands beside something of the same quantity, as a bound beside a speed, is no such input: where
+    it is not 0, and not so large that the other would be a line at 0.
+    """
+    still = [v for v in variables if v.causality == "input" and not _changes(results, v)]
+    moving = [v for v in variables if v not in still]
+    sizes: dict[object, float] = {}
+    for v in moving if still else []:
+        key = _group(results, v)
+        sizes[key] = max(sizes.get(key, 0.0), _size(results, v))
+    return [
+        v
+        for v in still
+        if moving and not 0.0 < _size(results, v) <= _BESIDE * sizes.get(_group(results, v), 0.0)
+    ]
+
+
+def _size(results: Results, variable: ResultVariable) -> float:
+    """Return the largest magnitude of a variable."""
+    pieces = (values for _, values in results.pieces([variable.name]))
+    return max((float(np.max(np.abs(values))) for values in pieces), default=0.0)
+
+
+def _with_value(variable: ResultVariable, value: Value) -> str:
     items = (name for number, name in variable.items if number == value)
     shown = f"{value:g}" if isinstance(value, float) else next(items, str(value))
     return f"{variable.name} = {shown} {pretty(variable.unit)}".rstrip()
@@ -158,8 +182,7 @@ def _group(results: Results, variable: ResultVariable) -> object:
         return variable.type
     if variable.unit in ("", "1", "%"):
         # nothing says that bare numbers belong together, but a common size at least makes them readable
-        pieces = (values for _, values in results.pieces([variable.name]))
-        size = max((float(np.max(np.abs(values))) for values in pieces), default=0.0)
+        size = _size(results, variable)
         decade = math.floor(math.log10(size)) if 0.0 < size < math.inf else 0
         return (variable.unit, decade if variable.unit == "" else 0)
     try:

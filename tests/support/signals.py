@@ -17,6 +17,7 @@ import contextlib
 import dataclasses
 import os
 import random
+import re
 import secrets
 import shutil
 import signal
@@ -33,13 +34,15 @@ COMMAND = [sys.executable, "-m", "evcosim", "run", "scooter", "--scenario", "ece
 LONG = [*COMMAND[:6], "udds", "-o", "out"]  # of which a killed run has rows that were saved
 COUNTS = {"SIGINT": 200, "SIGTERM": 20, "SIGHUP": 20, "SIGKILL": 20}
 _MARK = "EVCOSIM_CAMPAIGN"
-_FIRST = 0.06  # s: before, Python itself is starting, and no line of evcosim has run
 _GONE, _LAST = 2.0, 1.0  # s: for children to end; for Python to end when the command has done all
 
 
 @dataclasses.dataclass
 class End:
-    """The end of a command: the moment of the signal and the time to the end [s], and what was wrong."""
+    """The end of a command: the moment of the signal and the time to the end [s], and what was wrong.
+
+    Moments count from the first line of evcosim on: before, Python itself is starting.
+    """
 
     moment: float
     seconds: float
@@ -75,6 +78,17 @@ def not_ignored(number: signal.Signals) -> Iterator[None]:
             signal.signal(number, signal.SIG_IGN)
 
 
+def await_first_line(process: subprocess.Popen[str]) -> None:
+    """Wait until evcosim has the signals of its process in hand, which is what it does first, or its end."""
+    bit = 1 << (signal.SIGTERM - 1)  # Python itself catches SIGINT alone
+    while process.poll() is None:
+        with contextlib.suppress(OSError):  # it ends just now
+            status = Path(f"/proc/{process.pid}/status").read_text()
+            if int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) & bit:
+                return
+        time.sleep(0.001)
+
+
 def ended(
     number: signal.Signals, moment: float, folder: Path, command: list[str] = COMMAND, cold: bool = False
 ) -> End | None:
@@ -92,6 +106,7 @@ def ended(
         process = subprocess.Popen(
             command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
+    await_first_line(process)
     time.sleep(moment)
     if process.poll() is not None:
         process.communicate()
@@ -164,7 +179,7 @@ def main() -> int:
                 cold = len(ends) % 10 == 9
                 folder = place / f"{name}-{len(ends)}"
                 command = LONG if name == "SIGKILL" else COMMAND
-                moment = moments.uniform(_FIRST, spans[cold])
+                moment = moments.uniform(0.0, spans[cold])
                 end = ended(signal.Signals[name], moment, folder, command, cold)
                 shutil.rmtree(folder)
                 ends += [end] if end is not None else []

@@ -12,11 +12,11 @@ from evcosim.master.simulation import Simulation
 @pytest.mark.parametrize("engine", ["compiled", "python"])
 def test_a_profile_adds_up_to_the_time_of_the_steps_and_changes_no_result(ring, engine):
     system = ring()
-    with Simulation(system, engine=engine, profile=True) as simulation:
+    with Simulation(system, engine=engine, profile=True, trust=True) as simulation:
         simulation.run()
         rows = simulation.profile
         data = np.asarray(simulation.results.data)
-    with Simulation(system, engine=engine) as simulation:
+    with Simulation(system, engine=engine, trust=True) as simulation:
         simulation.run()
         assert np.array_equal(np.asarray(simulation.results.data), data)
         assert simulation.profile == []
