@@ -64,10 +64,7 @@ def resolve(
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     experiment = experiment.model_copy(update={"stop_time": clock.stop})
-    every = {
-        name: _every(entry.period, experiment.step_size, f"{system.keys_of(name)}period")
-        for name, entry in entries.items()
-    }
+    every = _periods(system, entries, experiment.step_size)
     network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     _mailboxes_of_the_rest(interfaces, network, slots)
@@ -93,6 +90,7 @@ def resolve(
                 groups=tuple(slots.groups[name]),
                 routes=tuple(network.routes[name]),
                 texts=texts,
+                free=_free(name, interfaces[name], network, scenario),
             )
             for name, entry in entries.items()
         ),
@@ -184,9 +182,12 @@ def _clock(experiment: Experiment, columns: int, place: str) -> Clock:
     return Clock.counted(start, step, steps, experiment.stop_time)
 
 
-def _every(period: float | None, step_size: float, place: str) -> int:
-    """Return a unit's period [s] in communication steps (None: it steps at each)."""
-    return 1 if period is None else steps_in(period, step_size, place, least=1)
+def _periods(system: System, entries: Mapping[str, UnitEntry], step_size: float) -> dict[str, int]:
+    """Return the units' periods in communication steps [s]; one without a period steps at each."""
+    return {
+        unit: steps_in(entry.period or step_size, step_size, f"{system.keys_of(unit)}period", least=1)
+        for unit, entry in entries.items()
+    }
 
 
 def _parameters(
@@ -308,6 +309,21 @@ def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Net
         for v in interface.of_causality("input"):
             if f"{unit}.{v.name}" not in network.inputs:
                 network.add_mailbox(unit, v.name, slots, "")
+
+
+def _free(unit: str, interface: UnitInterface, network: Network, scenario: Scenario) -> frozenset[str]:
+    """Return the inputs of another tool's FMU that nothing drives and no event acts on.
+
+    Some FMUs change such an input themselves, or refuse to have it set. Ours do neither, and all their inputs
+    are set as one piece of memory.
+    """
+    if interface.ours:
+        return frozenset()
+    acted_on = {event.variable for event in scenario.file.events}
+    inputs = {v.name: f"{unit}.{v.name}" for v in interface.of_causality("input")}
+    return frozenset(
+        name for name, full in inputs.items() if not network.inputs[full].driver and full not in acted_on
+    )
 
 
 def _initial(

@@ -55,7 +55,8 @@ class Route:
 class UnitPlan:
     """One unit: its values before the start by variable name, its slot groups, and its routes.
 
-    It steps at every communication step k with k % every == 0, `substeps` FMU steps each time.
+    It steps at every communication step k with k % every == 0, `substeps` FMU steps each time. No step sets
+    the inputs `free`: they keep the FMU's own values, or what they were given before the steps.
     """
 
     name: str
@@ -68,6 +69,12 @@ class UnitPlan:
     groups: tuple[SlotGroup, ...]
     routes: tuple[Route, ...]
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
+    free: frozenset[str] = frozenset()
+
+    def set_in_steps(self, group: SlotGroup) -> list[tuple[int, VariableInfo]]:
+        """Return slot and variable of the inputs of a group that every step sets."""
+        places = enumerate(group.variables, group.slot)
+        return [(slot, v) for slot, v in places if group.kind == "input" and v.name not in self.free]
 
 
 class FmuSteps(NamedTuple):

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ...cosim.can.channel import MessageChannel
 from ...cosim.clock import Clock
 from ...cosim.errors import RunError
+from ...cosim.interface import Value
 from ...cosim.plan.plan import Plan
 from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
@@ -27,6 +28,7 @@ from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ..unit import Unit, floats
 from .ending import EndedWithin, Ending
+from .initialization import typed
 from .profile import Profile
 from .schedule import Action, schedule, waiting
 from .sender import Sender
@@ -121,14 +123,21 @@ class Turn:
 
     def apply_effects(self) -> None:
         """Override and bias the slots of inputs."""
-        for slot, effect in self.effects.items():
-            match effect.kind:
-                case "replace":
-                    self.memory[slot] = effect.value
-                case "add":
-                    self.memory[slot] += effect.value
-                case _:
-                    assert_never(effect.kind)
+        for slot in self.effects:
+            self.memory[slot] = self.affected(slot, self.memory[slot])
+
+    def affected(self, slot: int, value: float) -> float:
+        """Return what the input of a slot receives in place of a value."""
+        effect = self.effects.get(slot)
+        if effect is None:
+            return value
+        match effect.kind:
+            case "replace":
+                return effect.value
+            case "add":
+                return value + effect.value
+            case _:
+                assert_never(effect.kind)
 
     def check_finite(self) -> None:
         """Raise RunError when an output that was just read is NaN or infinite."""
@@ -347,17 +356,32 @@ class Engine:
             effects.pop(slot, None)
         else:
             effects[slot] = effect
+        self._show(name)
 
     def _set(self, event: Set) -> None:
-        """Set a free input or a tunable parameter. Raises RunError if the unit refuses: the run is over."""
-        unit, _, variable = event.variable.partition(".")
+        """Set an input that nothing drives, or a tunable parameter."""
         received = self.plan.inputs.get(event.variable)
         if received is not None and received.mailbox is not None:
             self.memory[received.mailbox] = event.value
-            return
+            self._show(event.variable)
+        else:
+            self._set_now(event.variable, event.value)
+
+    def _show(self, name: str) -> None:
+        """Set an input to what its unit receives from now on, if no step does."""
+        received = self.plan.inputs[name]
+        turn = self._turn_of_input[received.slot]
+        of_unit = name.partition(".")[2]
+        if of_unit in turn.plan.free and received.mailbox is not None:
+            value = turn.affected(received.slot, float(self.memory[received.mailbox]))
+            self._set_now(name, typed(turn.plan.interface.variables[of_unit], value, self.plan.texts))
+
+    def _set_now(self, name: str, value: Value) -> None:
+        """Set a variable between two steps. Raises RunError if the unit refuses: the run is over."""
+        unit, _, variable = name.partition(".")
         self.whole = False
         try:
-            self._units[unit].set(variable, event.value)
+            self._units[unit].set(variable, value)
         except RunError as error:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         self.whole = True

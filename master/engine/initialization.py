@@ -112,25 +112,29 @@ def _first_inputs(plan: Plan, unit: UnitPlan) -> dict[str, Value]:
         if variable.name in unit.start:
             found[variable.name] = unit.start[variable.name]
         if receiver is not None and receiver.driver and (unit.name, variable.name) not in linked:
-            found[variable.name] = _typed(variable, plan.initial[receiver.slot], plan.texts)
+            found[variable.name] = typed(variable, plan.initial[receiver.slot], plan.texts)
     return found
 
 
 def _set_free_inputs(units: Mapping[str, Unit], plan: Plan) -> None:
-    """Set the inputs that no output reaches directly, driven or not, to their first value.
+    """Set the inputs that no output reaches directly to their first value.
 
-    A text that is the FMU's own start is not set: some read a file when they get a name.
+    One that nothing drives keeps the FMU's own, unless a file gives it a start. A text that is the FMU's own
+    start is not set: some read a file when they get a name.
     """
-    linked = {".".join(link.sink) for link in plan.links}
+    left = {".".join(link.sink) for link in plan.links}
+    left |= {f"{p.name}.{name}" for p in plan.units for name in p.free - p.start.keys()}
     for name, receiver in plan.inputs.items():
+        if name in left:
+            continue
         unit, _, of_unit = name.partition(".")
         variable = units[unit].interface.variables[of_unit]
-        value = _typed(variable, plan.initial[receiver.slot], plan.texts)
-        if name not in linked and not (variable.type == "String" and value == variable.default):
+        value = typed(variable, plan.initial[receiver.slot], plan.texts)
+        if not (variable.type == "String" and value == variable.default):
             units[unit].set(of_unit, value)
 
 
-def _typed(variable: VariableInfo, value: float, texts: Texts) -> Value:
+def typed(variable: VariableInfo, value: float, texts: Texts) -> Value:
     """Return a number of the memory as a value of the variable's type; one that it has not, as it is.
 
     A unit refuses that one.
@@ -155,7 +159,7 @@ def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float | str
     if not math.isfinite(value):
         raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
     value = link.map(value)
-    units[receiver].set(sink, _typed(units[receiver].interface.variables[sink], value, texts))
+    units[receiver].set(sink, typed(units[receiver].interface.variables[sink], value, texts))
     return value
 
 

@@ -85,7 +85,7 @@ class ModelExchange(Instance):
         super().bind(memory, plan)
         self._inputs = {True: [], False: []}
         for group in plan.groups:
-            for slot, variable in enumerate(group.variables, group.slot) if group.kind == "input" else ():
+            for slot, variable in plan.set_in_steps(group):
                 self._inputs[_is_continuous(variable)].append((slot, variable))
         binding, self._view = self.binding, self.binding.view
         self._set_continuous, self._set_discrete = (

@@ -224,7 +224,7 @@ class Instance:
         self.inputs, self.through, self.outputs = [], [], []
         for group in plan.groups:
             if group.kind == "input":
-                self.inputs += binding.transfers("Set", enumerate(group.variables, group.slot))
+                self.inputs += binding.transfers("Set", plan.set_in_steps(group))
             elif group.kind == "sampled":
                 self.outputs += binding.transfers("Get", enumerate(group.variables, group.slot))
             else:

@@ -6,12 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import extract
+from fmpy.fmi2 import FMU2Slave
 from numpy.typing import NDArray
 
 from evcosim import simulate
 from evcosim.master.fmi import exchange
 from evcosim.master.fmi.fmu import read_fmu
 from support.beside_fmpy import FINEST, Course, distance, in_evcosim, in_fmpy, told
+from support.c_fmu import SOURCES, compile_fmu
 from support.descriptions import redescribed
 from support.equations import equations_fmu
 
@@ -107,6 +110,35 @@ def test_inputs_are_held_between_two_rows(tmp_path: Path, step: float) -> None:
     ramp = results.time - 1.0 + np.exp(-results.time)
     np.testing.assert_allclose(results["fmu.x0"], held, atol=1e-7)
     assert np.max(np.abs(held - ramp)) == pytest.approx(0.5 * step, rel=0.1)
+
+
+COUNTING = """<fmiModelDescription fmiVersion="2.0" modelName="counting" guid="c">
+<CoSimulation modelIdentifier="counting" canHandleVariableCommunicationStepSize="true"/>
+<ModelVariables><ScalarVariable name="y" valueReference="0" causality="output"><Real/></ScalarVariable>
+</ModelVariables><ModelStructure><Outputs><Unknown index="1"/></Outputs></ModelStructure>
+</fmiModelDescription>"""
+
+
+@pytest.mark.parametrize(("step", "differ"), [(0.01, True), (0.02, True), (2.0**-7, False), (0.25, False)])
+def test_an_fmu_with_steps_of_its_own_counts_the_last_digit_of_times(
+    tmp_path: Path, step: float, differ: bool
+) -> None:
+    """One internal step more or less, unless the step is a power of two: then all times are the same."""
+    fmu = compile_fmu(tmp_path / "counting.fmu", SOURCES / "counting.c", COUNTING, "counting")
+    ours, theirs = both(fmu, 1e-6, 40 * step, step)
+    apart = np.abs(ours.values["y"] - theirs.values["y"])
+    assert np.max(apart) == (1.0 if differ else 0.0)
+    assert np.max(np.abs(ours.values["y"] - ours.time / 0.01)) < 2.0
+    unit = FMU2Slave(
+        guid="c", unzipDirectory=extract(fmu), modelIdentifier="counting", instanceName="by hand"
+    )
+    unit.instantiate()
+    unit.setupExperiment(startTime=0.0)
+    by_hand = [0.0]
+    for time in ours.time[:-1]:
+        unit.doStep(time, step)
+        by_hand += unit.getReal([0])
+    assert by_hand == ours.values["y"].tolist()
 
 
 def test_the_program_says_how_far_apart_they_are(tmp_path: Path) -> None:

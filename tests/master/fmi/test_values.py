@@ -109,8 +109,10 @@ def test_a_fraction_of_a_whole_number_stops_the_step(engine: str, isolation: str
     typed_fmu(tmp_path / "typed.fmu", 2)
     system = tmp_path / "typed.toml"
     system.write_text('name = "t"\n[experiment]\nstop_time = 0.05\n[units.a]\nfmu = "typed.fmu"\n')
+    scenario = tmp_path / "set.toml"  # an input that an event acts on is set in every step
+    scenario.write_text('[[event]]\ntime = 0.04\naction = "set"\nvariable = "a.count_in"\nvalue = 1\n')
     options: dict[str, Any] = {"engine": engine, "isolation": isolation}
-    with Simulation(system, **options) as simulation:
+    with Simulation(system, str(scenario), **options) as simulation:
         slot = simulation.plan.inputs["a.count_in"].mailbox
         simulation._engine.memory[slot] = 0.5  # what a route may write
         with pytest.raises(

@@ -8,6 +8,7 @@
    50 on: from t = 0.5 s on, doStep 50 writes to address 0, 51 aborts, 52 and 53 call exit(0) and exit(3), 54 never
    returns, 55 recurses without end, 56 takes memory without end, 57 fills a file, 58 frees twice
    63 sleeps for 50 ms in each doStep, 64 says "out of coffee" (Error) and writes to address 0, 65 starts a process
+   66 adds 1 to its own input u after each step
    60 instantiate writes to address 0               61 terminate never returns     62 prints a banner
    3     FMI 3.0: terminateSimulation at t = 0.5    4     FMI 3.0: early return at t = 0.5 */
 
@@ -69,6 +70,7 @@ static void advance(Unit *u, double h) {
     }
     if (u->time >= 0.4999) misbehave();
     v[1] += h * (v[2] * v[0] - v[1]);
+    if (BEHAVIOR == 66) v[0] += 1.0;
     if (BEHAVIOR == 2 && u->time >= 0.4999) v[1] = NAN;
     v[4] = v[3] + 1;
     v[6] = !v[5];
