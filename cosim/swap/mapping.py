@@ -69,6 +69,8 @@ def _mapped(
         allowed = " or ".join(_FROM[causality])
         raise ConfigError(f"{place}: {mapped.variable} is of causality {variable.causality}, not {allowed}")
     if mapped.unit is not None:
+        if variable.type == "String":
+            raise ConfigError(f"{place}: {mapped.variable} is a String, which has no unit of measure")
         _check_unit(mapped.unit, interface, place)
     if not mapped.linear.identity and variable.type != "Real":
         raise ConfigError(f"{place}: {mapped.variable} is of type {variable.type}: only a Real can be scaled")

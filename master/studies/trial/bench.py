@@ -47,8 +47,8 @@ class Bench:
     """A unit's entry of a system, to be run alone.
 
     `outputs` are recorded, in the units of measure of `ours`, the interface of the unit that is in the system
-    now; `ours` is None for that unit itself. A run is `duration` [s] long, rounded to steps. `warnings`
-    counts those of all runs, and `kinds` has the first kinds of them.
+    now; `ours` is None for that unit itself. Texts are neither moved nor looked at. A run is `duration` [s]
+    long, rounded to steps. `warnings` counts those of all runs, and `kinds` has the first kinds of them.
     """
 
     def __init__(
@@ -66,8 +66,9 @@ class Bench:
         self.interface = present(self.fmu.interface, entry, system.keys_of(unit))
         self.ours = ours or self.interface
         self.isolation: Isolation | None = None if ours is None else "process"
-        self.outputs = [name for name in outputs if name in self.interface.variables]
-        self.inputs = [v.name for v in self.interface.of_causality("input")]
+        numbers = {v.name for v in self.interface.variables.values() if v.type != "String"}
+        self.outputs = [name for name in outputs if name in numbers]
+        self.inputs = [v.name for v in self.interface.of_causality("input") if v.name in numbers]
         changes = scenario.file.experiment
         self.step_size = changes.step_size or system.file.experiment.step_size
         self.start = system.file.experiment.start_time

@@ -23,6 +23,7 @@ FMU = UnitInterface(
             VariableInfo("v", causality="output", unit="m/s", depends=("pedal",), depends_initially=None),
             VariableInfo("s", causality="local", unit="m"),
             VariableInfo("m_total", causality="parameter", unit="kg", start=200.0),
+            VariableInfo("label", "String", "parameter", "fixed"),
         )
     },
     unusable={"w": "is of type Binary, which no one can ask for"},
@@ -41,7 +42,7 @@ def test_without_a_map_it_is_the_interface_itself() -> None:
 
 def test_a_variable_is_known_by_the_systems_name_alone() -> None:
     known = shown(inputs={"throttle": "pedal"}, outputs={"speed": "v"}, parameters={"mass": "m_total"})
-    assert set(known.variables) == {"throttle", "mode", "speed", "s", "mass"}
+    assert set(known.variables) == {"throttle", "mode", "speed", "s", "mass", "label"}
     assert {v.declared_name for v in known.variables.values()} == set(FMU.variables)
     assert known.variables["s"] == FMU.variables["s"]
 
@@ -87,6 +88,7 @@ def test_a_unit_of_measure_takes_the_place_of_the_declared_one() -> None:
         ({"parameters": {"x": "pedal"}}, "map.parameters.x: pedal is of causality input, not parameter or structuralParameter"),
         ({"outputs": {"x": "w"}}, "map.outputs.x: w is of type Binary, which no one can ask for"),
         ({"inputs": {"x": {"variable": "pedal", "unit": "blub"}}}, "map.inputs.x: unit of measure 'blub' is not known"),
+        ({"parameters": {"x": {"variable": "label", "unit": "m"}}}, "map.parameters.x: label is a String, which has no unit of measure"),
         ({"inputs": {"x": {"variable": "mode", "invert": True}}}, "map.inputs.x: mode is a Boolean: it has no sign to invert"),
         ({"inputs": {"x": "pedal"}, "outputs": {"x": "v"}}, "map.outputs.x: 'x' is mapped twice"),
         ({"inputs": {"my x": "v"}}, "map.inputs.'my x': v is of causality output, not input"),

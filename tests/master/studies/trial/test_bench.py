@@ -10,7 +10,7 @@ import pytest
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import MapTables, UnitEntry, load_system
 from evcosim.master.studies.trial.bench import Bench, Deadline, OutOfTime, largest
-from support.c_fmu import mixed_fmu, vehicle_fmu
+from support.c_fmu import mixed_fmu, typed_fmu, vehicle_fmu
 
 NAMES = ("throttle", "speed", "power", "nothing like it")
 DRIVE = {"throttle": [(0.0, 0.0), (0.5, 50.0)]}
@@ -80,3 +80,16 @@ def test_an_integer_input_gets_whole_numbers(tmp_path):
     found = one.run(drive, deadline())
     assert [found["count"][k] for k in (1, 5, 6, 10)] == [1.0, 1.0, 3.0, 3.0]
     assert found["y"][1] == pytest.approx(0.04)
+
+
+def test_texts_are_neither_moved_nor_looked_at(tmp_path):
+    typed_fmu(tmp_path / "typed.fmu", 2)
+    (tmp_path / "one.toml").write_text(
+        'name = "one"\n[experiment]\nstop_time = 1.0\nstep_size = 0.1\n[units.a]\nfmu = "typed.fmu"\n'
+    )
+    system = load_system(str(tmp_path / "one.toml"))
+    entry, scenario = system.file.units["a"], load_scenario(system, None)
+    one = Bench(system, scenario, "a", entry, None, ("flag", "text"), 1.0)
+    assert (one.outputs, one.inputs) == (["flag"], ["flag_in", "state_in", "count_in"])
+    found = one.run({"text_in": [(0.0, 0.0)], "flag_in": [(0.0, 0.0), (0.5, 1.0)]}, deadline())
+    assert list(found) == ["flag"] and set(found["flag"]) == {0.0, 1.0}
