@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple, TextIO
 
 from .errors import ConfigError, counted
-from .reading import require_file
+from .reading import LARGEST, require_file
 
 SEPARATORS = (";", "\t", ",")
 """In the order in which they are tried: a ';' or a tab that stands in each line is no part of a name."""
@@ -61,11 +61,19 @@ class Comments:
 
 
 def encoding_of(path: Path) -> str:
-    """Return Python's name of the encoding of a file. Raises ConfigError for one that cannot be read."""
-    require_file(path)
+    """Return Python's name of the encoding of a file.
+
+    Raises ConfigError for one that cannot be read, begins with zeros, or whose first line has no end.
+    """
+    size = require_file(path).st_size
     try:
         with path.open("rb") as file:
             first = file.read(4)
+            if first.count(0) > 2:
+                raise ConfigError(f"{path}: is no text: it begins with bytes of 0")
+            line = file.readline(LARGEST) if size > LARGEST else b"\n"
+            if not line.endswith(b"\n") and b"\r" not in line:
+                raise ConfigError(f"{path}: line 1 has more than {LARGEST} bytes, which are read at most")
             for mark, name in _MARKS:
                 if first.startswith(mark):
                     return name

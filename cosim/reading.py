@@ -29,6 +29,14 @@ def require_file(path: Path, about: str = "") -> os.stat_result:
     return found
 
 
+def is_file(path: Path) -> bool:
+    """Return True for a file; False for what is none, and for a name that no file can have."""
+    try:
+        return path.is_file()
+    except OSError:  # it is too long
+        return False
+
+
 def content(path: Path, about: str = "") -> bytes:
     """Return the bytes of a file of at most LARGEST. Raises ConfigError as `require_file` does."""
     size = require_file(path, about).st_size

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..cosim.errors import ConfigError, nearest
+from ..cosim.errors import ConfigError, nearest, short
+from ..cosim.reading import is_file
 from ..cosim.writing import reason
 
 
@@ -99,11 +100,11 @@ def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
     if name in build.names():
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
-        if path.is_file():
+        if is_file(path):
             return path
     if name.endswith(".fmu") or "/" in name or "\\" in name:
-        raise ConfigError(f"{start}{name}: there is no such FMU file")
+        raise ConfigError(f"{start}{name[:200]}: there is no such FMU file")
     raise ConfigError(
-        f"{start}there is no built-in FMU '{name}'{nearest(name, build.names())}; "
+        f"{start}there is no built-in FMU {short(name)}{nearest(name, build.names())}; "
         f"built in: {', '.join(build.names())}"
     )

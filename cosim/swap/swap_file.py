@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from ..errors import ConfigError, nearest
+from ..reading import is_file
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
 from ..visible import visible, visible_toml
@@ -66,7 +67,7 @@ def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEn
     if file.replaces is not None and file.replaces != target:
         raise ConfigError(f"{path}: replaces = '{file.replaces}': it was not written for {target}")
     beside = path.parent / file.fmu
-    fmu = str(beside.resolve()) if beside.is_file() else file.fmu
+    fmu = str(beside.resolve()) if is_file(beside) else file.fmu
     period = before.period if file.period is None else file.period
     given = {name: getattr(file, name) for name in UnitEntry.model_fields}
     return UnitEntry(**{**given, "fmu": fmu, "period": period})

@@ -21,9 +21,9 @@ from pydantic import (
     model_validator,
 )
 
-from ..errors import ConfigError, nearest
+from ..errors import ConfigError, nearest, short
 from ..interface import Value
-from ..reading import content
+from ..reading import content, is_file
 from .problems import sentences
 
 DATA = Path(__file__).parents[1] / "data"
@@ -186,11 +186,11 @@ def find(name: str, folders: list[Path], kind: str, owner: str = "") -> Path:
     """
     if name.endswith(".toml") or "/" in name or "\\" in name:
         path = Path(name)
-        if not path.is_file():
+        if not is_file(path):
             raise ConfigError(f"{path}: there is no such {kind} file")
         return path
     for folder in folders:
-        if (folder / f"{name}.toml").is_file():
+        if is_file(folder / f"{name}.toml"):
             return folder / f"{name}.toml"
     known = [known for folder in folders for known in names_in(folder)]
     said = f"{owner} has no {kind} '{name}'" if owner else f"unknown {kind} '{name}'"
@@ -205,6 +205,6 @@ def data_file(name: str, beside: Path, place: str) -> Path:
     is no such file.
     """
     for folder in (beside.parent, DATA):
-        if (folder / name).is_file():
+        if is_file(folder / name):
             return folder / name
-    raise ConfigError(f"{place}: there is no file '{name}', neither in {beside.parent} nor built in")
+    raise ConfigError(f"{place}: there is no file {short(name)}, neither in {beside.parent} nor built in")

@@ -38,3 +38,11 @@ def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest
     path.write_bytes(b"0123456789x")
     with pytest.raises(ConfigError, match=r"file: has 11 bytes; at most 10 are read"):
         reading.content(path)
+
+
+@pytest.mark.parametrize("name", ["", "none", "a\0b", "a" * 5000, "a/" * 3000, "loop"])
+def test_a_name_that_no_file_has_is_no_file(tmp_path: Path, name: str) -> None:
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "file").touch()
+    assert not reading.is_file(tmp_path / name)
+    assert reading.is_file(tmp_path / "file")

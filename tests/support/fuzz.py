@@ -12,8 +12,10 @@ from __future__ import annotations
 import argparse
 import collections
 import contextlib
+import importlib
 import io
 import os
+import pkgutil
 import random
 import shutil
 import sys
@@ -24,6 +26,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
+import evcosim
 from evcosim.master.cli import main
 from support.forked import Outcome, forked
 from support.fuzzing import commands, dbc_files, fmus, tables, toml_files
@@ -107,6 +110,9 @@ def fault(outcome: Outcome, said: str) -> str:
 
 def warm() -> None:
     """Import and compile what the inputs need, which their children then have."""
+    for module in pkgutil.walk_packages(evcosim.__path__, "evcosim."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         quiet = io.StringIO()
         with contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
