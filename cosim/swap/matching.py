@@ -94,7 +94,7 @@ def _of_role(
 ) -> list[Match]:
     candidates = list(offer.of_causality(*_CAUSALITIES[role]))
     unmapped = [need for need in needs if need.name not in mapped and need.name not in absent]
-    scores = {need.name: [_score(need, v, offer) for v in candidates] for need in unmapped}
+    scores = {need.name: _scores(need, candidates, offer) for need in unmapped}
     chosen = _assigned(scores, candidates, {need.name for need in unmapped if need.optional})
     found = []
     for need in needs:
@@ -162,10 +162,20 @@ def _assigned(
     return same | {names[i]: candidates[left[j]] for i, j in pairs if table[i, j] > 0.0}
 
 
-def _score(need: Requirement, v: VariableInfo, offer: UnitInterface) -> float:
-    """Return how well a variable suits a need: 0 it cannot be, up to 1 by likeness, 2 the same name."""
-    if _converts(need, v, offer)[0] == "missing":
-        return 0.0
+def _scores(need: Requirement, candidates: Sequence[VariableInfo], offer: UnitInterface) -> list[float]:
+    """Return how well each variable suits a need: 0 it cannot be, up to 1 by likeness, 2 the same name."""
+    possible: dict[tuple[str, str, str, bool], bool] = {}  # a large FMU has few types and units of measure
+    scores = []
+    for v in candidates:
+        key = v.type, v.unit, v.unit or unit_in(v.name), v.difference
+        if key not in possible:
+            possible[key] = _converts(need, v, offer)[0] != "missing"
+        scores.append(_score(need, v) if possible[key] else 0.0)
+    return scores
+
+
+def _score(need: Requirement, v: VariableInfo) -> float:
+    """Return how well a variable suits a need whose unit of measure fits, as `_scores` does."""
     if v.name == need.name:
         return 2.0
     alike = likeness(need.name, need.variable.description, v.name, v.description)

@@ -53,6 +53,8 @@ _UNITS = {
     "nm": "N.m", "kw": "kW", "kg": "kg", "km": "km",
 }  # fmt: skip # how code spells units of measure at the end of names; single letters mean too much else
 _ENDING = re.compile(rf"(?:_|(?<=[a-z])(?=[A-Z]))((?i:{'|'.join(sorted(_UNITS, key=len, reverse=True))}))$")
+_NUMBER = re.compile(r"(?<![A-Za-z])\d+|(?<=[A-Za-z])(?:\d\d+|[013-9])")
+"""A number in a name, but for the 2 that may belong to a unit of measure (`accel_mps2`)."""
 _COMPOUND = 4  # letters that a part of a compound word has at least
 
 Meanings = frozenset[str]
@@ -71,19 +73,35 @@ def likeness(name: str, text: str, other: str, other_text: str) -> float:
     It is the largest of three: by the words of the names, of which the last part of the FMU's path counts
     most; by the words of names and descriptions; by the letters.
     """
+    by_words = _by_words(name, text, _NUMBER.sub("0", other), _NUMBER.sub("0", other_text))
+    return max(by_words, 0.8 * _look(name.lower(), _last(other).lower(), by_words / 0.8))
+
+
+@functools.cache  # the names of a large FMU differ by numbers, which are no words
+def _by_words(name: str, text: str, other: str, other_text: str) -> float:
     path, last = _meanings(other), _meanings(_last(other))
     own = _meanings(name)
     by_name = 0.6 * _agreement(own, last) + 0.4 * _agreement(own, path)
     words, other_words = (*own, *_meanings(text)), (*path, *_meanings(other_text))
     by_text = _agreement(tuple(dict.fromkeys(words)), tuple(dict.fromkeys(other_words)))
-    by_words = max(by_name, 0.9 * by_text)
-    return max(by_words, 0.8 * _look(name.lower(), _last(other).lower(), by_words / 0.8))
+    return max(by_name, 0.9 * by_text)
 
 
 def _look(a: str, b: str, above: float) -> float:
     """Return the likeness of two texts by their letters; 0.0 where it is not larger than `above`."""
     if 2.0 * min(len(a), len(b)) <= above * (len(a) + len(b)):  # all letters of the shorter one are shared
         return 0.0
+    return _ratio(a, _others_than(a).sub("\0", b))
+
+
+@functools.cache
+def _others_than(a: str) -> re.Pattern[str]:
+    """Return the pattern of a character that does not occur in a text: which one it is counts for nothing."""
+    return re.compile(f"[^{re.escape(a)}]" if a else ".", re.DOTALL)
+
+
+@functools.cache
+def _ratio(a: str, b: str) -> float:
     return difflib.SequenceMatcher(None, a, b).ratio()
 
 
@@ -97,7 +115,7 @@ def _agreement(a: tuple[Meanings, ...], b: tuple[Meanings, ...]) -> float:
 
 def _last(name: str) -> str:
     """Return the last part of a path; of a derivative too, `der(v)` of `der(body.v)`."""
-    inner = re.fullmatch(r"der\((.*)\)", name)
+    inner = re.fullmatch(r"der\((.*)\)", name) if name.startswith("der(") else None
     return f"der({_last(inner[1])})" if inner else name.rpartition(".")[2]
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from evcosim.cosim.swap import name_likeness
 from evcosim.cosim.swap.name_likeness import likeness, unit_in
 
 NAMES = st.text("abcdefghijklmnopqrstuvwxyzVRSäöüß_.123", max_size=20)
@@ -72,3 +75,50 @@ def test_units_of_measure_in_names(name: str, unit: str) -> None:
 def test_a_unit_stands_at_the_end_of_a_word(name: str) -> None:
     assert unit_in(f"{name}_kmh") == "km/h"
     assert unit_in(f"{name}_kmh_x") == ""
+
+
+PARTS = st.sampled_from(
+    [
+        "der(",
+        ")",
+        "_dot",
+        "Dot",
+        "_",
+        ".",
+        "[1,2]",
+        "speed",
+        "Vel",
+        "mps2",
+        "m_s2",
+        "_mps",
+        "23",
+        "2",
+        "1",
+        "s2x",
+        "ä2",
+    ]
+)
+LONG = st.lists(PARTS, max_size=6).map("".join)
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.sampled_from(["speed", "speed_2", "x1", "accel_mps2", ""]), LONG, LONG, LONG)
+def test_numbers_and_letters_that_are_passed_over_count_for_nothing(
+    monkeypatch: pytest.MonkeyPatch, name: str, text: str, other: str, other_text: str
+) -> None:
+    found = likeness(name, text, other, other_text)
+    with monkeypatch.context() as patch:
+        nothing = re.compile("(?!)")
+        patch.setattr(name_likeness, "_NUMBER", nothing)
+        patch.setattr(name_likeness, "_others_than", lambda a: nothing)
+        assert likeness(name, text, other, other_text) == found
+
+
+def test_names_that_differ_by_their_numbers_are_compared_once() -> None:
+    """A large FMU has 100,000 of them."""
+    name_likeness._by_words.cache_clear()
+    name_likeness._ratio.cache_clear()
+    for i in range(500):
+        likeness("speed", "Speed", f"body.part[{i}].T_{i}", f"Some text {i}")
+    assert name_likeness._by_words.cache_info().misses == 1
+    assert name_likeness._ratio.cache_info().misses <= 3  # of one, two and three digits
