@@ -161,6 +161,7 @@ to = ["b.u"]
         (1, "timer", 2, 0.13),
         (2, "timer", 2, 0.13),
         (3, "timer", 2, 0.13),
+        (1, "oscillator", 7, 0.5),
         (2, "oscillator", 7, 0.5),
         (3, "oscillator", 7, 0.5),
     ],
