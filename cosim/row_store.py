@@ -120,9 +120,15 @@ class _RowFile:
 
 
 def rows_in(path: Path, offset: int, width: int) -> Table:
-    """Return the whole rows of `width` numbers from byte `offset` of a file on. Raises OSError."""
+    """Return the whole rows of `width` numbers from byte `offset` of a file on. Raises OSError.
+
+    A row without numbers stands in the file as a number that counts for nothing.
+    """
     file = path.open("rb", buffering=0)
-    count = max(0, os.fstat(file.fileno()).st_size - offset) // (8 * width) if width else 0
+    count = max(0, os.fstat(file.fileno()).st_size - offset) // (8 * (width or 1))
+    if not width:
+        file.close()
+        return MemoryTable(np.empty((count, 0)))
     return _FileTable(_RowFile(file, offset), count, np.empty((0, width)))
 
 
@@ -235,11 +241,13 @@ class RowStore:
     def _save(self, first: int, rows: Array) -> None:
         """Write what the file does not have of `rows`, the first of which is row `first`."""
         data = np.ascontiguousarray(rows[max(0, self._in_file - first) :])
+        if not self._width:  # so that the rows can be counted
+            data = np.zeros((len(data), 1))
         if not data.size:
             return
         if self._file is None:
             self._file = self._made()
-        self._file.write(self._in_file * self._width * 8, data.data.cast("B"))
+        self._file.write(self._in_file * data.shape[1] * 8, data.data.cast("B"))
         self._in_file += len(data)
 
     def _made(self) -> _RowFile:

@@ -72,6 +72,25 @@ def test_no_row_is_on_the_disk_without_its_texts(tmp_path: Path, engine: str, is
     assert recovered["fmu.text"].tolist() == now["fmu.text"][:6].tolist()
 
 
+def test_the_rows_of_a_run_of_texts_alone_are_counted(tmp_path: Path) -> None:
+    typed_fmu(tmp_path / "typed.fmu", 2)
+    system = tmp_path / "one.toml"
+    system.write_text(
+        'name = "one"\nrecord = ["a.text"]\n[experiment]\nstop_time = 1.0\n[units.a]\nfmu = "typed.fmu"\n'
+    )
+    with Simulation(system) as sim:
+        sim.keep_in(tmp_path / "out")
+        sim.step(3)
+        sim._engine.store.save()
+        sim.set("a.text_in", "then")
+        sim.step(4)
+        sim._engine.store.save()
+        saved, now = Results.read(tmp_path / "out"), sim.results
+        assert (saved.names, saved.texts, len(saved)) == ((), ("a.text",), 7)
+        assert saved["a.text"].tolist() == now["a.text"][:7].tolist()
+        assert saved.time.tolist() == now.time[:7].tolist()
+
+
 @pytest.mark.parametrize("engine", ["python", "compiled"])
 def test_the_rows_of_a_chunk_are_seen_while_it_is_under_way(engine: str) -> None:
     with Simulation("scooter", engine=engine) as sim:
