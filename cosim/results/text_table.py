@@ -124,7 +124,8 @@ def write_texts(path: Path, table: TextTable, times: Array) -> None:
 def read_texts(path: Path, times: Array) -> TextTable:
     """Read the table beside a file of results with `times` [s], shape (n,); an empty one where there is none.
 
-    Raises ConfigError naming file and line of a time that the results do not have.
+    What comes after the last time is left out: the results may have been cut off. Raises ConfigError naming
+    file and line of any other time that the results do not have.
     """
     beside = texts_path(path)
     if not _is_table(beside):
@@ -146,6 +147,8 @@ def read_texts(path: Path, times: Array) -> TextTable:
     changes: list[Change] = []
     for line, cells in zip(lines, rows, strict=True):
         row = _row_of(cells, len(header), times)
+        if row == len(times):
+            break
         if row is None or (changes and row <= changes[-1][0]):
             raise ConfigError(
                 f"{beside}: line {line}: {cells[0] if cells else ''!r} begins no row of {path.name}: the two "
@@ -181,10 +184,13 @@ def _texts_of_any_length() -> Iterator[None]:
 
 
 def _row_of(cells: list[str], width: int, times: Array) -> int | None:
-    """Return the row of the results at the time of a line with `width` cells; None: there is none."""
+    """Return the row of the results at the time of a line with `width` cells; None: there is none.
+
+    Behind the last time it is len(times).
+    """
     try:
         time = float(cells[0]) if len(cells) == width else math.nan
     except ValueError:
         return None
     row = int(np.searchsorted(times, time))
-    return row if row < len(times) and times[row] == time else None
+    return row if math.isfinite(time) and (row == len(times) or times[row] == time) else None

@@ -65,6 +65,14 @@ def test_a_part_has_the_same_texts(changes: dict[int, tuple[str, str]], rows: An
     assert all(one != two for (_, one), (_, two) in zip(part.changes, part.changes[1:], strict=False))
 
 
+def test_results_that_were_cut_off_have_the_texts_up_to_their_end(tmp_path: Path) -> None:
+    table = TextTable(VARIABLES, [(0, ("x", "y")), (2, ("z", "y")), (3, ("x", "y"))])
+    write_texts(tmp_path / "x.csv", table, TIMES)
+    for count in range(len(TIMES) + 1):
+        kept = read_texts(tmp_path / "x.csv", TIMES[:count])
+        assert kept.changes == tuple(change for change in table.changes if change[0] < count)
+
+
 def test_a_text_of_any_length_reads(tmp_path: Path) -> None:
     before = csv.field_size_limit()
     table = TextTable(VARIABLES, [(0, ("x" * 300_000, '"' * 200_000))])
@@ -92,6 +100,7 @@ def test_a_text_in_a_line_steers_no_terminal_and_has_an_end() -> None:
     ("text", "said"),
     [
         ("time,a.s\n0.0,x\n0.15,y\n", "line 3: '0.15' begins no row of results.csv"),
+        ("time,a.s\n0.0,x\nnan,y\n", "line 3: 'nan' begins no row of results.csv"),
         ("time,a.s\n0.0,x\n0.0,y\n", "line 3: '0.0' begins no row of results.csv"),
         ("time,a.s\n0.0\n", "line 2: '0.0' begins no row of results.csv"),
         ("time,a.s\nsoon,x\n", "line 2: 'soon' begins no row of results.csv"),
