@@ -26,7 +26,7 @@ from ..cosim.system.variation import varied
 from .builtin import builtin_names, fmu_file
 from .engine.initialization import ordered_links
 from .fmi.doubts import doubts
-from .fmi.fmu import Fmu, check_runnable, read_fmu
+from .fmi.fmu import Fmu, check_runnable, read_fmu, reading_once
 from .isolation.decision import check_trusted
 from .single_fmu import check_alone, names_fmu, one_fmu
 
@@ -45,6 +45,7 @@ class Prepared:
     outside: tuple[str, ...] = ()
 
 
+@reading_once()
 def prepare(
     system: str | Path | System,
     scenario: str | Path | Scenario | None = None,

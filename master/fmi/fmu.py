@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import contextvars
 import dataclasses
 import functools
 import hashlib
 import math
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -132,11 +135,37 @@ class Fmu:
         return b"file://" + path.replace(b" ", b"%20")
 
 
+_once: contextvars.ContextVar[dict[str, Fmu] | None] = contextvars.ContextVar("read FMUs", default=None)
+
+
+@contextlib.contextmanager
+def reading_once() -> Iterator[None]:
+    """Within the `with` block, `read_fmu` reads each file once, however many units have it."""
+    token = _once.set({})
+    try:
+        yield
+    finally:
+        _once.reset(token)
+
+
 def read_fmu(path: Path, strict: bool = False) -> Fmu:
     """Read an FMU's description. Raises FmuError when it is none, or is damaged.
 
     A tolerable defect is kept in `Fmu.defects`; with `strict` it is a FmuError too.
     """
+    known, place = _once.get(), os.path.realpath(path)
+    fmu = (known or {}).get(place)
+    if fmu is None:
+        fmu = _read(path)
+        if known is not None:
+            known[place] = fmu
+    if strict and fmu.defects:
+        said = "; ".join(fmu.defects[:_SHOWN_DEFECTS])
+        raise FmuError(f"{path}: strict: {counted(len(fmu.defects), 'defect')}: {said}")
+    return fmu if fmu.path == path else dataclasses.replace(fmu, path=path)
+
+
+def _read(path: Path) -> Fmu:
     entries = entries_of(path)
     names = tuple(entry.filename for entry in entries)
     if _DESCRIPTION not in names:
@@ -145,12 +174,7 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
     if any("\\" in entry.orig_filename for entry in entries):
         defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
     size = sum(entry.file_size for entry in entries)
-    fmu = Fmu(path, description, names, size, defects, negated, sampled)
-    if strict and defects:
-        raise FmuError(
-            f"{path}: strict: {counted(len(defects), 'defect')}: " + "; ".join(defects[:_SHOWN_DEFECTS])
-        )
-    return fmu
+    return Fmu(path, description, names, size, defects, negated, sampled)
 
 
 def _elsewhere(names: tuple[str, ...]) -> str:

@@ -12,9 +12,11 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.master.builtin import fmu_file
-from evcosim.master.fmi.fmu import Fmu, FmuError, check_runnable, is_true, read_fmu
+from evcosim.master.fmi import fmu as module
+from evcosim.master.fmi.fmu import Fmu, FmuError, check_runnable, is_true, read_fmu, reading_once
+from evcosim.master.prepare import prepare
 from evcosim.master.simulation import simulate
-from support.c_fmu import mixed_fmu
+from support.c_fmu import mixed_fmu, vehicle_fmu
 from support.descriptions import GOOD, changed, described, redescribed
 from support.equations import equations_fmu
 
@@ -222,3 +224,30 @@ def test_a_variable_says_against_its_type_that_it_is_no_difference(tmp_path: Pat
         ('<Real declaredType="Speed"/>', '<Real declaredType="Speed" relativeQuantity="false"/>'),
     )
     assert not read_fmu(described(tmp_path, text)).interface.variables["y"].difference
+
+
+def test_a_file_is_read_once_within_a_block(tmp_path: Path) -> None:
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2, **{'start="200"': 'start="heavy"'})
+    (tmp_path / "again.fmu").symlink_to(fmu)
+    with reading_once():
+        first, again, linked = read_fmu(fmu), read_fmu(fmu), read_fmu(tmp_path / "again.fmu")
+        assert again is first
+        assert linked.description is first.description
+        assert linked.path == tmp_path / "again.fmu"  # messages name the file as it was given
+        with pytest.raises(FmuError, match=r"again.fmu: strict: 1 defect: m_total: start = 'heavy'"):
+            read_fmu(tmp_path / "again.fmu", strict=True)
+    assert read_fmu(fmu).description is not first.description
+
+
+def test_an_fmu_by_itself_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[Path] = []
+    inner = module._read
+
+    def noted(path: Path) -> Fmu:
+        read.append(path)
+        return inner(path)
+
+    monkeypatch.setattr(module, "_read", noted)
+    prepared = prepare(vehicle_fmu(tmp_path / "Vehicle.fmu", 2))
+    assert len(read) == 1
+    assert prepared.fmus["fmu"].path == tmp_path / "Vehicle.fmu"
