@@ -30,6 +30,7 @@ from .results import Results, ResultVariable
 from .text_table import shown_text
 
 _SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
+_SQUARES = 1e150  # the squares of greater differences overflow
 
 
 @dataclasses.dataclass(frozen=True)
@@ -218,8 +219,9 @@ def _compared(
     apart = _differences(x, y)
     worst = int(np.argmax(apart))
     largest, span = float(apart[worst]), _range(x)
-    equal = math.isfinite(largest) and largest <= tolerance + relative * span
-    rms = float(np.sqrt(np.mean(apart**2))) if math.isfinite(largest) else math.inf
+    share = relative * span if math.isfinite(span) else 2 * relative * _range(x / 2)
+    equal = math.isfinite(largest) and largest <= tolerance + share
+    rms = _rms(apart, largest)
     return VariableDifference(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
 
 
@@ -259,10 +261,19 @@ def _differences(x: Array, y: Array) -> Array:
     return np.where(np.isnan(apart), np.inf, apart)
 
 
+def _rms(apart: Array, largest: float) -> float:
+    """Return the root of the mean square of differences, shape (n,), of which one is the `largest`."""
+    if not math.isfinite(largest):
+        return math.inf
+    scale = largest if largest > _SQUARES else 1.0
+    return scale * float(np.sqrt(np.mean((apart / scale) ** 2)))
+
+
 def _range(values: Array) -> float:
-    """Return max - min of the finite values, shape (n,); 0 where there is none."""
+    """Return max - min of the finite values, shape (n,), infinite beyond the doubles; 0 where there is none."""
     finite = values[np.isfinite(values)]
-    return float(finite.max() - finite.min()) if len(finite) else 0.0
+    with np.errstate(over="ignore"):
+        return float(finite.max() - finite.min()) if len(finite) else 0.0
 
 
 def worst(rows: Sequence[VariableDifference], count: int) -> list[str]:

@@ -136,6 +136,21 @@ def test_the_table_tells_what_differs() -> None:
     assert worst(compare(a, a).rows, 6) == ["vehicle.speed", "ecu.state"]
 
 
+whole_numbers = arrays.arrays(np.float64, 8, elements=st.integers(-(10**6), 10**6).map(float))
+
+
+@pytest.mark.filterwarnings("error")
+@given(whole_numbers, whole_numbers)
+def test_numbers_at_the_end_of_the_doubles_are_compared_as_others_are(x: np.ndarray, y: np.ndarray) -> None:
+    huge = 2.0**1003  # a range may be beyond the doubles then
+    small, large = (compare(one(f * x), one(f * y)).rows[0] for f in (1.0, huge))
+    assert compare(one(huge * x), one(huge * x)).equal
+    assert large.equal == small.equal and large.rms == pytest.approx(huge * small.rms)
+    for relative in (0.1, 0.5, 0.9):
+        equal = [compare(one(f * x), one(f * y), relative=relative).equal for f in (1.0, huge)]
+        assert equal[0] == equal[1]
+
+
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan])
 def test_a_tolerance_is_a_number_from_0(tolerance: float) -> None:
     with pytest.raises(ConfigError, match="must not be negative"):
