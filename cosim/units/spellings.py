@@ -121,6 +121,8 @@ EXACT: tuple[Row, ...] = (
     ("G", "gn", "toyota_2017_ref_pt.dbc (acceleration)"),
     ("Grad", "deg", "German: degree of angle; vw_pq.dbc: Grad/sec"),
     ("grad", "deg | gon", "gm_global_a_powertrain.dbc: grad/s (degree); ISO 80000-3 (gon)"),
+    ("ton", "t | short_ton", "the metric ton; NIST SP 811: ton, short (2000 lb)"),
+    ("tons", "t | short_ton", "plural of ton"),
     ("NM", "Nm", "chrysler_pacifica_2017_hybrid.dbc"),
     ("nM", "Nm", "nissan_xterra_2011.dbc"),
     ("Km", "km", "as KW"),

@@ -57,7 +57,7 @@ _ALONE: dict[str, _Size] = {
     "in": (_INCH, {"m": 1}), "ft": (12 * _INCH, {"m": 1}), "yd": (36 * _INCH, {"m": 1}),
     "mi": (_MILE, {"m": 1}), "mph": (_MILE / _HOUR, {"m": 1, "s": -1}),
     "kph": (Fraction(5, 18), {"m": 1, "s": -1}), "kn": (1852 / _HOUR, {"m": 1, "s": -1}),
-    "lb": (_POUND, {"kg": 1}), "lbf": (_POUND * _GRAVITY, _FORCE),
+    "lb": (_POUND, {"kg": 1}), "short_ton": (2000 * _POUND, {"kg": 1}), "lbf": (_POUND * _GRAVITY, _FORCE),
     "psi": (_POUND * _GRAVITY / _INCH**2, _PRESSURE), "atm": (101_325, _PRESSURE),
     "mmHg": (Fraction("133.322387415"), _PRESSURE), "gal": (231 * _INCH**3, {"m": 3}),
     "hp": (550 * 12 * _INCH * _POUND * _GRAVITY, _POWER), "PS": (75 * _GRAVITY, _POWER),
