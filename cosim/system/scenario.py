@@ -126,7 +126,7 @@ class StimulusEntry(FiniteModel):
 class _EventRecord(FiniteModel):
     """Keys of all events."""
 
-    time: float = Field(ge=0.0, le=LATEST)
+    time: float = Field(ge=-LATEST, le=LATEST)
     """Time in s; it happens at the first communication point at or after it."""
 
     @property
@@ -148,7 +148,7 @@ class _InputEvent(_EventRecord):
 
 
 class Override(_InputEvent):
-    """Set what the input receives to `value` from then on, whatever drives it."""
+    """Set what the input receives to `value` from then on, in place of what drives it and of a bias before it."""
 
     action: Literal["override"]
     """The kind of event."""
@@ -159,7 +159,7 @@ class Override(_InputEvent):
 
 
 class Bias(_InputEvent):
-    """Add `value` to what the input receives from then on."""
+    """Add `value` to what drives the input from then on, in place of an override or bias before it."""
 
     action: Literal["bias"]
     """The kind of event."""
@@ -169,7 +169,7 @@ class Bias(_InputEvent):
 
 
 class Reset(_InputEvent):
-    """End all overrides and biases of the input: it receives what drives it again."""
+    """End the override or bias of the input: it receives what drives it again."""
 
     action: Literal["reset"]
     """The kind of event."""

@@ -49,6 +49,7 @@ def test_at_0_33_s_is_the_point_of_that_time_whatever_the_step():
 
 def test_what_lies_before_the_start_happens_at_the_start():
     assert at_steps(0.0, 1.0, 1.02, start=1.0) == [0, 0, 2]
+    assert at_steps(-1.0, -0.5, -0.49, 0.0, start=-0.5) == [0, 0, 1, 50]
 
 
 def test_events_happen_in_order_and_those_of_one_step_as_they_are_written():

@@ -68,7 +68,7 @@ def test_every_record_is_found_by_its_action():
         ({"action": "bias"}, 'event 1.value: this key is needed with action = "bias"'),
         ({"action": "reset", "value": 1.0}, 'event 1.value: unknown key with action = "reset"'),
         ({"action": "bias", "value": "x"}, "event 1.value: Input should be a valid number, not 'x'"),
-        ({"action": "reset", "time": -1}, "event 1.time: Input should be greater than or equal to 0, not -1"),
+        ({"action": "reset", "time": -2e12}, "event 1.time: Input should be greater than or equal to -1000000000000, not -2000000000000.0"),
         ({"action": "reset", "variable": "ab"}, "event 1.variable: a variable is written unit.variable, not 'ab'"),
         ({"action": "bias", "value": 1, "bias": 2}, 'event 1.bias: unknown key with action = "bias"'),
         ({"action": "override", "value": 1, "valeu": 2}, "event 1.valeu: unknown key with action = \"override\" (did you mean 'value'?)"),

@@ -28,6 +28,17 @@ def test_override_bias_reset(algorithm):
     assert column(engine, "clock.t")[:8] == pytest.approx(np.arange(8) * 0.01)  # the sender is not touched
 
 
+@pytest.mark.parametrize("before", ["override", "bias"])
+def test_a_bias_takes_the_place_of_what_acted_before(before):
+    """It counts from what drives the input, and lasts until the next one."""
+    table = [(0.01, before, 7.0), (0.03, "bias", 1.0), (0.05, "bias", 2.0), (0.06, "override", 5.0)]
+    events = [{"time": t, "action": kind, "variable": "probe.t", "value": v} for t, kind, v in table]
+    units = [probe()]
+    engine = started(units, plan_of(units, {}, {"event": events}))
+    engine.advance(8)
+    assert list(column(engine, "probe.seen")[:8]) == [0.0, 7.0, 7.0, 1.0, 1.0, 2.0, 5.0, 5.0]
+
+
 def test_a_bias_on_an_input_that_nothing_drives_does_not_add_up():
     units = [probe()]
     events = [{"time": 0.0, "action": "bias", "variable": "probe.t", "value": 1.5}]
