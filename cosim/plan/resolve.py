@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import itertools
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 from ..clock import Clock
+from ..csv_numbers import CsvFile
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
 from ..system.held_stimuli import held_stimulus
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
-from ..system.stimuli import stimulus
+from ..system.stimuli import Rows, csv_of, stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..system.values import as_double, checked
 from ..texts import Texts
@@ -27,6 +30,8 @@ from .slots import Slots, allot
 from .steps import steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
+
+_UNIT_IN_NAME = re.compile(r".*[\[(]([^][()]+)[\])]")
 
 _MOST_VALUES = 2**31
 """Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole
@@ -284,11 +289,12 @@ def _drives(
         map_ = Affine()
         if entry.unit is not None and variable.type == "String":
             raise ConfigError(f"{place}.unit: {entry.to} is a String, which has no unit of measure")
+        target = End(entry.to, variable.unit, interface.units_of_measure, variable.difference)
         if entry.unit is not None:
-            known = interface.units_of_measure
-            given = End(f"the stimulus of {entry.to}", entry.unit, known, variable.difference)
-            target = End(entry.to, variable.unit, known, variable.difference)
+            given = dataclasses.replace(target, name=f"the stimulus of {entry.to}", unit=entry.unit)
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
+        elif entry.csv is not None:
+            _note_unit_of_column(csv_of(entry, place, scenario.path), target, network.warnings)
         slot = slots.valid[unit, name]
         network.drive(
             entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"
@@ -301,6 +307,24 @@ def _drives(
             signal = held_stimulus(entry, place, scenario.path, variable, map_, clock, to_double)
             drives.append(Drive(entry.to, slot, signal, Affine()))
     return tuple(drives)
+
+
+def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, warnings: list[str]) -> None:
+    """Add a warning where the name of a CSV column says another unit than its input's, as `speed [km/h]`."""
+    file, rows = column
+    name = file.names[rows.value]
+    said = _UNIT_IN_NAME.fullmatch(name)
+    if said is None or target.bare:
+        return
+    try:
+        map_ = unit_map(dataclasses.replace(target, unit=said[1]), target, (), "", [])
+    except ConfigError:
+        return  # it is no unit of measure, or of another quantity
+    if not map_.identity:
+        warnings.append(
+            f"{file.path}: column '{name}': its values are taken in [{target.unit}], the unit of "
+            f'{target.name}; `unit = "{said[1]}"` in the stimulus converts them'
+        )
 
 
 def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots) -> None:

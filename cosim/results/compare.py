@@ -270,7 +270,7 @@ def _rms(apart: Array, largest: float) -> float:
 
 
 def _range(values: Array) -> float:
-    """Return max - min of the finite values, shape (n,), infinite beyond the doubles; 0 where there is none."""
+    """Return max - min of the finite values, shape (n,): 0 without any, infinite beyond the doubles."""
     finite = values[np.isfinite(values)]
     with np.errstate(over="ignore"):
         return float(finite.max() - finite.min()) if len(finite) else 0.0

@@ -148,7 +148,7 @@ class _InputEvent(_EventRecord):
 
 
 class Override(_InputEvent):
-    """Set what the input receives to `value` from then on, in place of what drives it and of a bias before it."""
+    """Set what the input receives to `value` from then on, in place of what drives it or a bias before."""
 
     action: Literal["override"]
     """The kind of event."""

@@ -94,3 +94,18 @@ def test_a_wrong_scenario_is_named(scenario, said):
 def test_a_run_that_no_memory_holds_is_refused(stop_time):
     with pytest.raises(ConfigError, match=r"steps of 0\.01 s with .* recorded variables are more than"):
         plan([], options={"stop_time": stop_time})
+
+
+@pytest.mark.parametrize(
+    ("column", "unit", "said"),
+    [
+        ("speed [m/s]", None, True), ("v (m/s)", None, True), ("speed [mph]", None, True),
+        ("speed [m/s]", "m/s", False), ("speed [km/h]", None, False), ("speed [kph]", None, False),
+        ("speed", None, False), ("speed [filtered]", None, False), ("speed [1]", None, False),
+    ],
+)  # fmt: skip # a table
+def test_a_column_that_says_another_unit_than_its_input_is_a_warning(tmp_path, column, unit, said):
+    (tmp_path / "v.csv").write_text(f"time,{column}\n0,1\n1,2\n")
+    entry = {"to": "ecu.speed", "csv": str(tmp_path / "v.csv")} | ({"unit": unit} if unit else {})
+    warnings = " ".join(plan([], {"stimulus": [entry]}).warnings)
+    assert (f"column '{column}': its values are taken in [km/h], the unit of ecu.speed" in warnings) == said
