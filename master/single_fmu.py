@@ -67,7 +67,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     values = {_known(text, fmu.interface, f"parameter {text}", path): x for text, x in given.items()}
     unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
-        "name": name if name.isidentifier() else UNIT,
+        "name": _identifier(name),
         "title": fmu.description.description or "",
         "experiment": _experiment(fmu, options),
         "units": {UNIT: unit | {"tolerance": options.get("tolerance")}},
@@ -80,6 +80,12 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
         Scenario("", None, validate({"stimulus": stimuli}, ScenarioFile, "inputs")),
         left | {"parameters": {f"{UNIT}.{name}": value for name, value in values.items()}},
     )
+
+
+def _identifier(name: str) -> str:
+    """Return a file's name as a system's, with _ for what no such name has: Tank-2.1 is Tank_2_1."""
+    plain = "".join(c if f"a{c}".isidentifier() else "_" for c in name)
+    return plain if plain.isidentifier() else f"_{plain}"
 
 
 def _known(text: str, interface: UnitInterface, place: str, path: Path) -> str:

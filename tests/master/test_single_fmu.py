@@ -173,3 +173,17 @@ def test_the_command(evcosim, tmp_path):
         refused = evcosim("run", "mixed.fmu", *typed)
         assert refused.code == 2
         assert said in " ".join(refused.err.split()), refused.err
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [
+        ("Tank", "Tank"),
+        ("Modelica.Blocks.Sine", "Modelica_Blocks_Sine"),
+        ("2 tanks-b", "_2_tanks_b"),
+        ("ü$", "ü_"),
+    ],
+)
+def test_the_name_of_the_file_names_the_results(tmp_path, file, name):
+    path = mixed_fmu(tmp_path / f"{file}.fmu", 2)
+    assert simulate(path, stop_time=0.02, step_size=0.01).manifest["system"] == name
