@@ -67,7 +67,9 @@ class Fmi2Unit(Instance):
                     break
 
     def judge_step(self, status: int) -> None:
-        self.asked_end = asked_end(status, self._library, self._component)
+        # pythonfmu says of each discarded step that the unit asks to end; one that failed has logged why
+        if not self.log.ends_in_error():
+            self.asked_end = asked_end(status, self._library, self._component)
         if self.asked_end is None:
             self._judge("fmi2DoStep", status, beside(status, self.fmi, self._library, self._component))
 

@@ -107,6 +107,10 @@ class UnitLog:
         trouble = [text for text in recent if not text.startswith("[OK]")]
         return "\n".join((trouble or recent)[-count:])
 
+    def ends_in_error(self) -> bool:
+        """Return True where the last message is of status Error or Fatal."""
+        return bool(self.messages) and self.messages[-1].startswith(("[Error]", "[Fatal]"))
+
     def close(self) -> None:
         """Receive no more messages."""
         for key in self._keys:

@@ -34,7 +34,11 @@ def test_an_fmu_that_exits_is_an_error_and_its_rows_are_kept(process, tmp_path, 
     assert err.startswith(
         "evcosim: unit bad (mixed.fmu) ended the process of evcosim: it called exit(); run again"
     )
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"results.csv", "run.json"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "results.csv",
+        "results.texts.csv",
+        "run.json",
+    }
     results = Results.read(tmp_path / "out")
     assert results.manifest["status"] == "failed"
     assert results.manifest["error"] in err

@@ -18,6 +18,13 @@ def log() -> Iterator[UnitLog]:
     made.close()
 
 
+def test_the_last_message_tells_of_a_failure(log: UnitLog) -> None:
+    assert not log.ends_in_error()
+    for status, fails in ((3, True), (1, False), (4, True), (0, False)):
+        log.add(status, "text")
+        assert log.ends_in_error() is fails
+
+
 def test_messages_are_shown_with_the_word_of_their_status(log: UnitLog) -> None:
     for status, word in enumerate(STATUS):
         log.add(status, f"text {status}")
