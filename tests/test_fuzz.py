@@ -8,7 +8,7 @@ import pytest
 
 from support import fuzz
 
-COUNT = 100
+COUNT = 60
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -2,9 +2,9 @@
 
     python tests/support/fuzz.py --count 2000 --seed 1
 
-Each input runs in a child of this process: exit code 0, 1, 2 or 130, no "unexpected error", no traceback,
-and at most 10 s of a processor (60 s where others keep it busy). What does otherwise is printed, with
-its files in a folder, and the exit code is 1.
+Each input runs in a child of this process: exit code 0, 1, 2 or 130, no "unexpected error", no traceback, no
+character that steers a terminal, and at most 10 s of a processor (60 s where others keep it busy). What does
+otherwise is printed, with its files in a folder, and the exit code is 1.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import io
 import os
 import pkgutil
 import random
+import re
 import shutil
 import sys
 import tempfile
@@ -43,6 +44,7 @@ _MAKERS = {
     "CLI": (commands.a_command,),
 }
 _WEIGHTS = {"TOML": (4, 4, 3, 1)}
+_CURSOR = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 KINDS = tuple(_MAKERS)
 """The kinds of inputs."""
 
@@ -101,6 +103,9 @@ def fault(outcome: Outcome, said: str) -> str:
         return f"exit code {outcome.value}"
     if outcome.value and not said.strip():
         return f"exit code {outcome.value} without a word"
+    if found := _CURSOR.search(said):
+        line = next(line for line in said.split("\n") if found[0] in line)
+        return f"prints {found[0]!r} in {line!r}"
     # what an FMU in a process of its own printed stands in a message, not at its beginning
     for sign in ("unexpected error", "Warning: ", "\nTraceback"):
         if sign in said and "it printed:" not in said:
