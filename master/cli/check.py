@@ -61,6 +61,8 @@ def check(
     from .console import print_json
 
     duration = None if trial is None else seconds("--try", trial)
+    if write is not None:
+        _check_new(write, file)
     checked = _checked(file, place, scenario, strict)
     if not as_json:
         _show_matches(place, checked.matches)
@@ -169,6 +171,17 @@ def _tried(checked: _Checked, duration: float) -> Trial:
         entry = entry.model_copy(update={"sampled": checked.sampled})
     names = [match.need for match in checked.matches if match.need and match.role != "parameter"]
     return try_unit(checked.system, checked.scenario, checked.unit, entry, names, duration)
+
+
+def _check_new(path: Path, checked: str) -> None:
+    """Raise ConfigError where a file is there that somebody may have edited, other than the one checked."""
+    from ...cosim.errors import ConfigError
+
+    if path.is_file() and not (Path(checked).is_file() and path.samefile(checked)):
+        raise ConfigError(
+            f"--write {path}: the file is there, and what was edited in it would be lost; remove it, name "
+            f"another one, or check what it says: evcosim check {path}"
+        )
 
 
 def _write(checked: _Checked, path: Path, tried: Trial | None, likeness: float) -> None:

@@ -84,6 +84,17 @@ road_grade = 0.01
     assert new.model_copy(update={"replaces": None}) == old
 
 
+def test_a_file_that_was_edited_is_not_written_anew(evcosim, tmp_path: Path) -> None:
+    fmu, swap = vehicle_fmu(tmp_path / "Vehicle.fmu", 2), tmp_path / "swap.toml"
+    check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
+    swap.write_text(edited := f"# mine\n{swap.read_text()}")
+    refused = evcosim("check", fmu, "--as", "scooter.vehicle", "--write", swap)
+    assert refused.code == 2 and f"--write {swap}: the file is there" in " ".join(refused.err.split())
+    assert swap.read_text() == edited
+    check(evcosim, swap, "--as", "scooter.vehicle", "--write", swap)  # the file that is checked, as was asked
+    assert swap.read_text() != edited
+
+
 def test_names_that_would_end_a_line_of_a_swap_file(evcosim, tmp_path: Path) -> None:
     """What an FMU calls its variables stays a text."""
     name = "v&quot;&#10;substeps = 7&#10;# &#127; \\ é"
@@ -274,5 +285,6 @@ def test_the_likeness_below_which_a_guess_is_open_is_stated(evcosim, tmp_path: P
     fmu, swap = unlike(tmp_path / "Vehicle.fmu"), tmp_path / "swap.toml"
     check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap, "--likeness", "0")
     assert read_toml(swap, SwapFile).open == []
+    swap = tmp_path / "likely.toml"
     check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
     assert f"guesses of a likeness below {LIKENESS:g} stand below" in swap.read_text()
