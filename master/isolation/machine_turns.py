@@ -24,7 +24,8 @@ class MachineTurns:
     """The tables of one unit, which is initialized, and its code. Raises OSError where no such may run."""
 
     def __init__(self, code: bytes, instance: Instance, memory: Shared, socket: int) -> None:
-        self._run = Loaded(code)
+        locked = instance.fmu.holds_python  # else each call of the FMU takes the lock and gives it back
+        self._run = Loaded(code, locked)
         self._instance = instance
         self._rows = rows = CallRows(floats(memory.values))
         self._acts: list[Call] = []
@@ -35,7 +36,7 @@ class MachineTurns:
         self._state = np.zeros(L.STATE_SIZE, dtype=np.int64)
         self._state[L.PYTHON] = address(self._python)
         numbers, self._turn = np.zeros(L.NUMBERS_SIZE), np.zeros(L.TURN_SIZE)
-        self._surroundings = Surroundings(self._state, numbers)
+        self._surroundings = Surroundings(self._state, numbers, locked)
         hand: Cells = {
             L.SLOTS: memory.address, L.SOCKET: socket, L.TURN: self._turn.ctypes.data,
             L.INPUTS: len(parts[0]), L.SHOWN: len(parts[1]), L.BACK: len(parts[2]),

@@ -19,17 +19,20 @@ _INT, _LONG = ir.IntType(32), types.int64
 _TRUE = ir.Constant(_INT, 1)
 
 
-def _calling(kinds: list[Any], true_at: int = 0) -> tuple[Any, Any]:
-    """Return signature and code of a call: address, then arguments; int 1 is inserted at `true_at` > 0."""
+def _calling(kinds: list[Any], true_at: int = 0, answer: Any = _INT) -> tuple[Any, Any]:
+    """Return signature and code of a call: address, then arguments; int 1 is inserted at `true_at` > 0.
+
+    `answer` is the type of what the C function returns.
+    """
 
     def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         address, *arguments = values
         if true_at:
             arguments.insert(true_at, _TRUE)
-        kind = ir.FunctionType(_INT, [a.type for a in arguments])
+        kind = ir.FunctionType(answer, [a.type for a in arguments])
         return builder.call(builder.inttoptr(address, kind.as_pointer()), arguments)
 
-    return types.int32(_LONG, *kinds), implement
+    return (types.int32 if answer is _INT else _LONG)(_LONG, *kinds), implement
 
 
 @intrinsic
@@ -67,6 +70,18 @@ def do_step_3(typingctx, function, component, time, step_size, event, ending, ea
 def call_0(typingctx, function):
     """Call function()."""
     return _calling([])
+
+
+@intrinsic
+def call_for_word(typingctx, function):
+    """Call function() and return what it returns, 8 bytes."""
+    return _calling([], answer=ir.IntType(64))
+
+
+@intrinsic
+def call_1(typingctx, function, a):
+    """Call function(a)."""
+    return _calling([_LONG])
 
 
 @intrinsic

@@ -12,8 +12,10 @@ from . import slots as S
 from . import tables as L
 from .access import (  # fmt: skip # names
     call_0,
+    call_1,
     call_4,
     call_6,
+    call_for_word,
     exchange,
     fence,
     number,
@@ -68,10 +70,13 @@ def sleeps(t, slots, theirs, i_sleep, count):
         # until the flag changes, which the other side does after it has written its number
         exchange(slots, i_sleep, S.ON_WORD)
         if seen(slots, theirs) != count:
+            thread = call_for_word(word(state, L.UNLOCK)) if word(state, L.UNLOCK) else 0
             call_6(
                 word(state, L.SYSCALL), word(state, L.FUTEX), at, _FUTEX_WAIT, S.ON_WORD_BITS,
                 word(t, L.NAP_TIME), 0,
             )  # fmt: skip # as C has it
+            if word(state, L.LOCK):
+                call_1(word(state, L.LOCK), thread)
         came = seen(slots, theirs) == count
         if came or clock(t) >= end:
             put_number(slots, i_sleep, S.AWAKE)

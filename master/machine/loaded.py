@@ -8,13 +8,17 @@ import os
 
 import numpy as np
 
-_Function = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_int64), ctypes.c_void_p, ctypes.c_int64)
+_ARGUMENTS = ctypes.c_int, ctypes.POINTER(ctypes.c_int64), ctypes.c_void_p, ctypes.c_int64
+_RELEASING, _HOLDING = ctypes.CFUNCTYPE(*_ARGUMENTS), ctypes.PYFUNCTYPE(*_ARGUMENTS)
 
 
 class Loaded:
-    """A function of one int64 in machine code. Raises OSError where the system lets no such code run."""
+    """A function of one int64 in machine code; `locked`: it holds Python's lock while it runs.
 
-    def __init__(self, code: bytes) -> None:
+    Raises OSError where the system lets no such code run.
+    """
+
+    def __init__(self, code: bytes, locked: bool = False) -> None:
         descriptor = os.memfd_create("evcosim-code", os.MFD_CLOEXEC)
         try:
             os.write(descriptor, code)
@@ -22,9 +26,11 @@ class Loaded:
         finally:
             os.close(descriptor)
         self._answer = ctypes.c_int64()
-        self._call = _Function(np.frombuffer(self._memory, dtype=np.uint8).ctypes.data)
+        self._call = (_HOLDING if locked else _RELEASING)(
+            np.frombuffer(self._memory, dtype=np.uint8).ctypes.data
+        )
 
     def __call__(self, argument: int) -> int:
-        """Return what the function returns. Python's lock is free while it runs."""
+        """Return what the function returns."""
         self._call(ctypes.byref(self._answer), None, argument)
         return self._answer.value

@@ -23,16 +23,22 @@ BELL = bytes(4)
 class Surroundings:
     """The places of STATE and NUMBERS that say where these functions are, and the tables of their arguments.
 
-    It must live as long as they are used.
+    It must live as long as they are used. `locked`: the machine code holds Python's lock but while it sleeps.
     """
 
-    def __init__(self, state: NDArray[np.int64], numbers: NDArray[np.float64]) -> None:
+    def __init__(self, state: NDArray[np.int64], numbers: NDArray[np.float64], locked: bool = False) -> None:
         self._ticks = np.zeros(2, dtype=np.int64)
         self._nap = np.array([0, round(1e9 * _NAP)], dtype=np.int64)  # struct timespec
         self._bell = np.frombuffer(BELL, dtype=np.uint8)
         self._set_clock(state, numbers)
         if POSSIBLE:
             self._set_handover(state, numbers)
+        if locked:
+            python = ctypes.pythonapi
+            state[[L.UNLOCK, L.LOCK]] = (
+                address(python.PyEval_SaveThread),
+                address(python.PyEval_RestoreThread),
+            )
 
     @property
     def tables(self) -> dict[int, NDArray[Any]]:

@@ -105,13 +105,14 @@ mailbox)."""
 # ---- a chunk
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
-CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP, YIELD, SYSCALL, FUTEX, SEND_BELL = range(9, 18)
-STATE_SIZE = 18
+CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP, YIELD, SYSCALL, FUTEX, SEND_BELL, UNLOCK, LOCK = range(9, 20)
+STATE_SIZE = 20
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
 of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time; addresses of C functions that
-give the core away, call the system, and send, and the number of the system call futex."""
+give the core away, call the system, and send, and the number of the system call futex; functions of Python
+that give its lock back while a side sleeps, and take it (0: the side does not hold it)."""
 CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1, NAP = range(9)
 NUMBERS_SIZE = 9
 """Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of

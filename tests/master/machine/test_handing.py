@@ -120,6 +120,39 @@ def test_a_side_that_waits_in_vain_gives_up_and_is_awake() -> None:
             assert slots[side.mine[1]] == S.AWAKE
 
 
+@njit
+def sleeps_with_the_lock(t: int, slots: int, theirs: int, flag: int, count: float) -> Any:
+    return handing.sleeps(t, slots, theirs, flag, count)
+
+
+@pytest.mark.parametrize("locked", [True, False])
+def test_a_side_that_holds_the_lock_of_python_gives_it_back_while_it_sleeps(locked: bool) -> None:
+    slots = memoryview(bytearray(8 * 32)).cast("d")
+    one, other = socket.socketpair()
+    with one, other:
+        master, side = (
+            Machine(one, slots, MASTER, PROCESS, 0.0),
+            Machine(other, slots, PROCESS, MASTER, 0.0),
+        )
+        made = Surroundings(side.state, side.numbers, locked)
+        side.numbers[L.NAP] = 0.5  # s, enough for a busy machine
+        made.tables[L.NAP_TIME][:] = 0, 500_000_000
+        for place, array in made.tables.items():
+            side.tables[place] = array.ctypes.data
+        t, at = side.tables.ctypes.data, side.slots.ctypes.data
+        sleeps_with_the_lock(t, at, S.REQUEST, S.CHILD_SLEEPS, 0.0)  # compiled
+        came: list[bool] = []
+        thread = threading.Thread(
+            target=lambda: came.append(sleeps_with_the_lock(t, at, S.REQUEST, S.CHILD_SLEEPS, 1.0))
+        )
+        thread.start()
+        while slots[S.CHILD_SLEEPS] != S.ON_WORD and thread.is_alive():
+            pass
+        master.post(1.0)
+        thread.join()
+        assert came == [locked]
+
+
 def test_a_master_that_looked_in_vain_sleeps_at_once_more_often() -> None:
     slots = memoryview(bytearray(8 * 32)).cast("d")
     one, other = socket.socketpair()
