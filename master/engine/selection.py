@@ -22,7 +22,7 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
         return PythonEngine, ""
     try:
         from .compiled.engine import CompiledEngine
-    except ImportError as error:
+    except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
         return PythonEngine, _without_numba(error)
     return CompiledEngine, ""
 
@@ -34,10 +34,10 @@ def compile_engine() -> str:
     """
     try:
         from .compiled.cache import compiled
-    except ImportError as error:
+    except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
         return _without_numba(error)
     return compiled()[1] or compiled(timed=True)[1]
 
 
-def _without_numba(error: ImportError) -> str:
+def _without_numba(error: ImportError | OSError) -> str:
     return f"the compiled engine needs numba, which cannot be imported ({error}): engine python"

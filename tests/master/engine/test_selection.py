@@ -28,6 +28,21 @@ def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch):
         assert any("the compiled engine needs numba" in warning for warning in simulation.warnings)
 
 
+def test_a_numba_whose_libraries_find_no_memory_is_as_none(monkeypatch):
+    class NoMemory:
+        def find_spec(self, name, path=None, target=None):
+            if name == "numba":
+                raise OSError("Could not find/load shared object file")
+
+    for name in [n for n in sys.modules if n.startswith("evcosim.master.engine.compiled.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delattr(importlib.import_module("evcosim.master.engine.compiled"), "engine", raising=False)
+    monkeypatch.delitem(sys.modules, "numba", raising=False)
+    monkeypatch.setattr(sys, "meta_path", [NoMemory(), *sys.meta_path])
+    found, notice = engine_class()
+    assert found.name == "python" and "Could not find/load shared object file" in notice
+
+
 def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
     from evcosim.master.engine.compiled import cache
 
