@@ -127,7 +127,10 @@ def _outputs_by_kind(
 def _slot_groups(
     slots: Slots, unit: str, kind: str, variables: list[VariableInfo], feedthrough: int
 ) -> list[SlotGroup]:
-    """Return the groups of one kind, one for each FMI type, with slots that stand side by side."""
+    """Return the groups of one kind, one for each FMI type, with slots that stand side by side.
+
+    The first `feedthrough` variables depend on an input at once; they come first in each group too.
+    """
     made = []
     for types in (("Real",), ("Integer", "Enumeration"), ("Boolean",), ("String",)):
         members = tuple(v for v in variables if v.type in types)
@@ -135,7 +138,8 @@ def _slot_groups(
             continue
         first = slots.take(len(members))
         slots.valid |= {(unit, v.name): first + i for i, v in enumerate(members)}
-        made.append(SlotGroup(kind, types[0], members, first, feedthrough=feedthrough))  # type: ignore[arg-type] # a literal
+        early = sum(v.type in types for v in variables[:feedthrough])
+        made.append(SlotGroup(kind, types[0], members, first, feedthrough=early))  # type: ignore[arg-type] # a literal
     return made
 
 

@@ -58,9 +58,14 @@ def compile_fmu(
 _WIDE = ("Int8", "UInt8", "Int16", "UInt16", "UInt32", "Int64", "UInt64")
 
 
-def mixed_fmu(path: Path, fmi: int, behavior: int = 0) -> Path:
-    """The unit of sources/mixed.c as an FMU at `path`, in FMI 1.0, 2.0 or 3.0."""
+def mixed_fmu(path: Path, fmi: int, behavior: int = 0, feeding_through: bool = False) -> Path:
+    """The unit of sources/mixed.c as an FMU at `path`, in FMI 1.0, 2.0 or 3.0.
+
+    `feeding_through`: its outputs say that they depend on the input u, by index or value reference.
+    """
     description = {1: _mixed_1, 2: _mixed_2, 3: _mixed_3}[fmi]()
+    if feeding_through:
+        description = description.replace('dependencies=""', f'dependencies="{3 - fmi}"')
     flags = (f"-DFMI={fmi}", f"-DBEHAVIOR={behavior}", "-DMODEL=mixed")
     return compile_fmu(path, SOURCES / "mixed.c", description, "mixed", fmi, flags)
 

@@ -50,6 +50,23 @@ def test_a_name_with_brackets_is_that_name_first(record: list[str], names: list[
     assert [v.name for _, v in columns] == names
 
 
+def test_each_group_counts_its_own_variables_that_feed_through() -> None:
+    kinds = ("Boolean", "Real", "Integer", "Real", "String", "Enumeration")
+    outputs = [
+        VariableInfo(f"y{i}", kind, causality="output", depends=("u",) if i % 2 else ())
+        for i, kind in enumerate(kinds)
+    ]
+    variables = {v.name: v for v in [VariableInfo("u", causality="input"), *outputs]}
+    slots, _ = allot({"a": UnitInterface("a.fmu", variables)}, ["*"], set(), "here")
+    assert [(g.type, [v.name for v in g.variables], g.feedthrough) for g in slots.groups["a"]] == [
+        ("Real", ["u"], 0),
+        ("Real", ["y1", "y3"], 2),
+        ("Integer", ["y5", "y2"], 1),
+        ("Boolean", ["y0"], 0),
+        ("String", ["y4"], 0),
+    ]
+
+
 def test_no_two_values_share_a_slot():
     slots, _ = allot(INTERFACES, ["*"], set(), "here")
     taken = [*slots.valid.values(), *slots.latest.values()]

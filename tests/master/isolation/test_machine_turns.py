@@ -11,6 +11,7 @@ from evcosim.cosim.system.system import EngineName
 from evcosim.master.isolation.unit import IsolatedUnit
 from evcosim.master.machine.hands import POSSIBLE
 from evcosim.master.simulation import Simulation, simulate
+from support.c_fmu import mixed_fmu
 from support.pairs import pair
 
 pytestmark = pytest.mark.skipif(
@@ -41,6 +42,24 @@ def test_all_types_arrive_as_in_this_process(tmp_path: Path, fmi: int, algorithm
         assert here.data.tobytes() == apart.data.tobytes()
         assert here.texts == apart.texts
         assert [list(here[name]) for name in here.texts] == [list(apart[name]) for name in here.texts]
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_outputs_of_several_types_that_feed_through_are_as_in_this_process(tmp_path: Path, fmi: int) -> None:
+    """In every row and in the last one, which no step follows."""
+    fmu = mixed_fmu(tmp_path / "mixed.fmu", fmi, feeding_through=True)
+    table = tmp_path / "u.csv"
+    table.write_text("time,u,count_in,switch_in\n0,1,5,1\n0.05,2,7,0\n0.07,3,8,1\n")
+    inputs = {name: str(table) for name in ("u", "count_in", "switch_in")}
+    here, *others = (
+        simulate(fmu, inputs=inputs, stop_time=0.1, step_size=0.01, isolation=isolation, engine=engine)
+        for isolation in ("none", "process")
+        for engine in ("python", "compiled")
+    )
+    assert here["fmu.count"].tolist() == [0, 6, 6, 6, 6, 6, 8, 8, 9, 9, 9]  # after its step
+    assert list(here["fmu.shown"]) == ["", *["some text"] * 10]
+    for other in others:
+        assert here.data.tobytes() == other.data.tobytes()
 
 
 @pytest.mark.parametrize(("fmi", "behavior"), [(2, 2), (2, 11), (2, 12), (2, 13), (3, 3), (3, 4), (1, 13)])
