@@ -14,10 +14,10 @@ def test_the_default_figure_groups_by_what_is_measured() -> None:
     assert spec.shade == "ecu.state"
     assert [(p.unit, [s.name for s in p.signals]) for p in spec.panels] == [
         ("%", ["rider.throttle", "ecu.throttle"]),  # the request repeats the rider's throttle
-        ("km/h", ["ecu.speed_estimate", "vehicle.speed", "ecu.speed_measured"]),
+        ("km/h", ["ecu.speed_estimate", "vehicle.speed", "ecu.speed_measured", "ecu.speed_bound"]),
     ]
     assert spec.panels[1].label == "speed"
-    assert spec.note == "Constant: ecu.speed_bound = 30 km/h, vehicle.road_grade = 0 rad"
+    assert spec.note == "Constant: vehicle.road_grade = 0 rad"
 
 
 def test_inputs_that_never_change_are_said_and_not_drawn() -> None:
