@@ -16,12 +16,10 @@ from support.forked import forked
 
 NUMBERS = [
     "-1",
-    "1",
     "65",
     "1000000000",
     "1e308",
     "5e-324",
-    "1e400",
     "1e999999999",
     "nan",
     "9" * 5000,
