@@ -16,6 +16,7 @@ import pytest
 import evcosim
 from evcosim import BusVariation, ConfigError, IdentificationSpec, RunError, Simulation, Task
 from support.forked import forked
+from support.small_bench import SYSTEM
 
 VALUES: list[Any] = [
     0,
@@ -34,27 +35,6 @@ VALUES: list[Any] = [
     "0.5",
     [1],
 ]
-SYSTEM = """
-name = "bench"
-experiment = { step_size = 0.01, stop_time = 0.03 }
-units = { ecu = { fmu = "BoundController" }, vehicle = { fmu = "Scooter" } }
-buses = { can0 = { dbc = "can/ev.dbc" } }
-[[connect]]
-from = "vehicle.speed"
-to = ["ecu.speed_measured"]
-via = "can0.EMD_Status.EMD_VehicleSpeed"
-[[connect]]
-from = "ecu.throttle"
-to = ["vehicle.throttle"]
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-[budget]
-metric = "above"
-limit = 1.0
-"""
 SHORT: dict[str, Any] = {"engine": "python"}
 
 

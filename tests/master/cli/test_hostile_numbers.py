@@ -13,6 +13,7 @@ import pytest
 from evcosim.master.cli import main
 from evcosim.master.cli.app import command
 from support.forked import forked
+from support.small_bench import SYSTEM
 
 NUMBERS = [
     "",
@@ -24,27 +25,6 @@ NUMBERS = [
     "\N{ARABIC-INDIC DIGIT ONE}\N{ARABIC-INDIC DIGIT TWO}",
     "9" * 5000,
 ]
-SYSTEM = """
-name = "bench"
-experiment = { step_size = 0.01, stop_time = 0.03 }
-units = { ecu = { fmu = "BoundController" }, vehicle = { fmu = "Scooter" } }
-buses = { can0 = { dbc = "can/ev.dbc" } }
-[[connect]]
-from = "vehicle.speed"
-to = ["ecu.speed_measured"]
-via = "can0.EMD_Status.EMD_VehicleSpeed"
-[[connect]]
-from = "ecu.throttle"
-to = ["vehicle.throttle"]
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-[budget]
-metric = "above"
-limit = 1.0
-"""
 BASES = [
     "run s.toml --engine python --no-plot -q -o out --replace",
     "run Battery --engine python --stop-time 0.03 --no-plot -q -o out --replace",
