@@ -14,6 +14,7 @@ import pytest
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.results.results import Results
 from evcosim.master.simulation import Simulation, simulate
+from support.databases import WAY
 from support.equations import equations_fmu
 from support.watch import watch_fmu
 
@@ -225,16 +226,6 @@ from = "asking.y"
 to = ["last.u"]
 via = "can0.Way.Meters"
 """
-DBC = """VERSION ""
-NS_ :
-BS_:
-BU_: A B
-BO_ 16 Way: 2 A
- SG_ Meters : 0|16@1+ (0.5,0) [0|1000] "" B
-BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
-BA_DEF_DEF_ "GenMsgCycleTime" 10;
-BA_ "GenMsgCycleTime" BO_ 16 10;
-"""
 DIRECT = """[[connect]]
 from = "asking.y"
 to = ["last.u"]
@@ -243,7 +234,7 @@ to = ["last.u"]
 
 def test_messages_of_the_last_step_are_those_of_any_step(tmp_path: Path) -> None:
     """A sampled output is sent right after its sender's turn, in which it asks for the end."""
-    (tmp_path / "line.dbc").write_text(DBC)
+    (tmp_path / "line.dbc").write_text(WAY)
     found, frames = [], []
     for engine, isolation in EVERYWHERE:
         path = system(tmp_path, isolation=isolation, more="sampled = true")

@@ -40,3 +40,16 @@ def refusal(path: Path, signal: str | None = None) -> str:
         message = load_dbc(path).require("M", "scooter.toml")
         message.require(signal or "S", "scooter.toml")
     return str(caught.value)
+
+
+WAY = """VERSION ""
+NS_ :
+BS_:
+BU_: A B
+BO_ 16 Way: 2 A
+ SG_ Meters : 0|16@1+ (0.5,0) [0|1000] "" B
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+BA_ "GenMsgCycleTime" BO_ 16 10;
+"""
+"""A database of one message, every 10 ms, with one signal in steps of 0.5."""

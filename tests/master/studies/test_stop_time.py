@@ -12,6 +12,7 @@ from evcosim.cosim.system.metric_spec import MetricSpec
 from evcosim.master.studies.bus_budget import measure
 from evcosim.master.studies.identification import identify
 from support.c_fmu import vehicle_fmu
+from support.databases import WAY
 from support.watch import watch_fmu
 
 LINE = """name = "line"
@@ -31,16 +32,6 @@ from = "a.y"
 to = ["b.u"]
 via = "can0.Way.Meters"
 """
-DBC = """VERSION ""
-NS_ :
-BS_:
-BU_: A B
-BO_ 16 Way: 2 A
- SG_ Meters : 0|16@1+ (0.5,0) [0|1000] "" B
-BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
-BA_DEF_DEF_ "GenMsgCycleTime" 10;
-BA_ "GenMsgCycleTime" BO_ 16 10;
-"""
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
@@ -54,7 +45,7 @@ def test_an_identification_ends_when_it_is_done(tmp_path: Path, fmi: int) -> Non
 @pytest.mark.parametrize("fmi", [1, 2, 3])
 def test_the_runs_of_a_budget_end_at_the_stop_time(tmp_path: Path, fmi: int) -> None:
     watch_fmu(tmp_path / "watch.fmu", fmi)
-    (tmp_path / "line.dbc").write_text(DBC)
+    (tmp_path / "line.dbc").write_text(WAY)
     (tmp_path / "line.toml").write_text(LINE)
     system = tmp_path / "line.toml"
     spec = MetricSpec.model_validate({"name": "seen", "signal": "b.y"})
