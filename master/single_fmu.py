@@ -6,11 +6,12 @@ The FMU's default experiment says the times, unless the options of the run do.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ..cosim.csv_numbers import CsvFile
-from ..cosim.errors import ConfigError, nearest
+from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.interface import UnitInterface
 from ..cosim.plan.steps import steps_in
 from ..cosim.system.run_options import RunOptions
@@ -63,8 +64,8 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     path = fmu_file(target)
     name = target if target in builtin_names() else path.stem
     fmu = read_fmu(path, options.get("strict", False)).using(options.get("interface"))
-    given = options.get("parameters") or {}
-    values = {_known(text, fmu.interface, f"parameter {text}", path): x for text, x in given.items()}
+    values = _by_name(options.get("parameters") or {}, "parameter", fmu.interface, path)
+    inputs = _by_name(options.get("inputs") or {}, "input", fmu.interface, path)
     unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
         "name": _identifier(name),
@@ -73,12 +74,12 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
         "units": {UNIT: unit | {"tolerance": options.get("tolerance")}},
         "record": _recorded(fmu.interface),
     }
-    stimuli = [_stimulus(n, v, fmu.interface, path) for n, v in (options.get("inputs") or {}).items()]
+    stimuli = [_stimulus(text, name, x, fmu.interface, path) for name, (text, x) in inputs.items()]
     left: Any = {name: value for name, value in options.items() if name not in ALONE}
     return (
         System(path, validate(data, SystemFile, str(path))),
         Scenario("", None, validate({"stimulus": stimuli}, ScenarioFile, "inputs")),
-        left | {"parameters": {f"{UNIT}.{name}": value for name, value in values.items()}},
+        left | {"parameters": {f"{UNIT}.{name}": value for name, (_, value) in values.items()}},
     )
 
 
@@ -98,9 +99,31 @@ def _known(text: str, interface: UnitInterface, place: str, path: Path) -> str:
     raise ConfigError(f"{place}: {path} has no variable '{text}'{nearest(text, interface.variables)}")
 
 
-def _stimulus(text: str, value: object, interface: UnitInterface, path: Path) -> dict[str, Any]:
-    """Return the stimulus of an input: a constant, or a column of a table FILE.csv (FILE.csv:COLUMN)."""
-    name = _known(text, interface, f"input {text}", path)
+def _by_name(
+    given: Mapping[str, Any], kind: str, interface: UnitInterface, path: Path
+) -> dict[str, tuple[str, Any]]:
+    """Return by the name of each variable how it was written, and its value.
+
+    Raises ConfigError for a variable that is given under both its names: `gain` and `fmu.gain`.
+    """
+    found: dict[str, tuple[str, Any]] = {}
+    for text, value in given.items():
+        name = _known(text, interface, f"{kind} {text}", path)
+        if name in found:
+            before, earlier = found[name]
+            raise ConfigError(
+                f"{kind} {text}: {short(value)} is for {name}, which is given already: {before} = "
+                f"{short(earlier)}"
+            )
+        found[name] = text, value
+    return found
+
+
+def _stimulus(text: str, name: str, value: object, interface: UnitInterface, path: Path) -> dict[str, Any]:
+    """Return the stimulus of an input: a constant, or a column of a table FILE.csv (FILE.csv:COLUMN).
+
+    `text` is how the input was written.
+    """
     if (causality := interface.variables[name].causality) != "input":
         raise ConfigError(f"input {text}: {path}: {name} is of causality {causality}, not input")
     to = {"to": f"{UNIT}.{name}"}

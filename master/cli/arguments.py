@@ -11,11 +11,13 @@ from ...cosim.interface import Value
 
 
 def parse_settings(options: Sequence[str], of_fmu: bool = False) -> dict[str, Value]:
-    """Return `--set` options as "unit.parameter" to value; the last of a name counts.
+    """Return `--set` options as "unit.parameter" to value.
 
-    Those `of_fmu` by itself have its own names of variables. Raises ConfigError.
+    Those `of_fmu` by itself have its own names of variables. Raises ConfigError, also for a name that is
+    given twice.
     """
-    values = {}
+    values: dict[str, Value] = {}
+    given: dict[str, str] = {}
     for option in options:
         name, equals, text = (part.strip() for part in option.partition("="))
         unit, _, parameter = ("fmu", ".", name) if of_fmu else name.partition(".")
@@ -26,19 +28,23 @@ def parse_settings(options: Sequence[str], of_fmu: bool = False) -> dict[str, Va
                 else "unit.parameter=value, as in vehicle.mass=180"
             )
             raise ConfigError(f"--set {option}: it is written {written}")
+        _note(given, "--set", option, name)
         values[name] = scalar(text)
     return values
 
 
 def parse_inputs(options: Sequence[str]) -> dict[str, Value | Path]:
-    """Return `--input` options as name to value, or to the text of a CSV file. Raises ConfigError."""
+    """Return `--input` options as name to value, or to the text of a CSV file.
+
+    Raises ConfigError, also for an input that is given twice.
+    """
     values: dict[str, Value | Path] = {}
+    given: dict[str, str] = {}
     for option in options:
         name, _, text = (part.strip() for part in option.partition("="))
         if not (name and text):
             raise ConfigError(f"--input {option}: it is written NAME=X, as in u=3.5 or u=table.csv")
-        if name in values:
-            raise ConfigError(f"--input {option}: '{name}' is given already: {values[name]}")
+        _note(given, "--input", option, name)
         values[name] = scalar(text)
     return values
 
@@ -65,16 +71,21 @@ def parse_files(option: str, given: Sequence[str], example: str) -> dict[str, st
     Raises ConfigError, also for a unit that is given twice.
     """
     paths: dict[str, str] = {}
+    noted: dict[str, str] = {}
     for text in given:
         unit, _, path = (part.strip() for part in text.partition("="))
         if not (unit and path):
             raise ConfigError(f"{option} {text}: it is written unit=PATH, as in vehicle={example}")
-        if unit in paths:
-            raise ConfigError(
-                f"{option} {text}: unit '{unit}' is given already: {option} {unit}={paths[unit]}"
-            )
+        _note(noted, option, text, unit, "unit ")
         paths[unit] = path
     return paths
+
+
+def _note(given: dict[str, str], option: str, text: str, name: str, kind: str = "") -> None:
+    """Note what was given for a name. Raises ConfigError with both texts where something was before."""
+    if name in given:
+        raise ConfigError(f"{option} {text}: {kind}'{name}' is given already: {option} {given[name]}")
+    given[name] = text
 
 
 @contextlib.contextmanager

@@ -174,14 +174,12 @@ def _measure(
 ) -> list[Identification]:
     """Identify the target at each working point of the spec, with a bar over all of them."""
     from ..studies.identification import each_working_point, identify
-    from ..studies.identification_target import UNIT, is_fmu
+    from ..studies.identification_target import is_fmu
     from .arguments import as_typed, parse_settings
     from .console import progress_bar
     from .interrupts import Interrupts
 
-    prefix = f"{UNIT}." if is_fmu(target) else ""
-    typed = [prefix + setting for setting in settings]
-    parameters = {name.removeprefix(prefix): value for name, value in parse_settings(typed).items()}
+    parameters = parse_settings(settings, of_fmu=is_fmu(target))
     options = {**options, "parameters": parameters, "step_size": step_size}
     points = each_working_point(spec)
     found = []
@@ -193,7 +191,7 @@ def _measure(
                 show(done + begin + length * share)
                 interrupts.check()
 
-            with as_typed(typed):
+            with as_typed(settings):
                 found.append(identify(target, point, scenario, progress=progress, **options))
     return found
 

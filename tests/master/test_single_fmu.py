@@ -100,6 +100,14 @@ REFUSED = [
     ({"inputs": {"u": "two.csv"}}, r"two.csv has no column 'u': write two.csv:COLUMN; columns: time, a, b"),
     ({"inputs": {"u": "two.csv:c"}}, r"there is no column 'c'"),
     ({"inputs": 3}, "inputs = 3: must be a mapping"),
+    (
+        {"parameters": {"gain": 3.0, "fmu.gain": 4.0}},
+        r"parameter fmu.gain: 4.0 is for gain, which is given already: gain = 3.0",
+    ),
+    (
+        {"inputs": {"fmu.u": "two.csv:a", "u": 2.0}},
+        r"input u: 2.0 is for u, which is given already: fmu.u = 'two.csv:a'",
+    ),
     ({"step_size": 0.0}, "step_size = 0.0: must be a number of seconds above 0"),
     ({"step_size": float("nan")}, "step_size = nan"),
     ({"tolerance": 2.0}, "tolerance = 2.0: must be a number between 0 and 1"),
@@ -166,7 +174,16 @@ def test_the_command(evcosim, tmp_path):
         (["--set", "gain"], "--set gain: it is written parameter=value"),
         (["--input", "u"], "--input u: it is written NAME=X"),
         (["--input", "v=1"], "--input v=1: mixed.fmu has no variable 'v'"),
-        (["--input", "u=1", "--input", "u=2"], "'u' is given already: 1"),
+        (["--input", "u=1", "--input", "u=2"], "--input u=2: 'u' is given already: --input u=1"),
+        (
+            ["--input", "u=1", "--input", "fmu.u=2"],
+            "--input fmu.u=2: 2 is for u, which is given already: u = 1",
+        ),
+        (["--set", "gain=3", "--set", "gain=4"], "--set gain=4: 'gain' is given already: --set gain=3"),
+        (
+            ["--set", "fmu.gain=3", "--set", "gain=4"],
+            "--set gain=4: 4 is for gain, which is given already: fmu.gain = 3",
+        ),
         (["--input", "u=text"], "--input u=text: "),
         (["--scenario", "fig8"], "has no scenarios"),
     ]:

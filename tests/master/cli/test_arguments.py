@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.master.cli.arguments import parse_files, parse_settings, scalar, seconds
+from evcosim.master.cli.arguments import parse_files, parse_inputs, parse_settings, scalar, seconds
 
 
 @pytest.mark.parametrize(
@@ -32,8 +32,20 @@ def test_scalars(text, value):
     assert type(scalar(text)) is type(value)
 
 
-def test_last_setting_counts():
-    assert parse_settings(["a.b=1", "a.c=x=y", "a.b=2"]) == {"a.b": 2, "a.c": "x=y"}
+def test_settings_by_name():
+    assert parse_settings(["a.b=1", "a.c=x=y"]) == {"a.b": 1, "a.c": "x=y"}
+    assert parse_settings(["b=1", "a.b=2"], of_fmu=True) == {"b": 1, "a.b": 2}
+
+
+@pytest.mark.parametrize("of_fmu", [False, True])
+def test_a_parameter_is_set_once(of_fmu):
+    with pytest.raises(ConfigError, match=r"^--set a\.b = 2: 'a\.b' is given already: --set a\.b=1$"):
+        parse_settings(["a.b=1", "a.c=3", "a.b = 2"], of_fmu)
+
+
+def test_an_input_is_given_once():
+    with pytest.raises(ConfigError, match=r"^--input u=2: 'u' is given already: --input u=t\.csv$"):
+        parse_inputs(["u=t.csv", "u=2"])
 
 
 @pytest.mark.parametrize("option", ["vehicle.mass", "mass=180", "vehicle.=180", ".mass=180", "vehicle.mass="])
