@@ -1,4 +1,4 @@
-"""Empty figures: panels in rows and columns under a title, always equally wide.
+"""Empty figures: panels in rows and columns under a title, always equally wide; and empty drawings.
 
 matplotlib is used through its objects alone: no display, no global state.
 """
@@ -15,6 +15,7 @@ from ..visible import visible
 from .style import WIDTH, style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -35,6 +36,24 @@ def canvas(
     """
     with style():
         yield grid(rows, columns, height * rows + (0.5 if title else 0.2), title, share_x, ratios)
+
+
+@contextlib.contextmanager
+def drawing(left: float, right: float, bottom: float, top: float) -> Iterator[tuple[Figure, Axes]]:
+    """Give an empty drawing without axes, whose coordinates are inches, in the style of the figures.
+
+    Gives the figure, as large as the edges say, and what to draw on inside the `with` block.
+    """
+    from matplotlib.figure import Figure
+
+    with style():
+        figure = Figure(figsize=(right - left, top - bottom))
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_axis_off()
+        axes.set_xlim(left, right)
+        axes.set_ylim(bottom, top)
+        axes.autoscale(False)
+        yield figure, axes
 
 
 def grid(
