@@ -54,6 +54,11 @@ class TurnTimes:
         return FmuSteps(first, advance, divisor, count, size, _landing(begin, size, stop), stop)
 
 
+def cut_short(clock: Clock, every: int) -> bool:
+    """Return True if the stop time, of which units are told, ends the last turn of one so often early."""
+    return clock.told and clock.steps % every != 0
+
+
 def _landing(begin: float, size: float, stop: float) -> float:
     """Return the size [s], `size` if it will do, of a step from `begin` [s] that ends at `stop` [s]."""
     if begin + size == stop:

@@ -10,7 +10,8 @@ Time is a count k, of which `clock` makes the time t_k. The stages of step k, un
    communication point on at which they are valid. A message with a sampled output is sent right after its
    sender's turn;
 4. row k is recorded: the inputs of this step, sampled outputs after it, the others valid at t_k;
-5. the outputs after the step that are not sampled become the valid ones.
+5. the outputs after the step that are not sampled become the valid ones: at the end of the unit's period,
+   and at the stop time if that cuts its last one short.
 
 On a bus with a delay the values sent that long ago arrive at the place where the message is sent.
 Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
@@ -23,6 +24,7 @@ import dataclasses
 from typing import Literal
 
 from ...cosim.plan.plan import MessagePlan, Plan
+from ...cosim.plan.turns import cut_short
 
 Kind = Literal["drive", "deliver", "send", "take", "begin", "end", "record", "note", "publish"]
 
@@ -69,8 +71,8 @@ def schedule(plan: Plan) -> tuple[Action, ...]:
     steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
     # 4. row k
     record = [Action("record"), *([Action("note")] if plan.text_columns else [])]
-    # 5. the outputs valid at t_k+1; those of a unit with a longer period at the end of its period
-    publish = [Action("publish", i, plan.units[i].every, plan.units[i].every - 1) for i in units]
+    # 5. the outputs valid at t_k+1; those of a unit with a longer period at the end of its turn
+    publish = [action for i in units for action in _publish(plan, i)]
     return (*drives, *steps, *record, *publish)
 
 
@@ -96,6 +98,15 @@ def _jacobi(plan: Plan) -> list[Action]:
 
 def _of_unit(plan: Plan, kind: Kind, index: int) -> Action:
     return Action(kind, index, plan.units[index].every)
+
+
+def _publish(plan: Plan, index: int) -> list[Action]:
+    every, steps = plan.units[index].every, plan.clock.steps
+    actions = [Action("publish", index, every, every - 1)]
+    if cut_short(plan.clock, every):
+        # at the last step, and only there: a run whose units are told the stop time does not go beyond it
+        actions.append(Action("publish", index, steps, steps - 1))
+    return actions
 
 
 def _messages(plan: Plan, after: int | None) -> list[Action]:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evcosim.cosim.clock import Clock
-from evcosim.cosim.plan.turns import TurnTimes
+from evcosim.cosim.plan.turns import TurnTimes, cut_short
 from evcosim.cosim.plan.unit_plan import FmuSteps
 
 STEP = st.sampled_from([0.001, 0.0025, 0.005, 0.01, 0.02, 0.025, 0.1, 1 / 60, 1 / 3])
@@ -73,6 +73,17 @@ def test_a_period_that_would_pass_the_stop_time_ends_there_if_it_was_told() -> N
     assert TurnTimes(untold, 1, 1).steps(7).each() == ((0.07, 0.01),)
     assert told.told_stop == 0.03
     assert untold.told_stop is None
+
+
+@given(st.integers(1, 60), st.integers(1, 9))
+def test_a_stop_time_cuts_a_turn_short_if_the_last_one_is_not_as_long_as_the_others(
+    count: int, every: int
+) -> None:
+    times = TurnTimes(Clock.counted(0.7, 0.01, count), every, 1)
+    begin, size = times.steps(times.last_k).each()[0]
+    assert cut_short(times.clock, every) == (size < times.size - 1e-9)
+    assert begin + size == times.clock.stop
+    assert not cut_short(open_ended(0.7, 0.01, count), every)
 
 
 def test_equal_steps() -> None:

@@ -14,10 +14,11 @@ def message(after=None, every=1, first=0, delay=0, width=2):
     return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals)
 
 
-def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0):
+def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0, steps=100, told=True):
     units = [SimpleNamespace(every=every) for every in periods]
     return SimpleNamespace(
         algorithm=algorithm,
+        clock=SimpleNamespace(steps=steps, told=told),
         units=units,
         messages=messages,
         drives=[None] * drives,
@@ -55,6 +56,18 @@ def test_a_unit_with_a_longer_period_publishes_at_the_end_of_it():
     assert every["take"] == every["begin"] == every["end"] == (5, 0)
     assert every["publish"] == (5, 4)
     assert every["record"] == (1, 0)
+
+
+@pytest.mark.parametrize(
+    ("every", "steps", "at"), [(5, 12, 11), (5, 3, 2), (2, 1, 0), (5, 10, None), (1, 7, None)]
+)
+def test_a_unit_of_which_the_stop_time_cuts_the_last_period_publishes_there_too(every, steps, at):
+    found = [a for a in schedule(plan(periods=(every,), steps=steps)) if a.kind == "publish"]
+    due = {k for a in found for k in range(steps) if a.due(k)}
+    assert due == set(range(every - 1, steps, every)) | ({at} - {None})
+    # a run whose units were told no stop time may go beyond it
+    (only,) = (a for a in schedule(plan(periods=(every,), steps=steps, told=False)) if a.kind == "publish")
+    assert (only.every, only.first) == (every, every - 1)
 
 
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
