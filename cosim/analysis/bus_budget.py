@@ -1,8 +1,8 @@
 """The bus budget of a system: its own metric over delay, resolution and cycle of its buses, each by itself.
 
 A point is one run with a variation of all buses (`bus_settings.BusVariation`); the nominal point, the system
-as its file says, is one of each series. A point is broken when the metric is beyond the limit, or when there
-is no metric: the run failed, or diverged to what is no number.
+as its file says, is one of each series. A point is broken when the metric is beyond the limit or has no
+value, and failed when its run was: an FMU refused, or diverged to what is no number.
 """
 
 from __future__ import annotations
@@ -20,12 +20,16 @@ from ..writing import markdown_table
 
 @dataclasses.dataclass(frozen=True)
 class Point:
-    """One run: the change of the buses, in words and as it is; the metric, or NaN and the `reason` why."""
+    """One run: the change of the buses, in words and as it is; the metric, or NaN and the `reason` why.
+
+    `failed`: it is the run that has failed.
+    """
 
     label: str
     bus: BusVariation
     value: float = math.nan
     reason: str = ""
+    failed: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,7 +86,7 @@ class Budget:
     series: tuple[Series, ...]
 
     def broken(self, point: Point) -> bool:
-        """Return whether the metric is beyond the limit, or there is none."""
+        """Return whether the metric is beyond the limit, or there is none: a failed point is broken too."""
         return not (point.value <= self.limit if self.kind == "max" else point.value >= self.limit)
 
     def first_broken(self, series: Series) -> Point | None:
@@ -90,16 +94,16 @@ class Budget:
         return next((p for p in series.points[series.nominal :] if self.broken(p)), None)
 
     def summary(self, series: Series) -> str:
-        """Return in a few words at which point a series breaks."""
+        """Return in a few words at which point a series breaks, or its run fails."""
         first, nominal = self.first_broken(series), series.points[series.nominal]
         if first is nominal:
-            said = "broken as it is"
+            said = f"{_state(first)} as it is"
         elif first is not None:
-            said = f"breaks at {first.label}"
+            said = f"{'fails' if first.failed else 'breaks'} at {first.label}"
         else:
             said = f"holds up to {series.points[-1].label}"
-        better = [p.label for p in series.points[: series.nominal] if self.broken(p) and first is not nominal]
-        return said + "".join(f"; broken at {label} too" for label in better)
+        better = [p for p in series.points[: series.nominal] if self.broken(p) and first is not nominal]
+        return said + "".join(f"; {_state(point)} at {point.label} too" for point in better)
 
     @property
     def rule(self) -> str:
@@ -112,11 +116,11 @@ class Budget:
         return "-" if math.isnan(point.value) else Metric("", point.value, self.unit).text
 
     def verdict(self, point: Point) -> str:
-        """Return "holds" or "broken"; for a failed run with the first line of its reason."""
+        """Return "holds", "broken" or "failed", the last one with the first line of the reason."""
         if not self.broken(point):
             return "holds"
         reason = point.reason.strip().splitlines()
-        return f"broken: {reason[0]}" if reason else "broken"
+        return f"{_state(point)}: {reason[0]}" if reason else _state(point)
 
     def rows(self) -> list[tuple[str, str, str, str]]:
         """Return series, point (* the nominal one), value and verdict of every point."""
@@ -130,6 +134,10 @@ class Budget:
             for each in self.series
             for i, point in enumerate(each.points)
         ]
+
+
+def _state(point: Point) -> str:
+    return "failed" if point.failed else "broken"
 
 
 def as_data(budget: Budget) -> dict[str, Any]:
@@ -159,6 +167,7 @@ def _point(budget: Budget, point: Point) -> dict[str, Any]:
         "bus": dataclasses.asdict(point.bus),
         "value": point.value if math.isfinite(point.value) else None,
         "broken": budget.broken(point),
+        "failed": point.failed,
         "reason": point.reason,
     }
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_HOLDS, _BROKEN, _SHADE = COLORS[0], COLORS[1], "#FBE3C0"
+_HOLDS, _BROKEN, _FAILED, _SHADE = COLORS[0], COLORS[1], COLORS[3], "#FBE3C0"
 _ROOM = 5.0  # what lies farther from the limit than so many times the nominal point is off the scale
 
 
@@ -25,7 +25,8 @@ def draw_budget(budget: Budget) -> Figure:
     """Draw a panel for each series, over one scale: the limit dashed, the side beyond it shaded and hatched.
 
     A point that holds is a disk, a broken one a cross; one off the scale or without a value is a triangle at
-    the edge, with its value or "no value". The nominal point has a ring.
+    the edge, with its value or "no value"; one whose run failed is a black square there, "failed". The
+    nominal point has a ring.
     """
     name = " ".join(part for part in (budget.system, budget.scenario) if part)
     with canvas(columns=len(budget.series), height=4.2, title=f"Bus budget of {name}") as (figure, axes):
@@ -70,14 +71,14 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
     panel.plot([i for i, _ in shown], [p.value for _, p in shown], color="#7F7F7F", linewidth=1.0, zorder=2)
     for i, point in enumerate(series.points):
         y, marker = _place(point, budget, low, high)
-        color = _BROKEN if budget.broken(point) else _HOLDS
+        color = _FAILED if point.failed else _BROKEN if budget.broken(point) else _HOLDS
         panel.plot([i], [y], marker=marker, color=color, markersize=8.0, linestyle="none", zorder=3)
         if i == series.nominal:
             panel.plot(
                 [i], [y], marker="o", markersize=14.0, linestyle="none", markerfacecolor="none",
                 markeredgecolor=COLORS[3], zorder=3, label="as it is",
             )  # fmt: skip # where, then how
-        text = "no value" if math.isnan(point.value) else f"{point.value:.4g}".replace("-", "\N{MINUS SIGN}")
+        text = _text(point)
         # not over the edge, and not over the line of the limit
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)
         panel.annotate(
@@ -93,7 +94,14 @@ def _place(point: Point, budget: Budget, low: float, high: float) -> tuple[float
         return point.value, "X" if budget.broken(point) else "o"
     up = budget.kind == "max" if math.isnan(point.value) else point.value > high
     edge = 0.04 * (high - low)
-    return (high - edge, "^") if up else (low + edge, "v")
+    y = high - edge if up else low + edge
+    return y, "s" if point.failed else "^" if up else "v"
+
+
+def _text(point: Point) -> str:
+    if point.failed:
+        return "failed"
+    return "no value" if math.isnan(point.value) else f"{point.value:.4g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _label(panel: Axes, budget: Budget, series: Series) -> None:

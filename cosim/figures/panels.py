@@ -33,8 +33,14 @@ def draw_panel(axes: Axes, results: Results, panel: PanelSpec, time_axis: TimeAx
         fit_value_axis(axes)
     else:
         axes.set_ylim(*panel.limits)
-    label_value_axis(axes, panel.label, panel.unit)
+    label_value_axis(axes, panel.label, "" if _counts(results, panel) else panel.unit)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+
+
+def _counts(results: Results, panel: PanelSpec) -> bool:
+    """Return whether a panel shows numbers of things, whose unit 1 nobody writes, and no ratio."""
+    kinds = {results.variable(signal.name).type for signal in panel.signals}
+    return panel.unit == "1" and not kinds & {"Real", "Float32", "Float64"}
 
 
 def _unnamed_dashes(panel: PanelSpec) -> Iterator[Any]:

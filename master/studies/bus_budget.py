@@ -6,7 +6,6 @@ The record `Budget` and its arithmetic stand in `cosim.analysis.bus_budget`, its
 from __future__ import annotations
 
 import dataclasses
-import math
 from pathlib import Path
 from typing import Unpack
 
@@ -78,9 +77,9 @@ def measure(
 
 
 def _judged(point: Point, outcome: Outcome[Metric]) -> Point:
-    """Return the point with the value of its run, NaN and the reason if it failed."""
+    """Return the point with the value of its run, or marked as failed with the reason."""
     if outcome.failure is not None:
-        return dataclasses.replace(point, value=math.nan, reason=outcome.failure.reason)
+        return dataclasses.replace(point, reason=outcome.failure.reason, failed=True)
     metric = outcome.result()
     return dataclasses.replace(point, value=metric.value, reason=metric.reason)
 

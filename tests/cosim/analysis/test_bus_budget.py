@@ -47,6 +47,23 @@ def test_where_it_breaks(values, kind, broken, summary):
     assert found.summary(only) == summary
 
 
+def test_a_failed_run_is_said_to_have_failed():
+    values = [math.nan, 1.1, 1.2, math.nan, 1e9]
+    found = judged(values, failed=(0, 3))
+    (only,) = found.series
+    assert found.summary(only) == "fails at DBC x 4; failed at ideal too"
+    assert [row[3] for row in found.rows()] == [
+        "failed: it fell",
+        "holds",
+        "holds",
+        "failed: it fell",
+        "broken",
+    ]
+    assert [p["failed"] for p in as_data(found)["series"][0]["points"]] == [True, False, False, True, False]
+    nominal = judged([1.0, math.nan, 1.2, 1.3, 1.4], failed=(1,))
+    assert nominal.summary(nominal.series[0]) == "failed as it is"
+
+
 def test_texts():
     found = judged([1.0, 1.1, 1.2, math.nan, 1e9])
     assert found.rule == "error: at most 1.5 m"

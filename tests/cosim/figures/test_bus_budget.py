@@ -45,3 +45,12 @@ def test_a_broken_point_is_a_cross_and_one_without_a_value_is_at_the_edge():
     assert all(low < points[i].get_ydata()[0] < high for i in range(5))
     texts = {text.get_text() for text in axes.texts}
     assert {"1", "1.1", "1.6", "no value", "1e+09"} == texts
+
+
+def test_a_failed_run_is_marked_and_named():
+    axes = draw_budget(judged([1.0, 1.1, 1.6, math.nan, math.nan], failed=(4,))).axes[0]
+    markers = {
+        line.get_xdata()[0]: line.get_marker() for line in axes.get_lines() if line.get_markersize() == 8.0
+    }
+    assert (markers[3], markers[4]) == ("^", "s")
+    assert [text.get_text() for text in axes.texts][3:] == ["no value", "failed"]

@@ -37,3 +37,12 @@ def test_enumerations_beside_the_shading_one_and_booleans_have_a_panel_with_thei
     assert ticks[:2] == [["off", "on"], ["false", "true"]]
     alone = Results(results.time, data[:, :1], variables[:1])
     assert [t.get_text() for t in draw(alone).axes[0].get_yticklabels()] == [name for _, name in STATES]
+
+
+def test_counts_have_no_unit_at_their_axis_and_ratios_have() -> None:
+    kinds = [ResultVariable("a.count", "1", type="Integer"), ResultVariable("a.slip", "1")]
+    results = Results([0.0, 1.0], np.zeros((2, 2)), kinds)
+    panels = [{"label": v.name, "unit": "1", "signals": [v.name]} for v in kinds]
+    panels.append({"label": "both", "unit": "1", "signals": [v.name for v in kinds]})
+    axes = draw(results, FigureSpec.model_validate({"panels": panels})).axes
+    assert [each.get_ylabel() for each in axes] == ["a.count", "a.slip [1]", "both [1]"]

@@ -96,18 +96,19 @@ def test_points_are_what_simulate_gives(line, measured):
     assert delays == [nominal - d for d in range(4)]  # a meter for each step
     assert [found.summary(each) for each in found.series] == [
         "breaks at +2 steps (20 ms)",
-        "breaks at DBC x 8",
-        "breaks at x 4",
+        "fails at DBC x 8",
+        "fails at x 4",
     ]
 
 
-def test_a_failed_run_and_a_dead_process_are_broken_points(measured):
+def test_a_failed_run_and_a_dead_process_are_failed_points(measured):
     found, told = measured
     failed, dead = value(found, "x 4"), value(found, "x 8")
     assert "a jump of 4 m" in failed.reason
     assert "t = 0.04 s" in failed.reason
     assert dead.reason == "its process died: exit code 7"
     assert math.isnan(failed.value) and math.isnan(dead.value)
+    assert failed.failed and dead.failed
     assert "a jump of 4 m" in value(found, "DBC x 8").reason
     assert [(done, total) for done, total, _ in told] == [
         (i, 11) for i in range(1, 12)
@@ -166,8 +167,8 @@ def test_command(evcosim, line, measured, tmp_path):
     for text in (
         "line, arrived: at least 97.5 m (* as it is)",
         "bus delay          +0 steps *",
-        "broken: its process died: exit code 7",
-        "message cycle      breaks at x 4",
+        "failed: its process died: exit code 7",
+        "message cycle      fails at x 4",
         "in out: budget.md, budget.json, budget.png, budget.svg",
     ):
         assert text in answer.out, answer.out
