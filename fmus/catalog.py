@@ -37,6 +37,7 @@ CATALOG = {
     "ElectronicDifferential": Entry("electronic_differential", Experiment(stop_time=10.0)),
     "WheelSpeedController": Entry("wheel_speed_controller", Experiment(stop_time=10.0)),
     "TwoWheelerBraking": Entry("two_wheeler_braking", Experiment(stop_time=5.0)),
+    "DetailedTwoWheeler": Entry("detailed_two_wheeler", Experiment(stop_time=5.0)),
     "SlipController": Entry("slip_controller", Experiment(stop_time=5.0)),
     "WheelSpeedEstimator": Entry("wheel_speed_estimator", Experiment(stop_time=5.0)),
     "BrakeActuator": Entry("brake_actuator", Experiment(stop_time=5.0)),

@@ -84,6 +84,48 @@ def test_estimated_speed_locks_both_wheels(variant, road):
     assert results["controller.believed_speed"][first + 1] == 0.0
 
 
+# -- the detailed plant ------------------------------------------------------------------------------------
+
+
+def detailed(strategy, **vehicle):
+    """Results with springs, elastic tires and relaxation in the place of the plain vehicle."""
+    parameters = {f"vehicle.{name}": value for name, value in vehicle.items()}
+    return simulate(
+        "braking", strategy, fmus={"vehicle": "DetailedTwoWheeler"}, parameters=parameters, stop_time=5.0
+    )
+
+
+def test_table_i_with_the_detailed_plant():
+    """The same controller; the height of the center of mass is calibrated for (c) and (d)."""
+    a, c, d = (
+        detailed(s)["vehicle.stopping_distance"][-1]
+        for s in ("known_speed", "front_only", "front_compensated")
+    )
+    assert a == pytest.approx(33.34, abs=0.7)
+    assert c == pytest.approx(51.32, abs=0.3)
+    assert d == pytest.approx(46.4, abs=0.5)
+
+
+def test_both_wheels_of_the_detailed_plant_lock_at_estimated_speed():
+    results = detailed("estimated_speed")
+    v = results["vehicle.speed"]
+    locked = (results["vehicle.front_slip"] > 0.99) & (results["vehicle.rear_slip"] > 0.99)
+    first = int(np.argmax(locked))
+    assert 0.0 < results.time[first] <= 1.0
+    assert v[first] > 15.0
+    assert results["vehicle.front_slip"][first:][v[first:] > 0.0].min() > 0.99
+    landing = ~locked[first:] & (v[first:] > 0.0)  # of the rear wheel from its hop: it turns for an instant
+    assert landing.sum() <= 5
+
+
+def test_relaxation_hardly_moves_a_stop():
+    """A length of 0.1 to 0.3 m changes the distance by less than 0.15 m."""
+    short, long = (
+        detailed("front_only", relaxation_length=x)["vehicle.stopping_distance"][-1] for x in (0.1, 0.3)
+    )
+    assert 0.0 < abs(long - short) < 0.15
+
+
 # -- delay -------------------------------------------------------------------------------------------------
 
 
