@@ -273,7 +273,8 @@ class Simulation:
         kept = self._kept.notice if self._kept is not None else ""
         notices = [notice for notice in (self._notice, self._engine.notice, kept) if notice]
         beyond = implausible(self._extremes.of(self._engine.recorded()), self.plan)
-        return [*notices, *defects, *self.plan.warnings, *self._notices, *from_units, *beyond]
+        planned = (*self.plan.warnings, *self.plan.unreached)
+        return [*notices, *defects, *planned, *self._notices, *from_units, *beyond]
 
     def _unit_warnings(self) -> dict[str, tuple[int, dict[str, int]]]:
         now = {name: (unit.warnings, dict(unit.warned)) for name, unit in self._units.items()}

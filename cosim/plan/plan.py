@@ -90,7 +90,8 @@ class Plan:
     `events` have the step at which each happens, in order. `inputs` are by "unit.variable"; column j of the
     results shows the slot `column_slots[j]`, and of the texts the slot `text_slots[j]`. `texts` has the texts
     whose numbers stand in slots. `initial` are the values of slots, in the inputs' own units,
-    before anything was computed or received.
+    before anything was computed or received. `unreached` are sentences on what the stop time leaves no time
+    for.
     """
 
     system: str
@@ -113,6 +114,7 @@ class Plan:
     text_columns: tuple[ResultVariable, ...] = ()
     text_slots: tuple[int, ...] = ()
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
+    unreached: tuple[str, ...] = ()
 
     @property
     def steps(self) -> int:
@@ -121,7 +123,7 @@ class Plan:
 
     def open_ended(self) -> Plan:
         """Return the plan of a run that may be stepped beyond the stop time, which units are not told."""
-        return dataclasses.replace(self, clock=dataclasses.replace(self.clock, told=False))
+        return dataclasses.replace(self, clock=dataclasses.replace(self.clock, told=False), unreached=())
 
     @functools.cached_property
     def text_names(self) -> dict[str, int]:

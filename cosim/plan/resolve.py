@@ -30,6 +30,7 @@ from .slots import Slots, allot
 from .steps import steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
+from .unreached import after_stop, before_start
 
 _UNIT_IN_NAME = re.compile(r".*[\[(]([^][()]+)[\])]")
 
@@ -108,7 +109,8 @@ def resolve(
         column_slots=slots.shown(columns),
         initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
-        warnings=tuple(network.warnings),
+        warnings=(*network.warnings, *before_start(scenario, drives, clock)),
+        unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, clock)),
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),
         texts=texts,

@@ -141,6 +141,21 @@ class _Table:
         return self.values[np.maximum(np.searchsorted(self.times, t, side="right") - 1, 0)]
 
 
+def moves_between(entry: StimulusEntry, signal: TimeFunction) -> tuple[float, float]:
+    """Return the times [s] from which on and until which the signal of an entry can change.
+
+    A constant has no such times: they are infinite, as those without a begin or an end.
+    """
+    if entry.sine is not None:
+        return entry.sine.delay, math.inf
+    if entry.ramp is not None:
+        return entry.ramp.delay, math.inf
+    if isinstance(signal, _Table) and entry.constant is None:
+        end = float(signal.times[-1]) if len(signal.times) > 1 else math.inf  # one row is a constant
+        return float(signal.times[0]), end
+    return -math.inf, math.inf
+
+
 def initial_value(signal: TimeFunction, start_time: float) -> float:
     """Return the value of a stimulus for the initialization, at the start time [s].
 

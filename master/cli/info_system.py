@@ -42,7 +42,7 @@ def described(name: str) -> dict[str, Any]:
         "messages": [_message(m, plan) for m in plan.messages],
         "default_scenario": system.file.scenario,
         "scenarios": scenarios,
-        "warnings": list(plan.warnings),
+        "warnings": [*plan.warnings, *plan.unreached],
         "outside": list(prepared.outside),
     }  # fmt: skip # one line for each key
 

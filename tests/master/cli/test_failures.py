@@ -272,7 +272,7 @@ def test_reader_that_goes_away_is_no_error(process):
 @pytest.mark.parametrize(
     ("arguments", "begins", "complains"),
     [
-        ("run scooter --stop-time 0.1 --no-plot -q", "", ""),
+        ("run scooter --stop-time 1.1 --no-plot -q", "", ""),
         ("run scooter --stop-time 0.1 --no-plot --isolation process", "run ", ""),
         ("list", "System ", ""),
         ("run scoter", "", "evcosim: unknown system"),

@@ -96,11 +96,11 @@ def test_a_default_folder_is_named_by_what_has_a_name():
 
 def test_another_run_in_the_folder_stays(evcosim, tmp_path):
     """The suffix says what was set, a number comes where that is taken; the same run replaces its own."""
-    short = ("run", "scooter", "--no-plot", "--stop-time", "0.1")
+    short = ("run", "scooter", "--no-plot", "--stop-time", "1.1")
     assert evcosim(*short, "-o", "out").code == 0
     first = (tmp_path / "out" / "results.csv").read_bytes()
     answer = evcosim(*short, "-o", "out", "--set", "vehicle.mass=180")
-    named = "out-vehicle.mass=180-stop_time=0.1"
+    named = "out-vehicle.mass=180-stop_time=1.1"
     said = " ".join(answer.out.split())  # it is wrapped
     assert f"out has results of other files, FMUs or settings; this run's are in {named}" in said
     assert f"in {named}: results.csv, run.json" in answer.out

@@ -42,7 +42,7 @@ def test_run_as_json(evcosim):
 
 
 def test_run_quietly(evcosim):
-    answer = evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "--quiet")
+    answer = evcosim("run", "scooter", "--stop-time", "1.1", "--no-plot", "--quiet")
     assert (answer.code, answer.out, answer.err) == (0, "", "")
 
 
@@ -125,3 +125,21 @@ def test_texts_are_set_shown_compared_and_not_drawn(evcosim, tmp_path):
     assert only.code == 0 and "no figure: the run records no numbers" in only.out
     assert evcosim("plot", "first").code == 0
     refused(evcosim("plot", "only"), "the results have no variable to draw: texts are not drawn")
+
+
+def test_an_event_that_never_acts_is_told_and_changes_nothing(evcosim, tmp_path):
+    event = '[[event]]\ntime = {}\naction = "override"\nvariable = "vehicle.throttle"\nvalue = 90.0\n'
+    rows = {}
+    for name, time in (("last", 0.19), ("late", 0.2)):
+        (tmp_path / f"{name}.toml").write_text(event.format(time), encoding="utf-8")
+        options = ("--scenario", f"{name}.toml", "--stop-time", "0.2", "--no-plot", "-o", name)
+        answer = evcosim("run", "scooter", *options)
+        manifest = json.loads((tmp_path / name / "run.json").read_text(encoding="utf-8"))
+        said = [text for text in manifest["warnings"] if "event 1" in text]
+        assert all(text in " ".join(answer.out.split()) for text in said)
+        assert (len(said), answer.code) == (name == "late", 0)
+        rows[name] = Results.read(tmp_path / name)["vehicle.throttle"]
+    assert said[0].startswith(
+        "late.toml: event 1, override of vehicle.throttle at t = 0.2 s, never acts: the "
+    )
+    assert (90.0 in rows["last"], 90.0 in rows["late"]) == (True, False)

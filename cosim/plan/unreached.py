@@ -1,0 +1,116 @@
+"""Sentences on what stands outside the time of a run: events, stimuli and messages.
+
+At the stop time no unit steps any more, so that what happens there has no effect either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ..clock import Clock, point
+from ..system.scenario import Event, Scenario, StimulusEntry
+from ..system.stimuli import moves_between
+from .plan import Drive, InputPlan, MessagePlan
+
+_MOST = 3  # events that are told one by one
+
+
+def before_start(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
+    """Return a sentence for each event before the start time, and for each table that ends there.
+
+    `drives` are those of the scenario's stimuli, in their order.
+    """
+    start = f"the start time {_seconds(clock.start)}"
+    said = [
+        f"{place} is before {start}, at which it acts"
+        for place, event in _events(scenario)
+        if clock.step_at(event.time) < 0
+    ]
+    return _first(said) + [
+        f"{place} ends at {_seconds(end)}, before {start}: its last value holds throughout"
+        for place, (_, end) in _stimuli(scenario, drives)
+        if end < clock.start
+    ]
+
+
+def after_stop(
+    scenario: Scenario,
+    drives: Sequence[Drive],
+    messages: Sequence[MessagePlan],
+    inputs: Mapping[str, InputPlan],
+    every: Mapping[str, int],
+    clock: Clock,
+) -> list[str]:
+    """Return a sentence for each event, stimulus and message that comes too late for any effect.
+
+    `drives` are those of the scenario's stimuli, in their order; `every` are the units' periods in
+    communication steps: one takes its inputs at the steps that are multiples of its own.
+    """
+    stop = f"the stop time {_seconds(clock.stop)}"
+    events = []
+    for place, event in _events(scenario):
+        unit = event.variable.partition(".")[0]
+        if (turn := _turn(clock.step_at(event.time), every[unit])) >= clock.steps:
+            at = point(turn, clock.start, clock.step)
+            late = "" if every[unit] == 1 else f"{unit} has its next turn at {_seconds(at)}, and "
+            events.append(f"{place} never acts: {late}{stop} comes before it has an effect")
+    return [
+        *_first(events),
+        *(
+            f"{place} begins at {_seconds(begin)}, not before {stop}: it stays at its first value"
+            for place, (begin, _) in _stimuli(scenario, drives)
+            if begin >= clock.stop
+        ),
+        *(_message(each, inputs, clock, stop) for each in messages if each.first + each.delay >= clock.steps),
+    ]
+
+
+def _turn(step: int, every: int) -> int:
+    """Return the first step from `step` on at which a unit has its turn."""
+    return -(-max(step, 0) // every) * every
+
+
+def _message(message: MessagePlan, inputs: Mapping[str, InputPlan], clock: Clock, stop: str) -> str:
+    """Return the sentence on a message that never arrives."""
+    ends = {mailbox for _, mailbox in message.arrivals} or {m for r in message.routes for m, _ in r.sinks}
+    receivers = [name for name, plan in inputs.items() if plan.mailbox in ends]
+    at = _seconds(point(message.first + message.delay, clock.start, clock.step))
+    keep = "keeps its first value" if len(receivers) == 1 else "keep their first values"
+    return (
+        f"{message.bus}.{message.message.name} first arrives at {at}, not before {stop}: "
+        f"{', '.join(receivers)} {keep}"
+    )
+
+
+def _events(scenario: Scenario) -> list[tuple[str, Event]]:
+    """Return the events, each with its place and what it does."""
+    start = f"{scenario.path}: " if scenario.path else ""
+    return [
+        (f"{start}event {n}, {e.action} of {e.variable} at t = {_seconds(e.time)},", e)
+        for n, e in enumerate(scenario.file.events, 1)
+    ]
+
+
+def _stimuli(scenario: Scenario, drives: Sequence[Drive]) -> list[tuple[str, tuple[float, float]]]:
+    """Return for each stimulus its place, and the times [s] between which it can change."""
+    start = f"{scenario.path}: " if scenario.path else ""
+    return [
+        (f"{start}stimulus {n}, the {_kind(entry)} of {entry.to},", moves_between(entry, drive.signal))
+        for n, (entry, drive) in enumerate(zip(scenario.file.stimuli, drives, strict=True), 1)
+    ]
+
+
+def _kind(entry: StimulusEntry) -> str:
+    return next(
+        kind for kind in ("constant", "sine", "ramp", "csv", "table") if getattr(entry, kind) is not None
+    )
+
+
+def _first(said: list[str]) -> list[str]:
+    """Return the first sentences, and how many more there are."""
+    left = len(said) - _MOST
+    return [*said[:_MOST], f"... and {left} more events of this kind"] if left > 0 else said
+
+
+def _seconds(time: float) -> str:
+    return f"{time:.10g} s"
