@@ -14,7 +14,7 @@ import csv
 import itertools
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
@@ -211,19 +211,29 @@ def number_in(text: str, separator: str) -> float | None:
 def time_column(names: tuple[str, ...], place: str) -> int:
     """Return the column of the time, by its name: time, t, timestamp or Zeit, with or without a unit s.
 
-    Case counts for nothing: `Time [s]`, `t(s)` and `time_s` are such names. Where several columns have one,
-    it is that named `time`, else the first column. Raises ConfigError, which begins with `place`, where
-    there is none, or several and neither.
+    Case counts for nothing: `Time [s]`, `t(s)` and `time_s` are such names; but beside another one `T` is
+    none. Where several columns have one, it is that named `time`, else the first column. Raises ConfigError,
+    which begins with `place`, where there is none, or several and neither, or one name twice.
     """
     named = [j for j, name in enumerate(names) if _TIME.fullmatch(name.strip())]
+    if len(named) > 1:
+        named = [j for j in named if names[j].strip() != "T"] or named  # it is a temperature
     plain = [j for j in named if names[j].strip().lower() == "time"]
-    for found in (named, plain, [j for j in named if j == 0]):
-        if len(found) == 1:
-            return found[0]
+    found = named if len(named) == 1 else plain or [j for j in named if j == 0]
     listed = ", ".join(repr(name) for name in names)
+    if found:
+        same = [j for j in named if names[j].strip().lower() == names[found[0]].strip().lower()]
+        if len(same) > 1:
+            raise ConfigError(f"{place}: {both(names, same)} both have the name of the time: which is meant?")
+        return found[0]
     if named:
         raise ConfigError(f"{place}: {counted(len(named), 'column')} could be the time: {listed}")
     raise ConfigError(
         f"{place}: no column has a name of the time in s ('time', 't', 'Time [s]', 'time_s', 'timestamps', "
         f"...): {listed}"
     )
+
+
+def both(names: Sequence[str], columns: Sequence[int]) -> str:
+    """Return `columns 2 ('x') and 3 ('x')` for the first two of some columns, counted from 0."""
+    return "columns " + " and ".join(f"{j + 1} ({names[j]!r})" for j in columns[:2])

@@ -291,7 +291,7 @@ class Results:
             if "status" in manifest:
                 manifest["status"] = status(path.parent, manifest)
             variables = [known.get(v.name, v) for v in variables]
-        table = read_texts(path, held.time)
+        table = read_texts(path, held.time, [v.name for v in variables])
         if path.name == CSV_NAME:
             table = TextTable([known.get(v.name, v) for v in table.variables], table.changes)
         return cls(held.time, held.data, variables, manifest, texts=table)

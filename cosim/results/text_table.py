@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..csv_text import both
 from ..errors import ConfigError
 from ..row_store import Array
 from ..writing import replacing
@@ -121,11 +122,12 @@ def write_texts(path: Path, table: TextTable, times: Array) -> None:
         file.write(text.getvalue().encode())
 
 
-def read_texts(path: Path, times: Array) -> TextTable:
+def read_texts(path: Path, times: Array, names: Sequence[str] = ()) -> TextTable:
     """Read the table beside a file of results with `times` [s], shape (n,); an empty one where there is none.
 
     What comes after the last time is left out: the results may have been cut off. Raises ConfigError naming
-    file and line of any other time that the results do not have.
+    file and line of any other time that the results do not have, and for a name that stands twice in the
+    header or is among the `names` of the results' numbers.
     """
     beside = texts_path(path)
     if not _is_table(beside):
@@ -143,6 +145,7 @@ def read_texts(path: Path, times: Array) -> TextTable:
         raise ConfigError(f"{beside}: cannot be read: {error.strerror or error}") from error
     except (csv.Error, UnicodeDecodeError) as error:
         raise ConfigError(f"{beside}: is no table of texts: {error}") from error
+    _check_names(header, [*names], beside)
     variables = [ResultVariable(name, type="String", variability="discrete") for name in header[1:]]
     changes: list[Change] = []
     for line, cells in zip(lines, rows, strict=True):
@@ -156,6 +159,16 @@ def read_texts(path: Path, times: Array) -> TextTable:
             )
         changes.append((row, tuple(cells[1:])))
     return TextTable(variables, changes)
+
+
+def _check_names(header: Sequence[str], names: Sequence[str], beside: Path) -> None:
+    for j, name in enumerate(header):
+        if name in header[:j]:
+            raise ConfigError(
+                f"{beside}: line 1: {both(header, [header.index(name), j])} both have this name"
+            )
+        if name in names:
+            raise ConfigError(f"{beside}: line 1, column {j + 1}: {name!r} has numbers in the results")
 
 
 def _is_table(path: Path) -> bool:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..clock import Clock
 from ..csv_numbers import CsvFile
+from ..csv_text import both
 from ..errors import ConfigError, nearest
 from ..interface import VariableInfo
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
@@ -208,7 +209,7 @@ def csv_of(entry: StimulusEntry, place: str, beside: Path | None) -> tuple[CsvFi
         )
     time = file.time_column() if entry.time_column is None else _column(file, entry.time_column, every)
     others = [j for j in every if j != time]
-    value = others[0] if entry.column is None else _column(file, entry.column, others)
+    value = _column(file, file.names[others[0]] if entry.column is None else entry.column, others)
     return file, Rows(f"{path}", file, time, value)
 
 
@@ -226,7 +227,8 @@ def _column(file: CsvFile, name: str, among: Sequence[int]) -> int:
         return found[0]
     names = [file.names[j] for j in among]
     if found:
-        raise ConfigError(f"{file.path}: {len(found)} columns have the name '{name}'; which is meant?")
+        place = f"{file.path}: line {file.header_lines}"
+        raise ConfigError(f"{place}: {both(file.names, found)} both have this name: which is meant?")
     raise ConfigError(
         f"{file.path}: there is no column '{name}'{nearest(name, names)}; columns: {', '.join(names)}"
     )

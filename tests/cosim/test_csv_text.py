@@ -50,6 +50,28 @@ def test_a_column_that_is_not_the_time_is_not_taken_for_it(names: tuple[str, ...
         time_column(names, "here")
 
 
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (("time", "a", "time"), "columns 1 ('time') and 3 ('time')"),
+        (("a", "Time", "time"), "columns 2 ('Time') and 3 ('time')"),
+        (("t", "t", "a"), "columns 1 ('t') and 2 ('t')"),
+        (("T", "T", "a"), "columns 1 ('T') and 2 ('T')"),
+        (("time_s", "a", "Time_S", "t"), "columns 1 ('time_s') and 3 ('Time_S')"),
+    ],
+)
+def test_a_name_of_the_time_that_is_there_twice_is_no_choice(names: tuple[str, ...], said: str) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        time_column(names, "here: line 1")
+    assert str(refusal.value) == f"here: line 1: {said} both have the name of the time: which is meant?"
+
+
+def test_a_name_of_the_time_that_does_not_count_may_be_there_twice() -> None:
+    assert time_column(("t", "t", "time"), "here") == 2
+    assert time_column(("T", "t"), "here") == time_column(("T", "a", "t"), "here") - 1 == 1  # a temperature
+    assert time_column(("a", "T"), "here") == 1
+
+
 def test_the_header_says_the_lines_above_the_first_row(tmp_path: Path) -> None:
     path = tmp_path / "x.csv"
     path.write_text('# a\n\n"time\n[s]";v\n0;1\n')

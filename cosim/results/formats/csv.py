@@ -14,6 +14,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from ...csv_numbers import CsvFile
+from ...csv_text import both
 from ...errors import ConfigError
 from ...row_store import Array
 from ..recording import Recording
@@ -118,5 +119,6 @@ def _time_column(file: CsvFile) -> int:
         if not name:
             raise ConfigError(f"{place}: a name is needed")
         if name in names[:j]:
-            raise ConfigError(f"{place}: '{name}' is the name of two columns")
+            found = both(names, [names.index(name), j])
+            raise ConfigError(f"{file.path}: line {file.header_lines}: {found} both have this name")
     return file.time_column()

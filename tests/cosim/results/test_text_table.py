@@ -105,9 +105,12 @@ def test_a_text_in_a_line_steers_no_terminal_and_has_an_end() -> None:
         ("time,a.s\n0.0\n", "line 2: '0.0' begins no row of results.csv"),
         ("time,a.s\nsoon,x\n", "line 2: 'soon' begins no row of results.csv"),
         ('time,a.s\n0.0,"x\n', "is no table of texts: unexpected end of data"),
+        ("time,a.s,a.s\n", r"line 1: columns 2 \('a.s'\) and 3 \('a.s'\) both have this name"),
+        ("time,a.s,time\n", r"line 1: columns 1 \('time'\) and 3 \('time'\) both have this name"),
+        ("time,a.s,a.x\n", "line 1, column 3: 'a.x' has numbers in the results"),
     ],
 )
 def test_a_table_of_other_results_is_refused(text: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "results.texts.csv").write_text(text)
     with pytest.raises(ConfigError, match=said):
-        read_texts(tmp_path / "results.csv", TIMES)
+        read_texts(tmp_path / "results.csv", TIMES, ["a.x"])

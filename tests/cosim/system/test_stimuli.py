@@ -149,8 +149,21 @@ def test_a_name_that_two_columns_have_is_no_choice(tmp_path):
     path = tmp_path / "cycle.csv"
     path.write_text("time,u,v,v\n0,1,2,3\n")
     assert values([0], csv=str(path), column="u") == pytest.approx([1])
-    with pytest.raises(ConfigError, match="2 columns have the name 'v'"):
+    both = r"cycle.csv: line {}: columns {} \('v'\) and {} \('v'\) both have this name: which is meant\?$"
+    with pytest.raises(ConfigError, match=both.format(1, 3, 4)):
         values([0], csv=str(path), column="v")
+    path.write_text("# of a test\ntime,v,v\n0,1,2\n")  # the first one beside the time
+    with pytest.raises(ConfigError, match=both.format(2, 2, 3)):
+        values([0], csv=str(path))
+    path.write_text("time,u,time\n0,1,2\n")
+    with pytest.raises(
+        ConfigError, match=r"line 1: columns 1 \('time'\) and 3 \('time'\) both have the name of"
+    ):
+        values([0], csv=str(path))
+    with pytest.raises(
+        ConfigError, match=r"line 1: columns 1 \('time'\) and 3 \('time'\) both have this name"
+    ):
+        values([0], csv=str(path), time_column="time")
 
 
 def test_two_rows_too_far_apart_for_a_line_may_be_held():
