@@ -1,4 +1,4 @@
-"""Lane keeping analysis: poles, controllability, delay and step response, as printed and from the models.
+"""Lane keeping analysis: poles, controllability, cost, delay and step response of the lane keeping loop.
 
 Source: "Optimal lane keeping control of a 4WS electric vehicle", sections 4 and 5. A, B are those of
 `bicycle`, K, S those of `lane_keeping_controller`.
@@ -7,17 +7,17 @@ Source: "Optimal lane keeping control of a 4WS electric vehicle", sections 4 and
     [B, A B, A^2 B, A^3 B]                                 controllability matrix                (L2)
     z[k+1] = M z[k],   z = (x, u[k-n], ..., u[k-1])        loop sampled with n samples of delay  (L3)
     x' = (A - B K) x + B S (0, r_2)                        continuous loop [r_2 in m]            (L4)
+    A' P + P A - P B K + Q = 0,  P = P'                    algebraic Riccati equation            (L5)
+    J = 1/2 integral of (x' Q x + u' R u) dt = 1/2 x_0' P x_0          cost from x_0 to rest     (L6)
 
 Every function is of the parameters of `LaneKeepingController`, so it answers for other vehicles, speeds and
 weights too.
 
-published: `PUBLISHED`, the numbers that the paper prints, to the digits it prints.
+published: nothing that the two models do not have.
 chosen: a sampling of 100 Hz.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,34 +30,6 @@ ComplexArray = NDArray[np.complex128]
 Parameters = LaneKeepingController.Parameters
 
 STEP_SIZE = 0.01  # s: 100 Hz, chosen
-
-
-class Published(NamedTuple):
-    """The paper's numbers; `k_hat` is the one that is not reproducible: it contradicts `gain`."""
-
-    a: Matrix
-    b: Matrix
-    gain: Matrix
-    prefilter: Matrix
-    poles: tuple[complex, ...]
-    controllability_rank: int
-    k_hat: tuple[float, ...]
-
-
-PUBLISHED = Published(
-    a=(
-        (-4.0825, 0.0, -21.2592, 0.0),
-        (0.0, 0.0, 1.0, 0.0),
-        (0.0256, 0.0, -4.0658, 0.0),
-        (-1.0, -21.3, 0.0, 0.0),
-    ),
-    b=((43.4783, 43.4783), (0.0, 0.0), (34.0909, -34.6364), (0.0, 0.0)),
-    gain=((0.5862, 6.2017, 0.6624, -0.9401), (0.7389, -3.3525, -0.8676, 0.3409)),
-    prefilter=((0.2979, -0.9401), (0.9592, 0.3409)),
-    poles=(-55.9664 - 6.7568j, -55.9664 + 6.7568j, -3.2296 - 3.1087j, -3.2296 + 3.1087j),
-    controllability_rank=4,
-    k_hat=(0.1082, 0.1279, 1.1843, 0.7593),
-)
 
 
 def closed_loop_poles(p: Parameters) -> ComplexArray:
@@ -111,6 +83,54 @@ def step_response(p: Parameters, step: float, stop_time: float, dt: float = 1e-3
         states[k] = move[:, :4] @ states[k - 1] + move[:, 4]
     times: Array = dt * np.arange(len(states), dtype=np.float64)
     return times, states
+
+
+def riccati_matrix(p: Parameters) -> Array:
+    """Return P, shape (4, 4), of (L5): the solution of the Lyapunov equation of the loop under K."""
+    from scipy.linalg import solve_continuous_lyapunov
+
+    k = np.array(p.gain)
+    closed, (q, r) = np.array(p.a) - np.array(p.b) @ k, _weights(p)
+    return np.asarray(solve_continuous_lyapunov(closed.T, -(q + k.T @ r @ k)))
+
+
+def riccati_residual(p: Parameters) -> float:
+    """Return the largest entry of the left side of (L5), over the largest weight of Q."""
+    a, b, k, x = np.array(p.a), np.array(p.b), np.array(p.gain), riccati_matrix(p)
+    q, _ = _weights(p)
+    return float(np.abs(a.T @ x + x @ a - x @ b @ k + q).max() / np.abs(q).max())  # (L5)
+
+
+def least_cost(p: Parameters, step: float) -> float:
+    """Return 1/2 x_0' P x_0 for a displacement of `step` [m] from the reference."""
+    return 0.5 * step**2 * float(riccati_matrix(p)[3, 3])  # (L6)
+
+
+def cost_of_step(p: Parameters, step: float, stop_time: float = 20.0) -> float:
+    """Return the integral of (L6) over the response to a step [m]: of what is left to the end of it."""
+    times, states = step_response(p, step, stop_time)
+    left, (q, r) = states - [0.0, 0.0, 0.0, step], _weights(p)
+    request = -left @ np.array(p.gain).T
+    rate = np.einsum("ni,ij,nj->n", left, q, left) + np.einsum("ni,ij,nj->n", request, r, request)
+    return 0.5 * float(np.trapezoid(rate, times))
+
+
+def final_states(p: Parameters, drive: Array) -> Array:
+    """Return where (A - B K) x + `drive` r = 0 for each input r = 1 of the drive (4 x n), shape (4, n)."""
+    return np.asarray(-np.linalg.solve(np.array(p.a) - np.array(p.b) @ np.array(p.gain), drive))
+
+
+def smallest_singular_value(p: Parameters, outputs: Matrix) -> float:
+    """Return that of C (A - B K)^-1 B for outputs C (m x 4): 0 where no prefilter reaches every reference."""
+    return float(np.linalg.svd(np.array(outputs) @ final_states(p, np.array(p.b)), compute_uv=False)[-1])
+
+
+def _weights(p: Parameters) -> tuple[Array, Array]:
+    """Return Q, shape (4, 4), and R, shape (2, 2)."""
+    states = (
+        p.lateral_velocity_weight, p.heading_angle_weight, p.yaw_rate_weight, p.displacement_weight,
+    )  # fmt: skip # one line is enough
+    return np.diag(states), np.diag((p.front_steering_weight, p.rear_steering_weight))
 
 
 def overshoot(values: Array, target: float) -> float:

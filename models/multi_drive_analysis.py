@@ -1,4 +1,4 @@
-"""Multi-drive analysis: numbers of the two-motor car that the paper prints, and those that a run gives.
+"""Multi-drive analysis: the numbers of the two-motor car that a run gives, and limits of the printed data.
 
 Source: B. Gasbaoui, A. Nasri, "A Novel Multi-Drive Electric Vehicle System Control Based on Multi-Input
 Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 2012.
@@ -9,11 +9,10 @@ Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 20
     a_rise = 0.8 v/(t_rise g)                            mean of a rise from 10 to 90 % [1]      (D4)
     a_max = 2 T_max/(R (M + 2 J_e/R^2) g)                two wheels at their torque limit [1]    (D5)
 
-The symbols are those of `two_motor_vehicle`. Some of the paper's numbers contradict each other or the printed
-data; `claims` lists them with the reason.
+The symbols are those of `two_motor_vehicle`.
 
-published: the numbers in `claims`.
-chosen: the times of the maneuver, FIRST_CURVE and RUN_TIME.
+published: the first curve of the maneuver begins at 2 s.
+chosen: nothing.
 """
 
 from __future__ import annotations
@@ -23,13 +22,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .constants import AIR_DENSITY, GRAVITY, KMH
+from .constants import GRAVITY, KMH
 from .two_motor_vehicle import TwoMotorVehicle
 
 Array = NDArray[np.float64]
 
 FIRST_CURVE = 2.0  # s: the maneuver `curve_and_slope` begins
-RUN_TIME = 10.0  # s: its duration in the paper
 
 
 class Maneuver(NamedTuple):
@@ -94,56 +92,3 @@ def grip_limit(p: TwoMotorVehicle.Parameters, torque_limit: float) -> float:
     """Return the acceleration, in g, of two wheels at their torque limit [N.m], without resistance."""
     inertia = p.mass + 2.0 * p.wheel_inertia / p.wheel_radius**2
     return 2.0 * torque_limit / p.wheel_radius / inertia / GRAVITY  # (D5)
-
-
-class Claim(NamedTuple):
-    """A printed number that no model of the printed data can give, and why."""
-
-    what: str
-    printed: str
-    reason: str
-
-
-def claims(p: TwoMotorVehicle.Parameters, speed: float, torque_limit: float) -> list[Claim]:
-    """Return the paper's numbers that are not reproducible, for a speed [m/s] and a torque limit [N.m]."""
-    way = speed * RUN_TIME
-    needed = [acceleration_of_rise(speed, rise) for rise in (0.50, 0.55)]
-    able = grip_limit(p, torque_limit)
-    return [
-        Claim(
-            "distance in 10 s, for the two controllers",
-            "460.2 / 354.4 m",
-            f"{RUN_TIME:g} s at {KMH * speed:.0f} km/h are {way:.1f} m; the printed ones take "
-            f"{460.2 / speed:.1f} and {354.4 / speed:.1f} s",
-        ),
-        Claim(
-            "rise time, for the two controllers",
-            "0.50 / 0.55 s",
-            f"10 % to 90 % of {KMH * speed:.0f} km/h need {needed[0]:.1f} and {needed[1]:.1f} g; the printed "
-            f"torque, gear and mass give at most {able:.2f} g",
-        ),
-        Claim(
-            "overshoot, for the two controllers",
-            "0 / 9.33 %",
-            "belongs to the rise that is not reproducible: from a standstill at the torque limit, with "
-            "conditional integration, the speed overshoots by less than 0.1 % under either controller",
-        ),
-        Claim(
-            "speed error, for the two controllers",
-            "0 / 0.13 km/h",
-            "the instant is not said; in the long run the integral leaves the wheels no error under either, "
-            "and slip leaves the car 0.1 % behind",
-        ),
-        Claim(
-            "derivative gain K_d = 2500",
-            "2500",
-            "differenced at 100 Hz it throws the torque from limit to limit; the paper gives no sampling "
-            "and no filter",
-        ),
-        Claim(
-            "torque of the air",
-            "93.2 N.m",
-            f"needs a density of {density_for(93.2, p, speed):.3f} kg/m3, which the paper does not print; "
-            f"{AIR_DENSITY} kg/m3 give {AIR_DENSITY / density_for(93.2, p, speed) * 93.2:.2f} N.m",
-        ),
-    ]

@@ -30,9 +30,9 @@ def reproduce(
     workers: WorkersOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> int:
-    """Reproduce papers: a page of published and obtained numbers, and figures.
+    """Reproduce papers: a page of all that each prints beside what is obtained, with verdicts and figures.
 
-    Exit code 1 when a number that should be reached is not.
+    Exit code 1 when a verdict is not borne out, or an own number is not what it was.
     """
     from ..reproduce import papers as library
     from .console import print_json, progress_bar
@@ -56,18 +56,30 @@ def reproduce(
 def _as_data(page: Page) -> dict[str, Any]:
     import dataclasses
 
-    rows = [dataclasses.asdict(row) for row in page.rows]
-    return {"title": page.title, "source": page.source, "rows": rows, "missed": len(page.missed)}
+    from ..reproduce.printed import counted
+
+    return {
+        "title": page.title,
+        "source": page.source,
+        "counts": counted(row.verdict for row in page.rows),
+        "rows": [dataclasses.asdict(row) for row in page.rows],
+        "own": [dataclasses.asdict(row) for row in page.own],
+        "missed": len(page.missed),
+    }
 
 
 def _show(pages: list[Page], folder: Path, seconds: float) -> None:
+    from ..reproduce.printed import sentence
+    from ..reproduce.render import missed
     from .console import print_table, print_title
 
     for i, page in enumerate(pages):
         print_title(f"{page.name}: {page.title}", first=i == 0)
-        rows = [[r.what, r.published, r.reach, r.obtained, r.verdict] for r in page.rows]
-        print_table(["what", "published", "to reach", "obtained", "verdict"], rows)
-    missed = [f"{page.name}: {row.what}" for page in pages for row in page.missed]
-    total = sum(len(page.rows) for page in pages)
-    print(f"\n{total} numbers in {seconds:.0f} s; missed: {'; '.join(missed) if missed else 'none'}")
-    print(f"in {folder}: README.md, {', '.join(f'{page.name}.md and .html' for page in pages)}, figures/")
+        head = ["place", "what", "printed", "obtained", "verdict"]
+        print_table(head, [[r.place, r.what, r.printed, r.obtained, r.verdict] for r in page.rows])
+        if page.own:
+            print_title(f"{page.name}: own numbers")
+            print_table(["what", "obtained", "to reach"], [[r.what, r.obtained, r.reach] for r in page.own])
+    names = ", ".join(f"{page.name}.md and .html" for page in pages)
+    print(f"\nin {folder}, after {seconds:.0f} s: README.md, index.html, {names}, figures/")
+    print(f"{sentence(row.verdict for page in pages for row in page.rows)}; {missed(pages)}")

@@ -18,7 +18,7 @@ from .page import Picture
 
 _SHORT = {"known_speed": "(a)", "front_only": "(c)", "front_compensated": "(d)"}
 _MANEUVERS = {
-    "known_speed": "(a) full slip control, speed known",
+    "known_speed": "(a) full slip control, speed measured",
     "estimated_speed": "(b) full slip control, speed estimated",
     "front_only": "(c) front brake only",
     "front_compensated": "(d) front brake, rear wheel compensated",
@@ -49,10 +49,10 @@ def pictures(
         Picture("psi", _ABOUT_PSI, _psi()),
         Picture("propositions", _ABOUT_PROPOSITIONS, _portraits()),
         *(
-            Picture(name, f"Figs. 4 to 7: {text}", _maneuver(found[name], name))
-            for name, text in _MANEUVERS.items()
+            Picture(f"fig{i}", f"Fig. {i}: {text}", _maneuver(found[name], name))
+            for i, (name, text) in enumerate(_MANEUVERS.items(), 4)
         ),
-        Picture("lock", "Figs. 4 to 7: (b), the first half second", _lock(found["estimated_speed"])),
+        Picture("lock", "Fig. 5 enlarged: the first half second", _lock(found["estimated_speed"])),
         Picture("vehicle", _ABOUT_VEHICLE, _vehicle(found, heights, inertias)),
         Picture("delay", _ABOUT_DELAY, _delay(found, extra)),
     )

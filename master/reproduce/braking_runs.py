@@ -12,13 +12,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...cosim.interface import Value
 from ...cosim.results.results import Results
-from ...cosim.system.system import System, load_system
+from ...cosim.row_store import Array
 from ...models import braking_analysis as analysis
-from ...models.road_friction import Road
+from ...models.constants import GRAVITY
+from ...models.road_friction import Road, friction_coefficient
 from ..simulation import simulate
+from .sampling import sampled
 
 LOCKED = 0.99  # slip
 FAST = 5.0  # m/s: above it, the end of the stop has no influence
@@ -80,19 +83,11 @@ def lock_of(results: Results) -> Lock:
 
 def stops(strategy: str, changes: Sequence[dict[str, Value]], step_size: float | None = None) -> list[Stop]:
     """Run a strategy with each set of changed parameters, at the system's step size or another one [s]."""
-    system = _sampled(step_size)
+    system = sampled("braking", step_size)
     return [
         stop_of(simulate(system, strategy, parameters=change, ideal=True, stop_time=STOP_TIME))
         for change in changes
     ]
-
-
-def _sampled(step_size: float | None) -> System:
-    system = load_system("braking")
-    if step_size is None:
-        return system
-    experiment = system.file.experiment.model_copy(update={"step_size": step_size})
-    return dataclasses.replace(system, file=system.file.model_copy(update={"experiment": experiment}))
 
 
 def propositions(road: Road) -> Propositions:
@@ -117,6 +112,68 @@ def locking(p: analysis.Parameters) -> analysis.Gains:
     psi = analysis.highest_psi(p)
     factor = MARGIN / analysis.TARGET_SLIP
     return analysis.Gains(factor * psi.front, factor * psi.rear)
+
+
+def rear_slip(results: Results) -> Array:
+    """Return the slip of the rear wheel once the brakes act (from 0.5 s on), above FAST."""
+    slip: Array = results["vehicle.rear_slip"][_acting(results)]
+    return slip
+
+
+def estimated_slip(results: Results) -> float:
+    """Return the largest slip of a wheel that (16) estimates, once the brakes act, above FAST."""
+    wheels = [results[f"vehicle.{wheel}_wheel_speed"][_acting(results)] for wheel in ("front", "rear")]
+    fastest = np.maximum(*wheels)
+    return float(max(((fastest - wheel) / fastest).max() for wheel in wheels))
+
+
+def estimate_error(results: Results) -> float:
+    """Return the largest error of the estimated speed, over the speed, once the brakes act, above FAST."""
+    acting = _acting(results)
+    speed = results["vehicle.speed"][acting]
+    rims = [results[f"vehicle.{wheel}_rim_speed"][acting] for wheel in ("front", "rear")]
+    return float(np.abs(np.maximum(*rims) / speed - 1.0).max())
+
+
+def rear_energy(results: Results) -> tuple[float, float]:
+    """Return the work [J] that the rear wheel does on the road above FAST, and the energy that it loses."""
+    rows = results["vehicle.speed"] > FAST
+    wheel = results["vehicle.rear_wheel_speed"][rows]
+    power = -results["vehicle.rear_force"][rows] * results["vehicle.rear_rim_speed"][rows]
+    lost = 0.5 * NOMINAL.wheel_inertia * (wheel[0] ** 2 - wheel[-1] ** 2)
+    return float(np.trapezoid(power, results.time[rows])), float(lost)
+
+
+def _acting(results: Results) -> NDArray[np.bool_]:
+    acting: NDArray[np.bool_] = (results["vehicle.speed"] > FAST) & (results.time > 0.5)
+    return acting
+
+
+def coupling() -> tuple[float, float]:
+    """Return the largest change of Psi_f over the rear slip, of Psi_r over the front one, over max Psi."""
+    side = np.linspace(0.0, 1.0, 101)
+    front, rear = np.meshgrid(side, side)
+    at = analysis.reduced(NOMINAL, front, rear)
+    return (
+        float(np.ptp(at.psi_front, axis=0).max() / at.psi_front.max()),
+        float(np.ptp(at.psi_rear, axis=1).max() / at.psi_rear.max()),
+    )
+
+
+def reduced_form_error() -> float:
+    """Return the largest difference [m/s2] of v' of (6) from that which solves (1), (2) and (5) together."""
+    p, slips = NOMINAL, analysis.random_starts(STARTS)
+    given = analysis.reduced(p, slips[:, 0], slips[:, 1]).acceleration
+    worst = 0.0
+    for (front, rear), acceleration in zip(slips, given, strict=True):
+        mu = [friction_coefficient(p.road, float(slip)) for slip in (front, rear)]
+        length, shift = p.front_distance + p.rear_distance, p.mass * p.center_height
+        load = [p.mass * GRAVITY * p.rear_distance, p.mass * GRAVITY * p.front_distance]
+        # unknowns v', F_zf, F_zr
+        equations = [[p.mass, mu[0], mu[1]], [shift, length, 0.0], [-shift, 0.0, length]]
+        solved = np.linalg.solve(np.array(equations), np.array([0.0, *load]))
+        worst = max(worst, abs(float(solved[0]) - float(acceleration)))
+    return worst
 
 
 def late(extra: float) -> dict[str, Value]:

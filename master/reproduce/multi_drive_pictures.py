@@ -1,4 +1,4 @@
-"""Pictures of the two-motor car: the quantities of the paper's Figs. 4 to 19, and those behind its table."""
+"""Pictures of the two-motor car: the paper's Figs. 4 to 19, those behind its Table 3, and those beyond it."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ...cosim.results.results import Results, ResultVariable
 from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models.induction_motor_drive import InductionMotorDrive
+from . import multi_drive_figures
 from .page import Picture
 
 _CONTROLLERS = {"mimo": "MIMO-PID", "pid": "PIDs", "stronger": "PIDs, gains x 1.5"}
@@ -33,24 +34,26 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
     """Return all pictures: `found` are the runs, `coupled` the effects of couplings and of gains instead."""
     both = _beside({name: found[name] for name in _CONTROLLERS})
     launches = _beside({name: found[f"launch {name}"] for name in ("mimo", "pid")})
-    of = "Of the paper's Figs. 4 to 19"
     return (
-        Picture("speeds", f"{of}: speed of the car and of the wheels", figures.draw(both, _SPEEDS)),
-        Picture("torques", f"{of}: torques of the wheels", figures.draw(both, _TORQUES)),
+        *multi_drive_figures.pictures(found),
         Picture(
             "resistance",
-            f"{of}: torques of slope, rolling and air. The printed 93.2 N·m need air of 1.164 kg/m³",
+            "Beyond the paper: torques of slope, rolling and air; 93.2 N·m need air of 1.164 kg/m³",
             figures.draw(_resistances(found["mimo"]), _RESISTANCE),
         ),
         Picture(
-            "currents", f"{of}: currents and power of the motors", figures.draw(found["mimo"], _CURRENTS)
+            "currents",
+            "Beyond the paper: currents and power of the motors",
+            figures.draw(found["mimo"], _CURRENTS),
         ),
         Picture(
             "phases",
-            f"{of}: phase currents where the slope begins, from those in the frame of the flux",
+            "Beyond the paper: phase currents where the slope begins, from those in the frame of the flux",
             figures.draw(phase_currents(found["mimo"], *_SLOPE), _PHASES),
         ),
-        Picture("launch", "Table 3: rise and overshoot", figures.draw(launches, _LAUNCH)),
+        Picture(
+            "launch", "For Table 3: rise and overshoot from a standstill", figures.draw(launches, _LAUNCH)
+        ),
         Picture(
             "baseline",
             "Beyond the paper: PIDs with gains x 1.5 do on the slope what the MIMO-PID does",
@@ -162,43 +165,6 @@ def _each(variable: str, *controllers: str) -> list[tuple[str, str]]:
 
 
 _REFERENCE = ("mimo/differential.speed_reference", "reference")
-_SPEEDS = FigureSpec(
-    title="Two-motor car: speeds",
-    panels=[
-        _panel("Speed", "km/h", *_each("vehicle.speed", "mimo", "pid"), _REFERENCE),
-        *(
-            _panel(
-                f"{side.capitalize()} wheel",
-                "rad/s",
-                *_each(f"vehicle.{side}_wheel_speed", "mimo", "pid"),
-                (f"mimo/differential.{side}_reference", "reference"),
-            )
-            for side in ("left", "right")
-        ),
-        _panel(
-            "Angle",
-            "deg",
-            ("mimo/vehicle.steering_angle", "steering (left > 0)"),
-            ("mimo/vehicle.road_grade", "road (uphill > 0)"),
-        ),
-    ],
-)
-_TORQUES = FigureSpec(
-    title="Two-motor car: torques of the wheels",
-    note="The peaks last some samples: the references jump with the steering, the wheels follow the road.",
-    panels=[
-        *(
-            _panel(f"{side.capitalize()} wheel", "N.m", *_each(f"{side}_drive.torque", "mimo", "pid"))
-            for side in ("left", "right")
-        ),
-        _panel(
-            "Motors, MIMO-PID",
-            "N.m",
-            ("mimo/left_drive.motor_torque", "left"),
-            ("mimo/right_drive.motor_torque", "right"),
-        ),
-    ],
-)
 _RESISTANCE = FigureSpec(
     title="Two-motor car: torques of the resistances",
     panels=[

@@ -1,48 +1,60 @@
-"""The page of a paper: a row with a verdict for each published number, a picture for each figure.
+"""The page of a paper: a row with a verdict for all that it prints, own numbers apart, and pictures.
 
-The verdicts:
-
-    reproduced         the published number results from published parameters and equations, within the reach
-    calibrated         it results, but parameters that the paper does not print were chosen so that it does
-    reached            a number that the paper does not print ("-") is equal to the one obtained before
-    not reproducible   it cannot result; the reason is given
-    missed             it should result and does not: the command fails
+The verdicts on what a paper prints are those of the table (`printed`). "missed" takes the place of a verdict
+that the runs do not bear out: the command fails. Own numbers, which no paper prints, are "own" where they are
+what they were found to be before, and are not counted.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ..studies.parallel import Task
+from . import parameters, printed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Verdict = Literal["reproduced", "calibrated", "reached", "not reproducible", "missed"]
-VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+MISSED, OWN = "missed", "own"
 
 
 @dataclasses.dataclass(frozen=True)
-class PublishedNumber:
-    """A number or statement of a paper: its name, as published, to be reached, as obtained, and the verdict.
+class Found:
+    """A value of the project: as shown with its unit, what is to be reached, and whether it is.
 
-    All are texts with units of measure; `published` is "-" for a number that the paper does not print.
+    `of` names the variant where there are several ("over the bus"), `reason` stands behind that of the row.
     """
 
+    obtained: str
+    reach: str = ""
+    holds: bool = True
+    reason: str = ""
+    of: str = ""
+
+
+Finding = Found | Sequence[Found]
+Findings = Mapping[str, Finding]
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    """A row of a page, all in words; `place` and `printed` are "" for an own number."""
+
+    place: str
     what: str
-    published: str
+    printed: str
     reach: str
     obtained: str
-    verdict: Verdict
+    verdict: str
     reason: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
 class Picture:
-    """A figure of the paper, redrawn: `stem` names its files."""
+    """A figure of the paper, redrawn, or one beyond it: `stem` names its files."""
 
     stem: str
     caption: str
@@ -57,14 +69,15 @@ class Page:
     title: str
     source: str
     about: str
-    rows: tuple[PublishedNumber, ...]
+    rows: tuple[Row, ...]
+    own: tuple[Row, ...]
     pictures: tuple[Picture, ...]
     commands: tuple[str, ...]
 
     @property
-    def missed(self) -> tuple[PublishedNumber, ...]:
-        """The rows whose verdict is "missed"."""
-        return tuple(row for row in self.rows if row.verdict == "missed")
+    def missed(self) -> tuple[Row, ...]:
+        """The rows, own ones too, whose verdict is "missed"."""
+        return tuple(row for row in (*self.rows, *self.own) if row.verdict == MISSED)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -76,105 +89,115 @@ class Paper:
     page: Callable[[dict[str, Any]], Page]
 
 
-def near(
-    what: str,
-    published: str,
-    obtained: float,
-    target: float,
-    tolerance: float,
-    unit: str = "",
+def page(
+    name: str,
     *,
-    digits: int = 4,
-    calibrated: str = "",
-) -> PublishedNumber:
-    """Return a number that must be within `tolerance` of `target`; `calibrated` names the choices for it."""
-    reach = f"{_number(target, digits, unit)} ± {tolerance:g}"
-    return _judged(
-        what, published, reach, obtained, abs(obtained - target) <= tolerance, unit, digits, calibrated
+    title: str,
+    about: str,
+    found: Findings,
+    own: Findings,
+    pictures: Sequence[Picture],
+    commands: Sequence[str],
+) -> Page:
+    """Return the page of a paper: `found` by the keys of its rows in the table, own numbers by their names.
+
+    Raises KeyError as `judged` does.
+    """
+    return Page(
+        name=name,
+        title=title,
+        source=printed.papers()[name].citation,
+        about=about,
+        rows=judged(name, found, pictures),
+        own=tuple(_row("", what, "", OWN, "", _several(each)) for what, each in own.items()),
+        pictures=tuple(pictures),
+        commands=tuple(commands),
     )
+
+
+def judged(paper: str, found: Findings, pictures: Sequence[Picture]) -> tuple[Row, ...]:
+    """Return the rows of a paper's page: those of the table with what was found for their keys.
+
+    Raises KeyError where a row finds nothing by its key or picture, and where something found has no row.
+    """
+    table = printed.rows(paper)
+    stems = {picture.stem for picture in pictures}
+    if unused := found.keys() - {row.by for row in table}:
+        raise KeyError(f"{paper}: no row of printed.toml is obtained by {', '.join(sorted(unused))}")
+    return tuple(_judged(row, _all_of(row, found, stems)) for row in table)
+
+
+def _all_of(row: printed.Printed, found: Findings, stems: set[str]) -> list[Found]:
+    if row.picture and row.picture not in stems:
+        raise KeyError(f"{row}: there is no picture {row.picture!r}")
+    if row.by and row.by not in found:
+        raise KeyError(f"{row}: nothing was found by {row.by!r}")
+    values = list(_several(found[row.by])) if row.by else []
+    values += [
+        Found(f"{name} = {value}", "as printed", same)
+        for name, value, same in (parameters.compared(name, row) for name in row.parameters)
+    ]
+    if row.picture:
+        values.append(Found(f"picture {row.picture}"))
+    return [*values, Found(row.where)] if row.where else values
+
+
+def _judged(row: printed.Printed, values: Sequence[Found]) -> Row:
+    return _row(row.place, row.quantity, row.shown, row.verdict, row.reason, values)
+
+
+def _several(finding: Finding) -> Sequence[Found]:
+    return [finding] if isinstance(finding, Found) else finding
+
+
+def _row(place: str, what: str, shown: str, verdict: str, reason: str, values: Sequence[Found]) -> Row:
+    good = all(value.holds for value in values)
+    reasons = [reason, *dict.fromkeys(value.reason for value in values)]
+    missed = ["outside what was to be reached"] if not good else []
+    return Row(
+        place,
+        what,
+        shown,
+        "; ".join(dict.fromkeys(value.reach for value in values if value.reach)),
+        "; ".join(f"{value.of}: {value.obtained}" if value.of else value.obtained for value in values),
+        verdict if good else MISSED,
+        "; ".join(filter(None, missed or reasons)),
+    )
+
+
+def near(
+    obtained: float, target: float, tolerance: float, unit: str = "", *, digits: int = 4, of: str = "",
+    reason: str = "",
+) -> Found:  # fmt: skip # as the two below
+    """Return a number that must be within `tolerance` of `target`."""
+    reach = f"{_number(target, digits, unit)} ± {tolerance:g}"
+    return _found(obtained, reach, abs(obtained - target) <= tolerance, unit, digits, of, reason)
 
 
 def at_most(
-    what: str,
-    published: str,
-    obtained: float,
-    limit: float,
-    unit: str = "",
-    *,
-    digits: int = 4,
-    calibrated: str = "",
-) -> PublishedNumber:
+    obtained: float, limit: float, unit: str = "", *, digits: int = 4, of: str = "", reason: str = ""
+) -> Found:
     """Return a number that must not exceed `limit`."""
-    return _judged(
-        what,
-        published,
-        f"≤ {_number(limit, digits, unit)}",
-        obtained,
-        obtained <= limit,
-        unit,
-        digits,
-        calibrated,
-    )
+    reach = f"≤ {_number(limit, digits, unit)}"
+    return _found(obtained, reach, obtained <= limit, unit, digits, of, reason)
 
 
 def at_least(
-    what: str,
-    published: str,
-    obtained: float,
-    limit: float,
-    unit: str = "",
-    *,
-    digits: int = 4,
-    calibrated: str = "",
-) -> PublishedNumber:
+    obtained: float, limit: float, unit: str = "", *, digits: int = 4, of: str = "", reason: str = ""
+) -> Found:
     """Return a number that must not fall below `limit`."""
-    return _judged(
-        what,
-        published,
-        f"≥ {_number(limit, digits, unit)}",
-        obtained,
-        obtained >= limit,
-        unit,
-        digits,
-        calibrated,
-    )
+    reach = f"≥ {_number(limit, digits, unit)}"
+    return _found(obtained, reach, obtained >= limit, unit, digits, of, reason)
 
 
-def holds(
-    what: str, published: str, reach: str, obtained: str, true: bool, *, calibrated: str = ""
-) -> PublishedNumber:
+def holds(obtained: str, true: bool, reach: str = "", *, of: str = "", reason: str = "") -> Found:
     """Return a statement: `obtained` in words, and `true` if it satisfies `reach`."""
-    reason = calibrated if true else "does not hold"
-    return PublishedNumber(what, published, reach, obtained, _verdict(published, true, calibrated), reason)
+    return Found(obtained, reach, true, reason, of)
 
 
-def not_reproducible(what: str, published: str, obtained: str, reason: str) -> PublishedNumber:
-    """Return a printed number that cannot result, with the one that does."""
-    return PublishedNumber(what, published, "-", obtained, "not reproducible", reason)
-
-
-def _judged(
-    what: str,
-    published: str,
-    reach: str,
-    obtained: float,
-    within: bool,
-    unit: str,
-    digits: int,
-    calibrated: str,
-) -> PublishedNumber:
-    shown = _number(obtained, digits, unit)
-    if math.isnan(obtained) or not within:
-        return PublishedNumber(what, published, reach, shown, "missed", "outside what was to be reached")
-    return PublishedNumber(what, published, reach, shown, _verdict(published, True, calibrated), calibrated)
-
-
-def _verdict(published: str, within: bool, calibrated: str) -> Verdict:
-    if not within:
-        return "missed"
-    if calibrated:
-        return "calibrated"
-    return "reached" if published == "-" else "reproduced"
+def _found(obtained: float, reach: str, within: bool, unit: str, digits: int, of: str, reason: str) -> Found:
+    good = within and not math.isnan(obtained)
+    return Found(_number(obtained, digits, unit), reach, good, reason, of)
 
 
 def _number(value: float, digits: int, unit: str) -> str:

@@ -10,20 +10,36 @@ from pathlib import Path
 from ...cosim.figures import draw as figures
 from ...cosim.visible import visible
 from ...cosim.writing import markdown_table, write_text
-from .page import VERDICTS, Page, PublishedNumber
+from .page import MISSED, Page, Row
+from .printed import VERDICTS, about_verdicts, counted, sentence
 
-_HEAD = ("what", "published", "to reach", "obtained", "verdict", "reason")
+_HEAD = ("place", "what", "printed", "obtained", "to reach", "verdict", "reason")
+_OWN_HEAD = ("what", "obtained", "to reach", "verdict", "reason")
+_OWN = "Own numbers"
+_ABOUT_OWN = (
+    "Numbers that the paper does not print, beside what they were found to be before. They are not counted "
+    "with those above."
+)
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 1240px; margin: 2rem auto; padding: 0 1rem;
-  color: #1a1a1a; }
+  color: #1a1a1a; overflow-wrap: break-word; }
 table { border-collapse: collapse; width: 100%; font-size: 14px; }
 th, td { border-bottom: 1px solid #d0d0d0; padding: .35rem .6rem; text-align: left; vertical-align: top; }
 th { background: #f3f3f3; position: sticky; top: 0; }
-td.reproduced { color: #005a32; } td.calibrated, td.reached { color: #08519c; }
+td.reproduced { color: #005a32; } td.calibrated, td.own { color: #08519c; } td.by { color: #4a4a4a; }
 td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
 figure { margin: 2rem 0; } figure img { max-width: 100%; height: auto; } figcaption { color: #444; }
-pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; }
+pre { background: #f6f6f6; padding: .8rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+@media (max-width: 800px) {
+  thead { display: none; }
+  table, tbody, tr, td { display: block; }
+  tr { border-bottom: 2px solid #b0b0b0; padding: .5rem 0; }
+  td { border: 0; padding: .1rem .4rem .1rem 6rem; overflow-wrap: anywhere; min-height: 1.5em;
+    position: relative; }
+  td::before { content: attr(data-head); position: absolute; left: .4rem; color: #666; }
+  td:empty { display: none; }
+}
 """
 
 
@@ -43,31 +59,49 @@ def write_page(page: Page, folder: Path) -> list[Path]:
     return written
 
 
-def write_index(pages: Sequence[Page], folder: Path) -> Path:
-    """Write README.md, the papers with the count of each verdict, and return its path. Raises ConfigError."""
+def write_index(pages: Sequence[Page], folder: Path) -> list[Path]:
+    """Write README.md and index.html, the counts of each paper and of all, and return the paths.
+
+    Raises ConfigError naming the file that cannot be written.
+    """
+    verdicts = [row.verdict for page in pages for row in page.rows]
+    total = f"{sentence(verdicts)}; {missed(pages)}."
+    head = ("system", "paper", *VERDICTS, MISSED)
+    counts = [_counts(page) for page in pages]
     rows = [
-        (
-            f"[{page.name}]({page.name}.md)",
-            page.source,
-            *(str(sum(row.verdict == verdict for row in page.rows)) for verdict in VERDICTS),
-        )
-        for page in pages
+        (f"[{page.name}]({page.name}.md)", page.source, *each)
+        for page, each in zip(pages, counts, strict=True)
     ]
-    lines = ["# Reproduced papers", "", *markdown_table(("system", "paper", *VERDICTS), rows)]
-    path = folder / "README.md"
-    write_text(path, visible("\n".join(lines) + "\n"))
-    return path
+    means = [f"- *{verdict}*: {about}" for verdict, about in about_verdicts().items()]
+    lines = ["# Reproduced papers", "", total, "", *markdown_table(head, rows), "", *means]
+    texts = {"README.md": "\n".join(lines) + "\n", "index.html": _index(pages, total, head, counts)}
+    for name, text in texts.items():
+        write_text(folder / name, visible(text))
+    return [folder / name for name in texts]
 
 
-def _cells(row: PublishedNumber, mark: str = "") -> tuple[str, ...]:
-    """Return the cells below _HEAD, the verdict between two marks."""
-    return (row.what, row.published, row.reach, row.obtained, f"{mark}{row.verdict}{mark}", row.reason)
+def missed(pages: Sequence[Page]) -> str:
+    """Return the names of what is missed, in words, or "missed: none"."""
+    names = [f"{page.name}: {row.what}" for page in pages for row in page.missed]
+    return f"missed: {'; '.join(names) if names else 'none'}"
+
+
+def _counts(page: Page) -> tuple[str, ...]:
+    """Return the numbers below the verdicts and "missed"."""
+    each = counted(row.verdict for row in page.rows).values()
+    return (*map(str, each), str(len(page.missed)))
+
+
+def _cells(row: Row, head: Sequence[str], mark: str = "") -> list[str]:
+    """Return the cells of a row below a head, the verdict between two marks."""
+    texts = vars(row) | {"to reach": row.reach, "verdict": f"{mark}{row.verdict}{mark}"}
+    return [texts[name] for name in head]
 
 
 def _markdown(page: Page) -> str:
     lines = [f"# {page.title}", "", page.source, "", page.about, ""]
-    lines += ["```sh", *page.commands, "```", ""]
-    lines += markdown_table(_HEAD, [_cells(row, "**") for row in page.rows])
+    lines += [f"{_summary(page)}.", "", "```sh", *page.commands, "```", ""]
+    lines += markdown_table(_HEAD, [_cells(row, _HEAD, "**") for row in page.rows])
     for picture in page.pictures:
         lines += [
             "",
@@ -75,36 +109,81 @@ def _markdown(page: Page) -> str:
             "",
             f"*{picture.caption}*",
         ]
+    if page.own:
+        lines += ["", f"## {_OWN}", "", _ABOUT_OWN, ""]
+        lines += markdown_table(_OWN_HEAD, [_cells(row, _OWN_HEAD, "**") for row in page.own])
     return "\n".join(lines) + "\n"
+
+
+def _summary(page: Page) -> str:
+    return f"{sentence(row.verdict for row in page.rows)}; {missed([page])}"
 
 
 def _html(page: Page, images: dict[str, Path]) -> str:
     e = html.escape
-    rows = "\n".join(
-        "<tr>"
-        + "".join(
-            f'<td class="{row.verdict.split()[0]}">{e(c)}</td>' if i == 4 else f"<td>{e(c)}</td>"
-            for i, c in enumerate(_cells(row))
-        )
-        + "</tr>"
-        for row in page.rows
-    )
     pictures = "\n".join(
         f'<figure><img alt="{e(p.caption)}" src="data:image/png;base64,'
         f'{base64.b64encode(images[p.stem].read_bytes()).decode()}"><figcaption>{e(p.caption)}</figcaption></figure>'
         for p in page.pictures
     )
-    head = "".join(f"<th>{name}</th>" for name in _HEAD)
-    return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>{e(page.title)}</title>
-<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head><body>
-<h1>{e(page.title)}</h1>
+    own = f"<h2>{_OWN}</h2>\n<p>{e(_ABOUT_OWN)}</p>\n{_table(_OWN_HEAD, page.own)}" if page.own else ""
+    return _document(
+        page.title,
+        f"""<h1>{e(page.title)}</h1>
 <p><em>{e(page.source)}</em></p>
 <p>{e(page.about)}</p>
+<p>{e(_summary(page))}.</p>
 <pre>{e(chr(10).join(page.commands))}</pre>
-<table><thead><tr>{head}</tr></thead><tbody>
-{rows}
-</tbody></table>
+{_table(_HEAD, page.rows)}
 {pictures}
+{own}""",
+    )
+
+
+def _index(pages: Sequence[Page], total: str, head: Sequence[str], counts: Sequence[Sequence[str]]) -> str:
+    e = html.escape
+    rows = [
+        [f'<a href="{e(page.name)}.html">{e(page.name)}</a>', e(page.source), *each]
+        for page, each in zip(pages, counts, strict=True)
+    ]
+    body = "\n".join(_line([(name, cell, "") for name, cell in zip(head, row, strict=True)]) for row in rows)
+    means = "".join(f"<li><em>{e(name)}</em>: {e(about)}</li>" for name, about in about_verdicts().items())
+    title = "Reproduced papers"
+    return _document(title, f"<h1>{title}</h1>\n<p>{e(total)}</p>\n{_framed(head, body)}\n<ul>{means}</ul>")
+
+
+def _table(head: Sequence[str], rows: Sequence[Row]) -> str:
+    """Return a table whose cells know their heads, so that they can stand below each other on a phone."""
+    lines = [
+        _line(
+            [
+                (name, html.escape(cell), row.verdict.split()[0] if name == "verdict" else "")
+                for name, cell in zip(head, _cells(row, head), strict=True)
+            ]
+        )
+        for row in rows
+    ]
+    return _framed(head, "\n".join(lines))
+
+
+def _line(cells: Sequence[tuple[str, str, str]]) -> str:
+    """Return a row of cells, each with its head, its HTML and its class."""
+    made = (
+        f'<td data-head="{name}"{f" class={kind!r}" if kind else ""}>{cell}</td>'
+        for name, cell, kind in cells
+    )
+    return f"<tr>{''.join(made)}</tr>"
+
+
+def _framed(head: Sequence[str], body: str) -> str:
+    names = "".join(f"<th>{name}</th>" for name in head)
+    return f"<table><thead><tr>{names}</tr></thead><tbody>\n{body}\n</tbody></table>"
+
+
+def _document(title: str, body: str) -> str:
+    return f"""<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head><body>
+{body}
 </body></html>
 """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,13 @@ def linearized(speed: float) -> tuple[float, float]:
     force_slope = (maximum_force(p, v + h) - maximum_force(p, v - h)) / (2.0 * h)
     damping = load_slope - level_road_load(p, v) / maximum_force(p, v) * force_slope  # N.s/m
     return KMH * maximum_force(p, v) / 100.0 / damping, damping / p.mass / (2.0 * math.pi)
+
+
+def boost(slow: float, fast: float) -> float:
+    """Return the largest acceleration of the drive at a slow speed [km/h] over that at a fast one."""
+    p = Scooter.Parameters()
+    accelerations = [maximum_force(p, v / KMH) - level_road_load(p, v / KMH) for v in (slow, fast)]
+    return accelerations[0] / accelerations[1]
 
 
 def steady_throttle(speed: float) -> float:
@@ -71,6 +78,13 @@ def largest_jump(results: Results) -> float:
     return float((np.abs(np.diff(throttle))[at] - np.abs(np.diff(request))[at]).max())
 
 
+def time_above_bound(results: Results) -> float:
+    """Return the time [s] in acceleration with a true acceleration above the bound by more than 10 %."""
+    above = results["vehicle.acceleration"] > 1.1 * results["ecu.acceleration_bound"]
+    step = results.time[1] - results.time[0]
+    return float(step * np.count_nonzero(above & (results["ecu.state"] == 1)))
+
+
 def since_switch(results: Results) -> NDArray[np.float64]:
     """Return the time [s] in the present state, shape (n,); 0 before the first switch."""
     times, _ = switches(results)
@@ -78,8 +92,15 @@ def since_switch(results: Results) -> NDArray[np.float64]:
     return np.where(results.time >= times[0], results.time - last, 0.0)
 
 
-def estimate_error(speed: float, **options: Any) -> float:
-    """Return the largest |v_e - v| [km/h] from 60 to 90 s at a constant speed [km/h], without bounds."""
+class ConstantSpeed(NamedTuple):
+    """The estimate from 60 to 90 s at a constant speed: largest |v_e - v| and mean |v_e - v_m| [km/h]."""
+
+    error: float
+    from_measured: float
+
+
+def at_constant_speed(speed: float, **options: Any) -> ConstantSpeed:
+    """Return how good the estimated speed is at a constant speed [km/h], without bounds."""
     text = f"""
         leave_out = ["rider", "planner", "battery"]
         [experiment]
@@ -96,8 +117,10 @@ def estimate_error(speed: float, **options: Any) -> float:
         path = folder / "constant.toml"
         path.write_text(text)
         results = simulate("scooter", path, **options)
-    error = np.abs(results["ecu.speed_estimate"] - results["vehicle.speed"] * KMH)
-    return float(error[results.time > 60.0].max())
+    late, estimate = results.time > 60.0, results["ecu.speed_estimate"]
+    error = np.abs(estimate - results["vehicle.speed"] * KMH)[late]
+    from_measured = np.abs(estimate - results["ecu.speed_measured"])[late]
+    return ConstantSpeed(float(error.max()), float(from_measured.mean()))
 
 
 def stop_and_go(bounded: bool) -> Results:

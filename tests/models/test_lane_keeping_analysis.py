@@ -7,46 +7,75 @@ import dataclasses
 import numpy as np
 import pytest
 
+from evcosim.master.reproduce import printed
 from evcosim.models import lane_keeping_analysis as analysis
-from evcosim.models.lane_keeping_analysis import PUBLISHED, Parameters
+from evcosim.models.lane_keeping_analysis import Parameters
 
 P = Parameters()
+A, B, K, S, Q_R, K_HAT = (
+    np.array(printed.row("lane_keeping", by).value, dtype=float)
+    for by in ("A", "B", "K", "S", "Q_r", "K-hat")
+)
 
 
-@pytest.mark.parametrize("name", ["a", "b", "gain", "prefilter"])
-def test_matrices_are_the_printed_ones(name: str) -> None:
-    computed, printed = np.array(getattr(P, name)), np.array(getattr(PUBLISHED, name))
-    assert np.abs(computed - printed).max() <= 5e-5
+@pytest.mark.parametrize(
+    ("computed", "printed_one"), [(P.a, A), (P.b, B), (P.gain, K), (P.prefilter, S)], ids="ABKS"
+)
+def test_matrices_are_the_printed_ones(computed, printed_one) -> None:
+    assert np.abs(np.array(computed) - printed_one).max() <= 5e-5
 
 
 def test_the_printed_mass_does_not_give_the_printed_matrices() -> None:
     light = dataclasses.replace(P, mass=1280.0)
-    assert abs(light.a[0][0] - PUBLISHED.a[0][0]) > 0.3
-    assert abs(light.b[0][0] - PUBLISHED.b[0][0]) > 3.0
+    assert abs(light.a[0][0] - A[0, 0]) > 0.3
+    assert abs(light.b[0][0] - B[0, 0]) > 3.0
 
 
 def test_poles_are_the_printed_ones() -> None:
-    assert np.abs(analysis.closed_loop_poles(P) - PUBLISHED.poles).max() <= 1e-4
+    expected = [
+        complex(re, sign * im) for re, im in ((-55.9664, 6.7568), (-3.2296, 3.1087)) for sign in (-1, 1)
+    ]
+    assert np.abs(analysis.closed_loop_poles(P) - expected).max() <= 1e-4
 
 
 def test_the_steering_controls_every_state() -> None:
-    assert analysis.controllability_rank(P) == PUBLISHED.controllability_rank == 4
+    assert analysis.controllability_rank(P) == 4
     assert analysis.controllability_rank(dataclasses.replace(P, rear_cornering_stiffness=0.0)) < 4
 
 
-def test_the_controllability_matrix_is_that_of_the_printed_matrices() -> None:
-    """In 1e4, to what four digits of A and B allow: 5e-5 in A^3 B alone is 1.3 units of the fifth digit."""
-    a, b = np.array(PUBLISHED.a), np.array(PUBLISHED.b)
-    printed = np.hstack([b, a @ b, a @ a @ b, a @ a @ a @ b])
-    difference = np.abs(analysis.controllability_matrix(P) - printed) / 1e4
-    assert difference[:, :6].max() <= 5e-5
-    assert difference.max() <= 6e-5
+def test_the_controllability_matrix_is_the_printed_one() -> None:
+    """In 1e4; that of the rounded A and B is farther away, in its last two columns."""
+    assert np.abs(analysis.controllability_matrix(P) / 1e4 - Q_R).max() <= 5e-5
+    rounded = np.hstack([np.linalg.matrix_power(A, k) @ B for k in range(4)])
+    assert np.abs(rounded / 1e4 - Q_R)[:, :6].max() <= 5e-5 < np.abs(rounded / 1e4 - Q_R).max()
 
 
 def test_the_other_printed_gain_is_no_gain_of_this_vehicle() -> None:
     """No row of K has the entries of K-hat, in whatever order and with whatever signs: not reproducible."""
-    rows, k_hat = np.sort(np.abs(P.gain), axis=1), np.sort(np.abs(PUBLISHED.k_hat))
+    rows, k_hat = np.sort(np.abs(P.gain), axis=1), np.sort(np.abs(K_HAT))
     assert np.abs(rows - k_hat).max(axis=1).min() > 1.0
+
+
+def test_the_riccati_matrix_belongs_to_the_gain() -> None:
+    x = analysis.riccati_matrix(P)
+    assert np.array(P.b).T @ x == pytest.approx(np.array(P.gain), abs=1e-9)
+    assert np.linalg.eigvalsh(x).min() > 0.0
+    assert analysis.riccati_residual(P) < 1e-9
+
+
+def test_no_other_gain_costs_less_than_the_least() -> None:
+    """Half of the displacement's weight in the design is another gain, judged by the same cost."""
+    least = analysis.least_cost(P, 0.3)
+    assert analysis.cost_of_step(P, 0.3) == pytest.approx(least, abs=1e-6)
+    assert least == pytest.approx(0.01473, abs=5e-6)
+    assert analysis.least_cost(P, 0.6) == pytest.approx(4.0 * least)
+
+
+def test_the_prefilter_reaches_its_outputs_and_no_prefilter_reaches_the_others() -> None:
+    tracked = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0]])
+    reached = tracked @ analysis.final_states(P, np.array(P.b) @ np.array(P.prefilter))
+    assert reached == pytest.approx(np.eye(2), abs=1e-9)
+    assert analysis.smallest_singular_value(P, ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))) < 1e-12
 
 
 def test_the_continuous_loop_overshoots_and_settles() -> None:

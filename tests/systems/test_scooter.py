@@ -16,8 +16,8 @@ from evcosim.master.reproduce.scooter_numbers import (
     CONSTANT_SPEEDS,
     KMH,
     VARIANTS,
+    at_constant_speed,
     energy_and_speed,
-    estimate_error,
     largest_jump,
     over_bound,
     ripple,
@@ -86,7 +86,9 @@ def test_fig9_respects_every_bound_after_transients(variant):
 @pytest.mark.parametrize("speed", CONSTANT_SPEEDS)
 def test_estimate_of_a_constant_speed(speed):
     """|v_e - v| <= 0.5 km/h in the limit (published)."""
-    assert estimate_error(speed) <= 0.5
+    found = at_constant_speed(speed)
+    assert found.error <= 0.5
+    assert found.from_measured <= 1e-6  # it converges to what is measured
 
 
 def test_a_run_is_plain_python_with_a_bus_between():

@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 from evcosim.master.reproduce import papers
-from evcosim.master.reproduce.page import Page, near
+from evcosim.master.reproduce.page import Page, Row
+from evcosim.master.reproduce.printed import sentence
 from support.answers import refused
 
 
-def page_of(*rows):
-    return Page("lane_keeping", "Lane keeping", "a paper", "about", rows, (), ())
+def page_of(verdict):
+    row = Row("(1)", "x", "1.0", "1 ± 0.1", "1.05", verdict)
+    own = Row("", "y", "", "2", "2", "own")
+    return Page("lane_keeping", "Lane keeping", "a paper", "about", (row,), (own,), (), ())
 
 
 def test_the_command_fails_when_a_number_is_missed(evcosim, monkeypatch):
-    for obtained, code, text in ((1.2, 1, "missed: lane_keeping: x"), (1.05, 0, "missed: none")):
-        page = page_of(near("x", "1.0", obtained, 1.0, 0.1))
+    for verdict, code, text in (("missed", 1, "missed: lane_keeping: x"), ("reproduced", 0, "missed: none")):
+        page = page_of(verdict)
         monkeypatch.setattr(papers, "reproduce", lambda *_, page=page: [page])
         answer = evcosim("reproduce", "lane_keeping", "-o", "pages")
         assert answer.code == code
-        assert text in answer.out
+        assert answer.out.splitlines()[-1].endswith(text)
+
+
+def test_the_last_line_counts_as_the_index_does(evcosim, monkeypatch):
+    monkeypatch.setattr(papers, "reproduce", lambda *_: [page_of("calibrated")] * 2)
+    last = evcosim("reproduce", "lane_keeping", "-o", "pages").out.splitlines()[-1]
+    assert last == f"{sentence(['calibrated'] * 2)}; missed: none"
 
 
 def test_an_unknown_paper(evcosim, tmp_path):
@@ -26,7 +35,9 @@ def test_an_unknown_paper(evcosim, tmp_path):
 
 
 def test_the_tables_as_json(evcosim, monkeypatch):
-    monkeypatch.setattr(papers, "reproduce", lambda *_: [page_of(near("x", "1.0", 1.05, 1.0, 0.1))])
+    monkeypatch.setattr(papers, "reproduce", lambda *_: [page_of("reproduced")])
     data = evcosim("reproduce", "lane_keeping", "--json").json["lane_keeping"]
     assert data["missed"] == 0
     assert data["rows"][0]["verdict"] == "reproduced"
+    assert data["own"][0]["what"] == "y"
+    assert data["counts"]["reproduced"] == 1

@@ -21,11 +21,20 @@ def test_phase_currents_are_three_sines_of_the_effective_value(multi_drive_runs)
     assert rising / 0.4 == pytest.approx(148.6, abs=2.5)  # two pole pairs, gear 10, 46.66 rad/s, and the slip
 
 
-def test_the_pictures_are_those_of_the_paper_and_four_more(multi_drive_page, tmp_path):
+def test_the_pictures_are_those_of_the_paper_and_those_beyond(multi_drive_page, tmp_path):
     stems = [picture.stem for picture in multi_drive_page.pictures]
-    assert stems[:6] == ["speeds", "torques", "resistance", "currents", "phases", "launch"]
-    assert stems[6:] == ["baseline", "jump", "coupling", "machine"]
-    assert all("Figs. 4 to 19" in picture.caption for picture in multi_drive_page.pictures[:5])
+    assert stems[8:] == [
+        "resistance",
+        "currents",
+        "phases",
+        "launch",
+        "baseline",
+        "jump",
+        "coupling",
+        "machine",
+    ]
+    beyond = [picture.caption for picture in multi_drive_page.pictures[8:] if picture.stem != "launch"]
+    assert all(caption.startswith("Beyond the paper") for caption in beyond)
     written = {path.name for path in write_page(multi_drive_page, tmp_path)}
     assert {"multi_drive.md", "multi_drive.html"} <= written
     for stem in stems:

@@ -4,56 +4,88 @@ from __future__ import annotations
 
 import pytest
 
-from evcosim.master.reproduce.page import Page, near, not_reproducible
-from evcosim.master.reproduce.render import write_index, write_page
+from evcosim.master.reproduce.page import Page, Row
+from evcosim.master.reproduce.printed import sentence
+from evcosim.master.reproduce.render import missed, write_index, write_page
 
 
 def test_a_page_is_markdown_html_and_pictures(written):
     page, folder = written
     markdown, html = (folder / "lane_keeping.md").read_text(), (folder / "lane_keeping.html").read_text()
-    for row in page.rows:
+    for row in (*page.rows, *page.own):
         assert f"**{row.verdict}**" in markdown
         assert row.what in markdown
+    assert sentence(row.verdict for row in page.rows) in markdown
     assert html.count("data:image/png;base64,") == len(page.pictures)
     assert 'src="figures' not in html  # self-contained
     for picture in page.pictures:
         for suffix in (".png", ".svg"):
             assert (folder / "figures" / f"lane_keeping-{picture.stem}{suffix}").stat().st_size > 1000
     assert "[lane_keeping](lane_keeping.md)" in (folder / "README.md").read_text()
+    assert '<a href="lane_keeping.html">' in (folder / "index.html").read_text()
+
+
+ROWS = (
+    Row("(1)", "a | b < c", "1.0", "1 ± 0.1", "1.05", "reproduced"),
+    Row("(2)", "x", "1.0", "1 ± 0.1", "2", "missed", "outside what was to be reached"),
+    Row("(3)", "k λ*", "9", "", "3", "not reproducible", "two\nlines"),
+)
+OWN = (Row("", "ours", "", "1 ± 0.1", "2", "missed"), Row("", "settling", "", "2", "2", "own"))
 
 
 @pytest.fixture
 def made(tmp_path):
-    """Write a page without pictures and an index; return its Markdown, its HTML and the index."""
-    rows = (
-        near("a | b < c", "1.0", 1.05, 1.0, 0.1),
-        near("missed", "1.0", 2.0, 1.0, 0.1),
-        not_reproducible("k λ*", "9", "3", "two\nlines"),
-    )
-    page = Page("mine", "Title & co", "A. Author", "About", rows, (), ("evcosim run scooter",))
+    """Write a page without pictures and an index; return its Markdown, its HTML and both indices."""
+    page = Page("mine", "Title & co", "A. Author", "About", ROWS, OWN, (), ("evcosim run scooter",))
     write_page(page, tmp_path)
     write_index([page], tmp_path)
-    return tuple(
-        (tmp_path / name).read_text(encoding="utf-8") for name in ("mine.md", "mine.html", "README.md")
-    )
+    names = ("mine.md", "mine.html", "README.md", "index.html")
+    return tuple((tmp_path / name).read_text(encoding="utf-8") for name in names)
 
 
 def test_cells_cannot_end_the_table(made):
-    markdown, html, _ = made
-    assert r"| a \| b < c | 1.0 | 1 ± 0.1 | 1.05 | **reproduced** |  |" in markdown
-    assert "| k λ* | 9 | - | 3 | **not reproducible** | two lines |" in markdown
-    assert "<td>a | b &lt; c</td>" in html
+    markdown, html, *_ = made
+    assert r"| (1) | a \| b < c | 1.0 | 1.05 | 1 ± 0.1 | **reproduced** |  |" in markdown
+    assert "| (3) | k λ* | 9 | 3 |  | **not reproducible** | two lines |" in markdown
+    assert '<td data-head="what">a | b &lt; c</td>' in html
     assert "<title>Title &amp; co</title>" in html
 
 
 def test_a_verdict_has_its_class(made):
-    _, html, _ = made
-    assert '<td class="missed">missed</td>' in html
-    assert '<td class="not">not reproducible</td>' in html
+    _, html, *_ = made
+    assert "<td data-head=\"verdict\" class='missed'>missed</td>" in html
+    assert "<td data-head=\"verdict\" class='not'>not reproducible</td>" in html
+
+
+def test_own_numbers_stand_in_a_table_of_their_own_and_are_not_counted(made):
+    markdown, html, index, _ = made
+    head, own = markdown.split("## Own numbers")
+    assert "| ours | 2 | 1 ± 0.1 | **missed** |  |" in own
+    assert "settling" not in head
+    assert "<h2>Own numbers</h2>" in html
+    assert "2 printed numbers" in index
 
 
 def test_the_index_counts_each_verdict(made):
-    *_, index = made
+    *_, index, html = made
     lines = index.splitlines()
-    assert lines[2] == "| system | paper | reproduced | calibrated | reached | not reproducible | missed |"
-    assert lines[4] == "| [mine](mine.md) | A. Author | 1 | 0 | 0 | 1 | 1 |"
+    counts = "| 1 | 0 | 0 | 1 | 2 |"
+    assert lines[4] == (
+        "| system | paper | reproduced | calibrated | by construction | not reproducible | missed |"
+    )
+    assert lines[6] == f"| [mine](mine.md) | A. Author {counts}"
+    assert lines[2].startswith(sentence(row.verdict for row in ROWS))
+    assert lines[2].endswith("missed: mine: x; mine: ours.")
+    assert lines[2] in html
+
+
+def test_nothing_missed_is_said_too():
+    assert missed([Page("mine", "t", "s", "a", ROWS[:1], OWN[1:], (), ())]) == "missed: none"
+
+
+def test_a_page_stacks_its_cells_where_it_is_narrow(made):
+    """Heads stand beside their cells there; commands wrap."""
+    _, html, *_ = made
+    assert "@media (max-width: 800px)" in html
+    assert html.count('data-head="obtained"') == len(ROWS) + len(OWN)
+    assert "white-space: pre-wrap" in html

@@ -30,6 +30,8 @@ def run():
         "ecu.throttle": 20.0 + 5.0 * (state == 1.0) + 0.1 * np.sin(time),
         "ecu.throttle_request": 40.0 + 2.0 * (time >= 10.0),
         "ecu.speed_bound": np.full(4001, 30.0),
+        "vehicle.acceleration": np.select([time < 12.0, time < 13.0], [3.0, 1.2], 1.0),
+        "ecu.acceleration_bound": np.full(4001, 1.0),
         "vehicle.speed": (30.0 + 0.3 * np.cos(time)) / 3.6,
         "vehicle.distance": 10.0 * time,
         "battery.energy_drawn": 0.5 * time,
@@ -59,6 +61,15 @@ def test_the_jump_at_a_switch_is_beyond_that_of_the_rider(run):
     assert numbers.largest_jump(run) == pytest.approx(
         5.0, abs=0.01
     )  # at 20 s; at 10 s the rider moves 2 of 5
+
+
+def test_time_above_the_bound_counts_in_acceleration_alone(run):
+    assert numbers.time_above_bound(run) == pytest.approx(3.0)
+
+
+def test_the_boost_is_a_ratio_of_accelerations():
+    assert numbers.boost(30.0, 30.0) == 1.0
+    assert numbers.boost(24.0, 40.0) > 2.0
 
 
 def test_energy_and_speed(run):
