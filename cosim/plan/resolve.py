@@ -293,10 +293,14 @@ def _drives(
             raise ConfigError(f"{place}.unit: {entry.to} is a String, which has no unit of measure")
         target = End(entry.to, variable.unit, interface.units_of_measure, variable.difference)
         if entry.unit is not None:
-            given = dataclasses.replace(target, name=f"the stimulus of {entry.to}", unit=entry.unit)
+            advice = "say what it is in: the stimulus' own `unit`"
+            given = dataclasses.replace(
+                target, name=f"the stimulus of {entry.to}", unit=entry.unit, advice=advice
+            )
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
         elif entry.csv is not None:
-            _note_unit_of_column(csv_of(entry, place, scenario.path), target, network.warnings)
+            where = "the stimulus" if scenario.path else "a stimulus of a system"
+            _note_unit_of_column(csv_of(entry, place, scenario.path), target, where, network.warnings)
         slot = slots.valid[unit, name]
         network.drive(
             entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"
@@ -311,8 +315,11 @@ def _drives(
     return tuple(drives)
 
 
-def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, warnings: list[str]) -> None:
-    """Add a warning where the name of a CSV column says another unit than its input's, as `speed [km/h]`."""
+def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, where: str, warnings: list[str]) -> None:
+    """Add a warning where the name of a CSV column says another unit than its input's, as `speed [km/h]`.
+
+    `where` can a unit of measure be given.
+    """
     file, rows = column
     name = file.names[rows.value]
     said = _UNIT_IN_NAME.fullmatch(name)
@@ -325,7 +332,7 @@ def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, warnings: li
     if not map_.identity:
         warnings.append(
             f"{file.path}: column '{name}': its values are taken in [{target.unit}], the unit of "
-            f'{target.name}; `unit = "{said[1]}"` in the stimulus converts them'
+            f'{target.name}; `unit = "{said[1]}"` in {where} converts them'
         )
 
 

@@ -24,7 +24,8 @@ class End:
     """One end of a connection: a variable, a bus signal or a stimulus.
 
     `definitions` are those of its own FMU; `difference` says that its values have no absolute zero; `bus` is
-    the bus that a signal belongs to.
+    the bus that a signal belongs to. `advice` is what to do where nobody knows what the end is in; "" for a
+    variable of a unit, whose `map` can say it.
     """
 
     name: str
@@ -32,6 +33,7 @@ class End:
     definitions: Definitions = dataclasses.field(default_factory=dict)
     difference: bool = False
     bus: str = ""
+    advice: str = ""
 
     @property
     def bare(self) -> bool:
@@ -68,9 +70,9 @@ def unit_map(
     except UnknownUnitError as error:
         if _is_taken_as_one(source, target, others, warnings):
             return Affine()
-        raise _refused(source, target, place, error) from error
+        raise _refused(source, target, others, place, error) from error
     except ConfigError as error:
-        raise _refused(source, target, place, error) from error
+        raise _refused(source, target, others, place, error) from error
     for end in (source, target):
         if end.defines and (said := contradiction(end.definitions[end.unit])):
             _note(warnings, f"{end.name}: its FMU's definition is taken: {said}")
@@ -173,17 +175,44 @@ def _is_taken_as_one(source: End, target: End, others: Iterable[Definitions], wa
     return False
 
 
-def _refused(source: End, target: End, place: str, error: ConfigError) -> ConfigError:
-    """Return the error of two ends that do not convert, with the line to write where that would help."""
-    said = ""
-    end, other = (source, target) if source.bus or not target.bus else (target, source)
-    named = end.unit.strip() in NO_UNIT
-    if end.bus and (named or isinstance(error, UnknownUnitError | OpenUnitError)):
-        unit, known = map(_quoted, (end.unit, other.unit))
-        said = f"; say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}"
-    elif isinstance(error, UnknownUnitError | OpenUnitError):
-        said = f"; say what {end.name} is in: `unit` in the unit's `map`"
+def _refused(
+    source: End, target: End, others: Iterable[Definitions], place: str, error: ConfigError
+) -> ConfigError:
+    """Return the error of two ends that do not convert, with what to do at an end where that would help."""
+    ends = [end for end in (source, target) if _is_to_blame(end, others, error)]
+    if not ends and isinstance(error, OpenUnitError):  # only both together are open
+        ends = [source if source.bus or not target.bus else target]
+    said = "".join(f"; {_advice(end, target if end is source else source, others)}" for end in ends)
     return ConfigError(f"{place}: {source} cannot feed {target}: {error}{said}")
+
+
+def _is_to_blame(end: End, others: Iterable[Definitions], error: ConfigError) -> bool:
+    """Return True where another text for the unit of measure of this end would help."""
+    unit = _known(end, others)
+    match error:
+        case UnknownUnitError():
+            return unit is None
+        case OpenUnitError():
+            return unit is not None and (len(unit.readings) > 1 or unit.plain_rate)
+        case _:
+            return bool(end.bus) and end.unit.strip() in NO_UNIT
+
+
+def _known(end: End, others: Iterable[Definitions]) -> UnitOfMeasure | None:
+    """Return the unit of measure of an end; None where nobody knows it."""
+    try:
+        return defined(end.unit, end.definitions, *others)
+    except UnknownUnitError:
+        return None
+
+
+def _advice(end: End, other: End, others: Iterable[Definitions]) -> str:
+    """Return what to do where the unit of measure of an end is unknown or open."""
+    if end.bus:
+        unit = _quoted(end.unit)
+        known = _quoted("..." if _known(other, others) is None else other.unit)
+        return f"say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}"
+    return end.advice or f"say what {end.name} is in: `unit` in the unit's `map`"
 
 
 def with_unit(signal: Signal, units: Mapping[str, str]) -> Signal:

@@ -95,8 +95,10 @@ def _scaled(
 
     Range and start are the FMU's, mapped. Raises ConfigError as `scaled_map` does.
     """
-    ours = End(f"the system's {known.name}", known.unit, interface.units_of_measure, variable.difference)
-    own = End(variable.name, variable.unit, interface.units_of_measure, variable.difference)
+    of_fmu = interface.units_of_measure, variable.difference
+    ours = End(f"the system's {known.name}", known.unit, *of_fmu, advice="say what it is in: `unit` here")
+    instead = f"with `convert = false` no unit of measure of {variable.name} counts"
+    own = End(variable.name, variable.unit, *of_fmu, advice=instead)
     ends = (ours, own) if known.causality in ("input", "parameter") else (own, ours)
     changed = dataclasses.replace(known, scaling=scaled_map(*ends, mapped, (), place, []))
     if not math.isfinite(changed.scaling.inverse().scale):

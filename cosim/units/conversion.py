@@ -17,7 +17,6 @@ from ..errors import ConfigError
 from .definition import defined
 from .measure import BASE_UNITS, Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure
 
-_RATE = tuple(-1 if base == "s" else 0 for base in BASE_UNITS)
 _TURNING = tuple({"s": -1, "rad": 1}.get(base, 0) for base in BASE_UNITS)
 _SAME = 1e-3  # relative: definitions of one name that differ by less differ in digits
 _ABSOLUTE = (False, False)
@@ -75,9 +74,9 @@ def _between(a: UnitOfMeasure, b: UnitOfMeasure) -> Affine | None:
         if not b.factor:
             return Affine(math.inf)
         return Affine(_ratio(a.factor, b.factor), (a.offset - b.offset) / b.factor)
-    if a.exponents == _RATE and b.cycles:
+    if a.plain_rate and b.cycles:
         return Affine(_ratio(a.factor, _cycles(b)))
-    if a.cycles and b.exponents == _RATE:
+    if a.cycles and b.plain_rate:
         return Affine(_ratio(_cycles(a), b.factor) if b.factor else math.inf)
     return None
 
@@ -136,9 +135,9 @@ def _near(a: float, b: float) -> bool:
 def _no_conversion(source: UnitOfMeasure, target: UnitOfMeasure) -> ConfigError:
     """Return the error for two units that do not convert, with both readings where an angle is open."""
     plain_rate, turning = source, target
-    if target.exponents == _RATE:
+    if target.plain_rate:
         plain_rate, turning = target, source
-    if plain_rate.exponents == _RATE and turning.exponents == _TURNING:
+    if plain_rate.plain_rate and turning.exponents == _TURNING:
         as_turns, as_radians = (x * plain_rate.factor / turning.factor for x in (2.0 * math.pi, 1.0))
         return OpenUnitError(
             f"[{plain_rate.name}] may count turns (1 is {as_turns:.6g} [{turning.name}]) or radians "

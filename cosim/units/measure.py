@@ -89,6 +89,11 @@ class UnitOfMeasure:
         return self.exponents is not None and not any(self.exponents) and self.factor == 1.0
 
     @property
+    def plain_rate(self) -> bool:
+        """True for 1/s and its multiples, which may count turns or radians."""
+        return self.exponents == tuple(-1 if base == "s" else 0 for base in BASE_UNITS)
+
+    @property
     def dimension(self) -> str:
         """The exponents as text: "kg.m2/s3" as "kg.m2.s-3"; "1" for none."""
         pairs = zip(BASE_UNITS, self.exponents or (), strict=False)

@@ -204,3 +204,14 @@ def test_the_command(evcosim, tmp_path):
 def test_the_name_of_the_file_names_the_results(tmp_path, file, name):
     path = mixed_fmu(tmp_path / f"{file}.fmu", 2)
     assert simulate(path, stop_time=0.02, step_size=0.01).manifest["system"] == name
+
+
+def test_a_column_that_says_another_unit_is_told_with_what_can_be_done(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("p.csv").write_text("time,power [kW]\n0,1\n9,2\n", encoding="utf-8")
+    results = simulate("Battery", inputs={"power": "p.csv"}, stop_time=0.1)
+    (said,) = [text for text in results.manifest["warnings"] if "column" in text]
+    assert said == (
+        "p.csv: column 'power [kW]': its values are taken in [W], the unit of fmu.power; `unit = \"kW\"` in "
+        "a stimulus of a system converts them"
+    )

@@ -50,6 +50,10 @@ def test_parameters_user_before_scenario_before_system():
             "^test.toml: stimulus 1.unit: .*different quantities",
         ),
         (
+            {"stimulus": [{"to": "car.throttle", "constant": 1, "unit": "tbd"}]},
+            r"^test.toml: stimulus 1.unit: .*'tbd' is not known; say what it is in: the stimulus' own `unit`$",
+        ),
+        (
             {"stimulus": [{"to": "car.grade", "csv": "no.csv"}]},
             "^test.toml: stimulus 1.csv: there is no file 'no.csv'",
         ),

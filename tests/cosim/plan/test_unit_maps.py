@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import re
+
 import pytest
 
 from evcosim.cosim.can.database import Signal
@@ -74,6 +77,51 @@ def test_other_refusals_and_their_ways_out():
     ):
         with pytest.raises(ConfigError, match=said):
             made(source, target)
+
+
+OWN = End("the stimulus of b.u", "tbd", advice="say what it is in: its own `unit`")
+ON_BUS = r'say what it is in the system file, \[buses.c.units\]: "{}" = "{}"'
+BOTH_OPEN = ON_BUS.format("tbd", r"\.\.\.")
+OF_MAP = "say what {} is in: `unit` in the unit's `map`"
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(
+    ("one", "other", "advice"),
+    [
+        # unknown at one end, at the other, at both
+        (End("a.y", "tbd"), End("b.u", "V"), [OF_MAP.format("a.y")]),
+        (End("c.M.S", "V", bus="c"), End("b.u", "tbd"), [OF_MAP.format("b.u")]),
+        (End("c.M.S", "tbd", bus="c"), End("b.u", "V"), [ON_BUS.format("tbd", "V")]),
+        (
+            End("c.M.S", "tbd", bus="c"),
+            End("b.u", "foo"),
+            [ON_BUS.format("tbd", "..."), OF_MAP.format("b.u")],
+        ),
+        (OWN, End("b.u", "V"), [OWN.advice]),
+        (OWN, End("b.u", "foo"), [OWN.advice, OF_MAP.format("b.u")]),
+        # open
+        (End("a.y", "1/s"), End("b.u", "rad/s"), [OF_MAP.format("a.y")]),
+        (End("c.M.S", "rad/s", bus="c"), End("b.u", "1/s"), [OF_MAP.format("b.u")]),
+        (End("c.M.S", "1/s", bus="c"), End("b.u", "rad/s"), [ON_BUS.format("1/s", "rad/s")]),
+        (End("a.y", "kg"), End("b.u", "ton"), [OF_MAP.format("b.u")]),
+        (dataclasses.replace(OWN, unit="ton"), End("b.u", "kg"), [OWN.advice]),
+        # a word for no unit of measure
+        (End("c.M.S", "-", bus="c"), End("b.u", "V"), [ON_BUS.format("-", "V")]),
+        (End("c.M.S", "V", bus="c"), End("b.u", "-"), []),
+        # another quantity: no text would help
+        (End("a.y", "m/s"), End("b.u", "K"), []),
+        (dataclasses.replace(OWN, unit="m/s"), End("b.u", "K"), []),
+    ],
+)
+def test_what_to_do_is_said_of_the_end_that_is_to_blame(one, other, advice, turned):
+    with pytest.raises(ConfigError) as error:
+        made(*((other, one) if turned else (one, other)))
+    said = str(error.value)
+    found = [text for text in ("map`", "own `unit`", ".units]") for _ in range(said.count(text))]
+    assert len(found) == len(advice), said
+    for text in advice:
+        assert re.search(text, said), said
 
 
 def test_one_text_is_one_unit_where_one_end_defines_it():

@@ -24,6 +24,7 @@ FMU = UnitInterface(
             VariableInfo("s", causality="local", unit="m"),
             VariableInfo("m_total", causality="parameter", unit="kg", start=200.0),
             VariableInfo("label", "String", "parameter", "fixed"),
+            VariableInfo("odd", causality="local", unit="tbd"),
         )
     },
     unusable={"w": "is of type Binary, which no one can ask for"},
@@ -42,7 +43,7 @@ def test_without_a_map_it_is_the_interface_itself() -> None:
 
 def test_a_variable_is_known_by_the_systems_name_alone() -> None:
     known = shown(inputs={"throttle": "pedal"}, outputs={"speed": "v"}, parameters={"mass": "m_total"})
-    assert set(known.variables) == {"throttle", "mode", "speed", "s", "mass", "label"}
+    assert set(known.variables) == {"throttle", "mode", "speed", "s", "mass", "label", "odd"}
     assert {v.declared_name for v in known.variables.values()} == set(FMU.variables)
     assert known.variables["s"] == FMU.variables["s"]
 
@@ -230,6 +231,14 @@ def test_a_unit_of_measure_beside_a_factor_is_the_systems() -> None:
         (
             {"outputs": {"f": {"variable": "v", "unit": "N", "factor": 5e-324}}},
             "no number holds the way back",
+        ),
+        (
+            {"outputs": {"f": {"variable": "odd", "unit": "V", "convert": True}}},
+            "'tbd' is not known; with `convert = false` no unit of measure of odd counts$",
+        ),
+        (
+            {"outputs": {"f": {"variable": "m_total", "unit": "ton", "convert": True}}},
+            "several meanings; say what it is in: `unit` here$",
         ),
     ],
 )
