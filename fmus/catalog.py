@@ -34,6 +34,7 @@ CATALOG = {
     "LaneKeepingController": Entry("lane_keeping_controller", Experiment(stop_time=6.0)),
     "TwoMotorVehicle": Entry("two_motor_vehicle", Experiment(stop_time=10.0)),
     "InductionMotorDrive": Entry("induction_motor_drive", Experiment(stop_time=1.0)),
+    "Inverter": Entry("inverter", Experiment(stop_time=10.0)),
     "ElectronicDifferential": Entry("electronic_differential", Experiment(stop_time=10.0)),
     "WheelSpeedController": Entry("wheel_speed_controller", Experiment(stop_time=10.0)),
     "TwoWheelerBraking": Entry("two_wheeler_braking", Experiment(stop_time=5.0)),

@@ -7,22 +7,23 @@ speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. Slips are st
     Psi_f = r F_xf - (J/r) (1 - lambda_f) v',   F_xf = (m/l) (g l_r - h v') mu_f      torque [N.m]  (7)
     Psi_r = r F_xr - (J/r) (1 - lambda_r) v',   F_xr = (m/l) (g l_f + h v') mu_r      torque [N.m]  (8)
     v' = -g (l_r mu_f + l_f mu_r)/(l - h (mu_f - mu_r))            (1)-(5) of `two_wheeler_braking`
-    T_i = k_i (lambda* - lambda_i), not below 0                    proportional control             (9)
+    T_i = k_i (lambda_i* - lambda_i), not below 0                  proportional control             (9)
 
 Psi_i is the torque that keeps wheel i at its slip. Measured by s, ds = r/(J v) dt, (6) knows no speed:
 d lambda_i/ds = T_i - Psi_i. That is what is integrated here.
 
     Proposition 3.1   k_i > k-bar_i = max over slips and roads of -d Psi_i/d lambda_i, true speed:
-                      one equilibrium, and every start ends there.
+                      one equilibrium, and every start ends there, for all lambda_i* in (0, 1).
     Proposition 3.2   k_i lambda* > max Psi_i, slip from v_hat = r max(w_f, w_r) instead: both wheels lock,
                       because the fastest wheel believes in no slip and so is braked with k_i lambda*.
 
 Slips and torques are arrays of one shape where nothing else is stated.
 
-Deviations: k-bar is our reading of the condition: T_i - Psi_i then falls along its own slip. It gives 324.5
-and 135.2 N.m (expected 324.5 and 135.1); the dry road sets the first, cobble the second.
+Deviations: k-bar is the condition (14), (15) of the paper, whose secants are nowhere steeper than the
+steepest tangent: T_i - Psi_i then falls along its own slip. It gives 324.5 and 135.2 N.m; the dry road sets
+the first, cobble the second.
 
-published: lambda* = 0.22.
+published: lambda* = 0.22 for both wheels in the maneuvers, any in (0, 1) in the propositions.
 chosen: the vehicle of `two_wheeler_braking`, the tolerances below.
 
 At the edges: slips lie in [0, 1]. With both wheels locked v_hat = 0, and the slip 0/0 counts as 0.
@@ -70,6 +71,16 @@ class Gains(NamedTuple):
 
     front: float
     rear: float
+
+
+class SetPoint(NamedTuple):
+    """The slips lambda_f* and lambda_r* that the controller is to keep."""
+
+    front: float
+    rear: float
+
+
+TARGET = SetPoint(TARGET_SLIP, TARGET_SLIP)
 
 
 class Equilibrium(NamedTuple):
@@ -123,19 +134,19 @@ def k_bar(p: Parameters, roads: Iterable[Road] = Road) -> Gains:
     return Gains(max(fall.front for fall in falls), max(fall.rear for fall in falls))
 
 
-def proportional(gains: Gains, target: float = TARGET_SLIP) -> Torques:
+def proportional(gains: Gains, target: SetPoint = TARGET) -> Torques:
     """Return the torques of (9) [N.m] as a function of the true slips."""
 
     def torques(front_slip: Array, rear_slip: Array) -> tuple[Array, Array]:
         return (
-            np.maximum(0.0, gains.front * (target - front_slip)),  # (9)
-            np.maximum(0.0, gains.rear * (target - rear_slip)),
+            np.maximum(0.0, gains.front * (target.front - front_slip)),  # (9)
+            np.maximum(0.0, gains.rear * (target.rear - rear_slip)),
         )
 
     return torques
 
 
-def proportional_by_fastest_wheel(gains: Gains, target: float = TARGET_SLIP) -> Torques:
+def proportional_by_fastest_wheel(gains: Gains, target: SetPoint = TARGET) -> Torques:
     """Return the torques of (9) [N.m] as a function of the true slips; the controller sees those of v_hat.
 
     v_hat = r max(w_f, w_r). With both wheels locked the slip is 0/0, which counts as no slip.
@@ -152,7 +163,7 @@ def proportional_by_fastest_wheel(gains: Gains, target: float = TARGET_SLIP) -> 
     return torques
 
 
-def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list[Equilibrium]:
+def equilibria(p: Parameters, gains: Gains, target: SetPoint = TARGET) -> list[Equilibrium]:
     """Return the equilibria of (6) with (9) and the true speed that Newton's method finds from 49 starts."""
     from scipy.optimize import root  # slow to import
 
@@ -172,7 +183,7 @@ def equilibria(p: Parameters, gains: Gains, target: float = TARGET_SLIP) -> list
     return found
 
 
-def end_points(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> Array:
+def end_points(p: Parameters, gains: Gains, starts: Array, target: SetPoint = TARGET) -> Array:
     """Return the slips at which (6) with (9) and the true speed ends from `starts`; both of shape (n, 2).
 
     Raises RuntimeError where it is not at rest at the end, which Proposition 3.1 excludes.
@@ -202,7 +213,7 @@ def spread(points: Array) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-def locks(p: Parameters, gains: Gains, starts: Array, target: float = TARGET_SLIP) -> NDArray[np.bool_]:
+def locks(p: Parameters, gains: Gains, starts: Array, target: SetPoint = TARGET) -> NDArray[np.bool_]:
     """Return True for each of the `starts`, shape (n, 2), that ends with both wheels locked; shape (n,).
 
     Proposition 3.2: (6) with the fastest wheel's speed, by Euler's rule with a step for each start. Near the

@@ -8,15 +8,22 @@ Multi-Output PID Controller", Serbian Journal of Electrical Engineering 9(2), 20
     rho = T_aero/(1/2 A C_x v^2 R)                       density of a torque of the air [kg/m3]  (D3)
     a_rise = 0.8 v/(t_rise g)                            mean of a rise from 10 to 90 % [1]      (D4)
     a_max = 2 T_max/(R (M + 2 J_e/R^2) g)                two wheels at their torque limit [1]    (D5)
+    s_p = ln(th_1 th_2/th_3)/th_2                        slip of the highest friction [1]        (D6)
+    c = K_d/J_e (1 - exp(-h/tau))        growth of an error from sample to sample, sampled by h  (D7)
 
 The symbols are those of `two_motor_vehicle`.
 
+The paper's "optimal range" of the slip is not defined there: it is read as |s| < s_p, where more slip gives
+more force. (D7): the derivative of a wheel's error meets the wheel's own inertia, behind the lag tau of the
+drive; a loop with c > 1 throws its torque from limit to limit.
+
 published: the first curve of the maneuver begins at 2 s.
-chosen: nothing.
+chosen: the reading of the optimal range.
 """
 
 from __future__ import annotations
 
+from math import expm1, log
 from typing import NamedTuple
 
 import numpy as np
@@ -92,3 +99,13 @@ def grip_limit(p: TwoMotorVehicle.Parameters, torque_limit: float) -> float:
     """Return the acceleration, in g, of two wheels at their torque limit [N.m], without resistance."""
     inertia = p.mass + 2.0 * p.wheel_inertia / p.wheel_radius**2
     return 2.0 * torque_limit / p.wheel_radius / inertia / GRAVITY  # (D5)
+
+
+def peak_slip(p: TwoMotorVehicle.Parameters) -> float:
+    """Return the slip [1] beyond which a tire gives less force."""
+    return log(p.friction_peak * p.friction_rise / p.friction_fall) / p.friction_rise  # (D6)
+
+
+def derivative_growth(p: TwoMotorVehicle.Parameters, gain: float, lag: float, period: float) -> float:
+    """Return the factor c [1] of a derivative gain [N.m.s2/rad] behind a lag, sampled by a period [s]."""
+    return -gain / p.wheel_inertia * expm1(-period / lag)  # (D7)

@@ -126,3 +126,44 @@ def test_more_than_it_can_deliver_is_noticed() -> None:
     assert limit == ocv(1.0) ** 2 / (4.0 * P.resistance)
     beyond = Battery.Inputs(limit * 1.001)
     assert "asked for more power" in Battery.notice(P, x, Battery.step(P, x, beyond, 0.01), beyond)
+
+
+# -- charging ----------------------------------------------------------------------------------------------
+
+CHARGED = dataclasses.replace(P, charge_limit=3000.0)
+
+
+@given(charges, st.floats(-3000.0, 8000.0), st.sampled_from([0.01, 1.0, 30.0]))
+def test_what_charges_it_comes_back_but_for_the_losses(charge: float, power: float, dt: float) -> None:
+    """Charge times open-circuit voltage = energy at the terminals + heat, whichever way the current flows."""
+    x, u = Battery.State(charge), Battery.Inputs(power)
+    for _ in range(20):
+        y, after = Battery.outputs(CHARGED, x, u), Battery.step(CHARGED, x, u, dt)
+        given_up = ocv(x.state_of_charge) * P.capacity * (x.state_of_charge - after.state_of_charge)
+        taken = after.energy + after.loss - x.energy - x.loss
+        assert taken == pytest.approx(given_up, rel=1e-9, abs=1e-9 * ocv(1.0) * P.capacity)
+        assert after.loss >= x.loss
+        assert y.current * power >= 0.0
+        assert 0.0 <= after.state_of_charge <= 1.0
+        x = after
+
+
+def test_a_charged_battery_takes_no_more_than_its_limit() -> None:
+    x = Battery.State(0.5)
+    most, more = (Battery.outputs(CHARGED, x, Battery.Inputs(power)) for power in (-3000.0, -9000.0))
+    assert more == most
+    assert most.voltage * most.current == pytest.approx(-3000.0)
+    assert most.voltage > ocv(0.5)
+    assert Battery.notice(CHARGED, x, x, Battery.Inputs(-2000.0)) == ""
+    assert "more power than it takes" in Battery.notice(CHARGED, x, x, Battery.Inputs(-9000.0))
+
+
+def test_a_full_battery_is_charged_no_more_and_an_empty_one_is() -> None:
+    full, u = Battery.State(1.0), Battery.Inputs(-2000.0)
+    assert Battery.outputs(CHARGED, full, u).current == 0.0
+    assert Battery.step(CHARGED, full, u, 0.0) == full
+    brim = Battery.step(CHARGED, Battery.State(1.0 - 1e-5), u, 30.0)
+    assert brim.state_of_charge == 1.0
+    empty = Battery.step(CHARGED, Battery.State(0.0), u, 1.0)
+    assert empty.state_of_charge > 0.0
+    assert empty.energy == pytest.approx(-2000.0 / 3600.0)

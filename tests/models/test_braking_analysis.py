@@ -53,9 +53,19 @@ def test_slopes_are_the_derivatives(road: Road) -> None:
 
 
 def test_critical_gains() -> None:
-    """Expected: 324.5 and 135.1 N.m, each +-1 %."""
-    assert K_BAR.front == pytest.approx(324.5, rel=0.01)
-    assert K_BAR.rear == pytest.approx(135.1, rel=0.01)
+    assert K_BAR.front == pytest.approx(324.5, abs=0.05)
+    assert K_BAR.rear == pytest.approx(135.2, abs=0.05)
+
+
+def test_no_secant_of_psi_falls_more_steeply_than_the_critical_gain() -> None:
+    """(14), (15) are written with secants: of random ones none is steeper."""
+    draw = np.random.default_rng(1)
+    for road in Road:
+        p, (f, r, other) = on(road), draw.random((3, 2000))
+        front = (analysis.psi_front(p, f, r) - analysis.psi_front(p, other, r)) / (f - other)
+        rear = (analysis.psi_rear(p, f, r) - analysis.psi_rear(p, f, other)) / (r - other)
+        assert -front.min() <= K_BAR.front
+        assert -rear.min() <= K_BAR.rear
 
 
 def test_critical_gains_are_the_highest_of_all_roads() -> None:
@@ -84,6 +94,29 @@ def test_proposition_3_1(road: Road, factor: float) -> None:
     assert tuple(ends[0]) == pytest.approx(tuple(only), abs=1e-6)
     assert 0.0 < only.front < 0.22
     assert 0.0 < only.rear < 0.22
+
+
+@pytest.mark.parametrize("target", [(0.1, 0.25), (0.6, 0.3), (0.9, 0.9), (0.05, 0.9)], ids=str)
+def test_proposition_3_1_at_other_set_points(target: tuple[float, float]) -> None:
+    """It says: for all set points. On the roads that set the two critical gains, at gains just above them."""
+    gains, wanted = times(1.05, K_BAR), analysis.SetPoint(*target)
+    for road in (Road.DRY, Road.COBBLE):
+        ends = analysis.end_points(on(road), gains, STARTS[:10], wanted)
+        assert analysis.spread(ends) <= 1e-6
+        (only,) = analysis.equilibria(on(road), gains, wanted)
+        assert tuple(ends[0]) == pytest.approx(tuple(only), abs=1e-6)
+        assert 0.0 < only.front < wanted.front
+        assert 0.0 < only.rear < wanted.rear
+
+
+def test_at_little_more_than_the_critical_gain_the_slip_is_extremely_low() -> None:
+    """Remark 3.3: a gain below the highest Psi leaves a slip that is of no use for braking."""
+    gains = times(1.05, analysis.k_bar(analysis.Parameters()))
+    highest = analysis.highest_psi(analysis.Parameters())
+    assert gains.front < highest.front
+    assert gains.rear < highest.rear
+    (only,) = analysis.equilibria(analysis.Parameters(), gains)
+    assert tuple(only) == pytest.approx((0.011, 0.003), abs=5e-4)
 
 
 @every_road

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evcosim.models import multi_drive_analysis as analysis
-from evcosim.models.two_motor_vehicle import TwoMotorVehicle, resistance_torques
+from evcosim.models.two_motor_vehicle import TwoMotorVehicle, friction, resistance_torques
 from evcosim.models.wheel_speed_controller import TORQUE_LIMIT
 
 P = TwoMotorVehicle.Parameters()
@@ -45,3 +45,19 @@ def test_the_printed_torque_of_the_air_needs_another_density() -> None:
 def test_the_printed_rise_needs_2_7_g_and_the_motors_give_a_third_of_one() -> None:
     assert analysis.acceleration_of_rise(V, 0.5) == pytest.approx(2.72, abs=0.01)
     assert analysis.grip_limit(P, TORQUE_LIMIT) == pytest.approx(0.324, abs=1e-3)
+
+
+def test_friction_is_highest_at_the_peak_slip() -> None:
+    peak = analysis.peak_slip(P)
+    assert peak == pytest.approx(0.170, abs=5e-4)
+    highest = friction(P, peak)
+    assert all(friction(P, s) < highest for s in (0.9 * peak, 1.1 * peak))
+
+
+def test_the_printed_derivative_gain_grows_at_any_sampling_of_a_control_unit() -> None:
+    """The bound of (D7) is 118 kHz behind a lag of 3 ms; without a lag there is none."""
+    growth = [analysis.derivative_growth(P, 2500.0, 0.003, 1.0 / rate) for rate in (100.0, 1e3, 1e4, 125e3)]
+    assert growth == sorted(growth, reverse=True)
+    assert growth[2] > 10.0
+    assert growth[3] < 1.0
+    assert analysis.derivative_growth(P, 2500.0, 1e-9, 1.0) == pytest.approx(2500.0 / P.wheel_inertia)

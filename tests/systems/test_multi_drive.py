@@ -6,6 +6,7 @@ values seen. A dip is how far the speed falls below 60 km/h, an error that of th
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 
@@ -115,6 +116,47 @@ def test_launch_to_60_kmh(variant, controller):
     assert results["vehicle.left_slip"].max() < 0.05
 
 
+# -- the two cases alone, slip, battery --------------------------------------------------------------------
+
+
+def test_the_slope_alone_has_the_dip_and_the_curve_alone_the_references():
+    """Published as two cases; `curve_and_slope` has them at once, and they add up."""
+    slope, curve, both = (run("ideal motor", scenario=s) for s in ("slope", "right_curve", "curve_and_slope"))
+    assert largest("vehicle.left_wheel_speed", slope, slope) == 0.0
+    assert slope["vehicle.left_wheel_speed"] == pytest.approx(slope["vehicle.right_wheel_speed"], abs=1e-9)
+    assert numbers(slope).dip == pytest.approx(numbers(both).dip, abs=0.005)
+    assert numbers(curve).dip < 0.1
+    turning = (curve.time >= 2.0) & (curve.time < 4.0)
+    assert curve["differential.left_reference"][turning] == pytest.approx(
+        both["differential.left_reference"][300]
+    )
+    assert np.ptp(curve["differential.left_reference"][~turning]) == 0.0
+    assert not curve["vehicle.road_grade"].any()
+    assert not slope["vehicle.steering_angle"].any()
+
+
+@pytest.mark.parametrize("controller", ["mimo", "pid"])
+def test_slips_stay_where_more_slip_gives_more_force(controller):
+    results = run("ideal motor", controller)
+    slips = [np.abs(results[f"vehicle.{side}_slip"]).max() for side in ("left", "right")]
+    assert 0.005 < max(slips) < 0.1 * analysis.peak_slip(TwoMotorVehicle.Parameters())
+
+
+def test_what_the_battery_gives_up_is_what_motors_and_inverter_take():
+    """Cells = terminals + resistance, terminals = motors + inverter, and the car drives as without them."""
+    results = simulate("multi_drive", "battery", parameters=IDEAL_MOTORS)
+    assert largest("vehicle.speed", results, run("ideal motor")) == 0.0
+    terminals, motors = results["battery.energy"][-1], results["inverter.motor_energy"][-1]
+    assert terminals == pytest.approx(motors + results["inverter.loss_energy"][-1], rel=1e-9)
+    power = results["left_drive.power"] + results["right_drive.power"]
+    assert motors == pytest.approx(np.sum(power[1:]) * 0.01 / 3600.0, abs=0.02 * np.abs(power).max() / 3600.0)
+    charge, capacity = results["battery.state_of_charge"], 75.0
+    given_up = np.sum((650.0 + 100.0 * charge[:-1]) * -np.diff(charge)) * capacity
+    assert results["battery.energy_drawn"][-1] == pytest.approx(given_up, rel=1e-6)
+    assert results["battery.current"].min() < -50.0  # downhill
+    assert results["inverter.efficiency"].max() < 0.98
+
+
 # -- machine and ideal motor -------------------------------------------------------------------------------
 
 
@@ -151,6 +193,18 @@ def test_the_printed_derivative_gain_fails_at_100_hz():
     assert numbers(results).error > 10.0 * numbers(run()).error
     torque = results["controller.left_torque"]
     assert np.mean(np.abs(torque) == TORQUE_LIMIT) > 0.5  # from limit to limit
+
+
+def test_it_fails_at_1_khz_too():
+    """Its bound is 118 kHz: `multi_drive_analysis`, (D7)."""
+    system = load_system("multi_drive")
+    experiment = system.file.experiment.model_copy(update={"step_size": 1e-3})
+    faster = dataclasses.replace(system, file=system.file.model_copy(update={"experiment": experiment}))
+    gain = {"controller.derivative_gain": 2500.0} | IDEAL_MOTORS
+    results = simulate(faster, parameters=gain, stop_time=5.0, ideal=True)
+    torque = results["controller.left_torque"]
+    assert np.mean(np.abs(torque) == TORQUE_LIMIT) > 0.5
+    assert 3.6 * (V - results["vehicle.speed"].min()) > 2.0
 
 
 def test_the_literal_integral_leaves_the_slope_standing():
