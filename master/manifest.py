@@ -41,6 +41,8 @@ def manifest(
         "scenario": plan.scenario,
         "files": _own_files(system, prepared.scenario),
         "settings": _digest(prepared),
+        "options": dict(prepared.options),
+        "command": prepared.command,
         "experiment": experiment.model_dump() | {"algorithm": plan.algorithm, "engine": engine.name},
         "ideal": plan.ideal,
         "order": [unit.name for unit in plan.units],
@@ -67,6 +69,7 @@ def _digest(prepared: Prepared) -> str:
     digest = hashlib.sha256()
     for model in (system.file, scenario.file):
         digest.update(model.model_dump_json(exclude=_NO_SETTINGS).encode())
+    digest.update(repr(prepared.options.get("record")).encode() if "record" in prepared.options else b"")
     for name, beside, key in named:
         path = data_file(name, beside, key) if beside is not None else Path(name)
         digest.update(hashlib.sha256(path.read_bytes()).digest())

@@ -5,14 +5,17 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
+from ..cosim.can.bus_settings import BusVariation
 from ..cosim.errors import ConfigError, nearest
 from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
 from ..cosim.plan.plan import Plan
-from ..cosim.plan.resolve import participating, resolve
+from ..cosim.plan.resolve import participating, resolve, step_size_of
+from ..cosim.plan.steps import steps_in
 from ..cosim.plan.turns import TurnTimes
+from ..cosim.results.repeat import command_of, given_options
 from ..cosim.swap.mapping import present, without_absent, without_open, without_untaken
 from ..cosim.swap.requirements import lacking
 from ..cosim.swap.sampled import inherited, sampled_in, told, untold
@@ -20,6 +23,7 @@ from ..cosim.swap.swap_file import swapped
 from ..cosim.system.outside import read_outside
 from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
+from ..cosim.system.selection import recorded_alone
 from ..cosim.system.system import System, load_system
 from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
@@ -35,7 +39,8 @@ from .single_fmu import check_alone, names_fmu, one_fmu
 class Prepared:
     """A run that is ready to be loaded: everything that can be checked without an instance was checked.
 
-    `outside` are sentences about the files that are read from elsewhere than the folder of who names them.
+    `outside` are sentences about the files that are read from elsewhere than the folder of who names them;
+    `options` are those that the run was given, and `command` repeats it ("": none can).
     """
 
     system: System
@@ -43,6 +48,8 @@ class Prepared:
     fmus: dict[str, Fmu]
     plan: Plan
     outside: tuple[str, ...] = ()
+    options: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    command: str = ""
 
 
 @reading_once()
@@ -59,6 +66,7 @@ def prepare(
     Raises ConfigError naming place, rule and values; TypeError for an unknown option.
     """
     check_options(options)
+    given = given_options(options)
     swaps, fmus = options.get("swaps") or {}, options.get("fmus") or {}
     _check_one_fmu(swaps, fmus)
     # the files: system and scenario, with varied buses and swapped units, without absent variables
@@ -88,12 +96,18 @@ def prepare(
     doubtful = _doubts(plan, loaded, read)
     warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
     plan = dataclasses.replace(plan, warnings=warnings)
+    if options.get("record"):
+        names = {v.name for v in (*plan.columns, *plan.text_columns)}
+        read, driven, undrawn = recorded_alone(read, driven, names)
+        plan = dataclasses.replace(plan, warnings=(*plan.warnings, *undrawn))
     check_specs(read, driven, (*plan.columns, *plan.text_columns))
     ordered_links(plan)  # refuses an algebraic loop
     named = {
         unit: fmu.path for unit, fmu in loaded.items() if unit not in fmus and not _is_a_name(read, unit)
     }
-    return Prepared(read, driven, loaded, plan, read_outside(read, driven, named))
+    texts = ["" if isinstance(each, System | Scenario) else str(each or "") for each in (system, scenario)]
+    command = "" if isinstance(scenario, Scenario) else command_of(texts[0], texts[1], given)
+    return Prepared(read, driven, loaded, plan, read_outside(read, driven, named), given, command)
 
 
 def _is_a_name(system: System, unit: str) -> bool:
@@ -173,11 +187,17 @@ def _files(
         driven = scenario
     else:
         driven = load_scenario(read, None if scenario is None else str(scenario))
-    bus = options.get("bus")
+    bus, delay = options.get("bus"), options.get("delay")
+    for name, value in (("bus", bus), ("delay", delay)):
+        if value and options.get("ideal", False):
+            raise ConfigError(f"'ideal' leaves the buses out, so that '{name}' has none to vary")
+    if delay and not read.file.buses:
+        raise ConfigError(f"delay = {delay:g} s: {read.path} has no bus")
+    step_size = step_size_of(read, driven, options)
     if bus is not None:
-        if options.get("ideal", False):
-            raise ConfigError("'ideal' leaves the buses out, so that 'bus' has none to vary")
-        read = varied(read, bus, driven.file.experiment.step_size or read.file.experiment.step_size)
+        read = varied(read, bus, step_size)
+    if delay:
+        read = varied(read, BusVariation(delay_steps=steps_in(delay, step_size, "delay")), step_size)
     return read, driven, options
 
 
@@ -214,6 +234,10 @@ def _advised(
     try:
         return resolve(system, scenario, interfaces, options)
     except ConfigError as error:
+        step = options.get("step_size")
+        if step is not None and f"communication step {float(step)} s" in str(error):
+            files = step_size_of(system, scenario, {})
+            raise ConfigError(f"step_size = {step:g} s, where the files have {files:g} s: {error}") from error
         if swaps:
             unit, path = next(iter(swaps.items()))
             raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error

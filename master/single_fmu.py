@@ -6,7 +6,7 @@ The FMU's default experiment says the times, unless the options of the run do.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +24,10 @@ from .fmi.fmu import Fmu, read_fmu
 UNIT = "fmu"
 """The name of the unit in the system of an FMU alone."""
 
-ALONE = ("inputs", "step_size", "interface", "tolerance")
+ALONE = ("inputs", "interface", "tolerance")
 """The options of a run that are for an FMU by itself; a system's stand in its files."""
 
-_OF_SYSTEMS = ("fmus", "swaps", "ideal", "bus")
+_OF_SYSTEMS = ("fmus", "swaps", "ideal", "bus", "delay")
 _SHORTEST = 1e-9  # s
 _DURATION = 1.0  # s, where the FMU declares no stop time
 _STEPS = 500  # at least, where it declares no step size
@@ -65,6 +65,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     name = target if target in builtin_names() else path.stem
     fmu = read_fmu(path, options.get("strict", False)).using(options.get("interface"))
     values = _by_name(options.get("parameters") or {}, "parameter", fmu.interface, path)
+    starts = _by_name(options.get("start") or {}, "start", fmu.interface, path)
     inputs = _by_name(options.get("inputs") or {}, "input", fmu.interface, path)
     unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
@@ -79,7 +80,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     return (
         System(path, validate(data, SystemFile, str(path))),
         Scenario("", None, validate({"stimulus": stimuli}, ScenarioFile, "inputs")),
-        left | {"parameters": {f"{UNIT}.{name}": value for name, (_, value) in values.items()}},
+        left | _as_of_unit(values, starts) | {"record": _patterns(options.get("record"))},
     )
 
 
@@ -193,6 +194,27 @@ def _whole(duration: float, step: float | None) -> float:
     except ConfigError:
         return duration / math.ceil(duration / step)
     return step
+
+
+def _as_of_unit(
+    values: Mapping[str, tuple[str, Any]], starts: Mapping[str, tuple[str, Any]]
+) -> dict[str, dict[str, Any]]:
+    """Return the options of the system for what the options of its FMU give, by `_by_name`."""
+    return {
+        option: {f"{UNIT}.{name}": value for name, (_, value) in given.items()}
+        for option, given in (("parameters", values), ("start", starts))
+    }
+
+
+def _patterns(record: Sequence[str] | None) -> list[str] | None:
+    """Return the patterns of an FMU's own names as those of its system."""
+    if record is None:
+        return None
+    return [f"!{_prefixed(p[1:])}" if p.startswith("!") else _prefixed(p) for p in record]
+
+
+def _prefixed(name: str) -> str:
+    return name if name.startswith(f"{UNIT}.") else f"{UNIT}.{name}"
 
 
 def _recorded(interface: UnitInterface) -> list[str]:

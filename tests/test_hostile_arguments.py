@@ -70,7 +70,16 @@ CALLS: dict[str, list[Callable[[Any], object]]] = {
         lambda x: of_one_fmu(stop_time=x),
         lambda x: of_one_fmu(stop_time=x, step_size=None),
     ],
-    "RunOptions.step_size": [lambda x: of_one_fmu(step_size=x), lambda x: identified(step_size=x)],
+    "RunOptions.start": [
+        lambda x: simulated(start={"vehicle.road_grade": x}),
+        lambda x: of_one_fmu(start={"power": x}),
+    ],
+    "RunOptions.delay": [lambda x: simulated(delay=x)],
+    "RunOptions.step_size": [
+        lambda x: of_one_fmu(step_size=x),
+        lambda x: simulated(step_size=x),
+        lambda x: identified(step_size=x),
+    ],
     "RunOptions.tolerance": [lambda x: of_one_fmu(tolerance=x)],
     "Simulation.step.steps": [lambda x: driven(lambda s: s.step(x))],
     "Simulation.set.value": [lambda x: driven(lambda s: s.set("ecu.speed_bound", x))],

@@ -15,6 +15,8 @@ from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchem
 from ..errors import ConfigError, short
 
 _SLOWEST, _MOST_STEPS = 10**6, 10**6
+LONGEST_DELAY = 3600.0
+"""The longest delay of a bus [s] that a file or an option gives."""
 
 Rounding = Literal["nearest", "half_even", "truncate"]
 Overflow = Literal["saturate", "wrap", "error"]
@@ -48,7 +50,7 @@ class BusSettings(BaseModel):
     """A value out of range is sent as the nearest limit (saturate), by its low bits as C code without a range
     check does (wrap), or is an error (error)."""
 
-    delay: float = Field(default=0.0, ge=0.0, le=3600.0)
+    delay: float = Field(default=0.0, ge=0.0, le=LONGEST_DELAY)
     """Time from sampling to the receivers' mailboxes in s: a multiple of the communication step."""
 
     resolution: Annotated[

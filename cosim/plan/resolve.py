@@ -7,8 +7,7 @@ import functools
 import itertools
 import math
 import re
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 
 from ..clock import Clock
 from ..csv_numbers import CsvFile
@@ -20,11 +19,12 @@ from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
 from ..system.stimuli import Rows, csv_of, stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
-from ..system.values import as_double, checked
+from ..system.values import as_double
 from ..texts import Texts
 from ..units.measure import Affine
 from .connections import Network, connect
 from .events import scheduled
+from .given_values import all_parameters, all_starts, by_kind
 from .plan import Drive, InputPlan, Plan
 from .slots import Slots, allot
 from .steps import steps_in
@@ -65,8 +65,8 @@ def resolve(
     """
     experiment, algorithm = _experiment(system, scenario, options)
     entries = participating(system, scenario)
-    path, record = _record_of(system, scenario)
-    slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect}, str(path))
+    place, record = _record_of(system, scenario, options)
+    slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect}, place)
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     experiment = experiment.model_copy(update={"stop_time": clock.stop})
@@ -74,9 +74,9 @@ def resolve(
     network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     _mailboxes_of_the_rest(interfaces, network, slots)
-    named, started = _by_kind(options.get("parameters") or {}, interfaces, network)
-    parameters = _parameters(system, scenario, entries, interfaces, named)
-    starts = {u: _starts(system, scenario, u, entries[u], interfaces[u], started.get(u, {})) for u in entries}
+    named, started = by_kind(options, interfaces, network)
+    parameters = all_parameters(system, scenario, entries, interfaces, named)
+    starts = {u: all_starts(system, scenario, u, entries[u], interfaces[u], started) for u in entries}
     return Plan(
         system=system.file.name,
         scenario=scenario.name,
@@ -139,22 +139,37 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
     )
 
 
-def _record_of(system: System, scenario: Scenario) -> tuple[Path, list[str]]:
-    """Return the patterns of what is recorded, and the file that they stand in."""
+def _record_of(system: System, scenario: Scenario, options: RunOptions) -> tuple[str, Sequence[str]]:
+    """Return the patterns of what is recorded, and the file that they stand in ("": the option).
+
+    An option that only leaves out, as `!battery.*`, leaves that out of what the files record.
+    """
     if scenario.file.record is not None and scenario.path is not None:
-        return scenario.path, scenario.file.record
-    return system.path, system.file.record
+        place, patterns = str(scenario.path), scenario.file.record
+    else:
+        place, patterns = str(system.path), system.file.record
+    given = list(options.get("record") or [])
+    if all(pattern.startswith("!") for pattern in given):
+        return place, [*patterns, *given]
+    return "", given
 
 
 def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tuple[Experiment, Algorithm]:
     changes = scenario.file.experiment.model_dump(exclude_none=True)
-    if options.get("stop_time") is not None:
-        changes["stop_time"] = options.get("stop_time")
+    for name, value in (("stop_time", options.get("stop_time")), ("step_size", options.get("step_size"))):
+        if value is not None:
+            changes[name] = float(value)
     experiment = system.file.experiment.model_copy(update=changes)
     algorithm = options.get("algorithm") or experiment.algorithm
     if algorithm not in ("gauss_seidel", "jacobi"):
         raise ConfigError(f"algorithm is gauss_seidel or jacobi, not {algorithm!r}")
     return experiment, algorithm
+
+
+def step_size_of(system: System, scenario: Scenario, options: RunOptions) -> float:
+    """Return the communication step [s] of a run: the option's, else the scenario's or the system's."""
+    given = (options.get("step_size"), scenario.file.experiment.step_size)
+    return next((step for step in given if step is not None), system.file.experiment.step_size)
 
 
 def _stop_time_in(system: System, scenario: Scenario, options: RunOptions) -> str:
@@ -195,80 +210,6 @@ def _periods(system: System, entries: Mapping[str, UnitEntry], step_size: float)
         unit: steps_in(entry.period or step_size, step_size, f"{system.keys_of(unit)}period", least=1)
         for unit, entry in entries.items()
     }
-
-
-def _parameters(
-    system: System,
-    scenario: Scenario,
-    entries: Mapping[str, UnitEntry],
-    interfaces: Mapping[str, UnitInterface],
-    named: Mapping[str, Value],
-) -> dict[str, dict[str, Value]]:
-    """Return every unit's parameters by name: the user's, else the scenario's, else the system's.
-
-    Each value is in its parameter's own type and unit. Raises ConfigError as `checked` does.
-    """
-    given: list[tuple[str, str, str, Value]] = []
-    for unit, entry in entries.items():
-        given += [(unit, k, f"{system.keys_of(unit)}parameters.{k}", x) for k, x in entry.parameters.items()]
-    for unit, values in scenario.file.parameters.items():
-        given += [(unit, k, f"{scenario.path}: parameters.{unit}.{k}", x) for k, x in values.items()]
-    for name, value in named.items():
-        unit, _, parameter = name.partition(".")
-        given.append((unit, parameter, f"parameter {name}", value))
-    result: dict[str, dict[str, Value]] = {unit: {} for unit in entries}
-    for unit, name, place, value in given:
-        if unit not in interfaces:
-            raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
-        variable = interfaces[unit].require(unit, name, ("parameter",), place)
-        result[unit][name] = checked(value, variable, place)
-    return result
-
-
-def _by_kind(
-    given: Mapping[str, Value], interfaces: Mapping[str, UnitInterface], network: Network
-) -> tuple[dict[str, Value], dict[str, dict[str, Value]]]:
-    """Return the parameters among the values by "unit.variable", and by unit the start values.
-
-    Raises ConfigError for an input that something drives, in which a start value would not stay.
-    """
-    named, started = dict(given), dict[str, dict[str, Value]]()
-    for name in given:
-        unit, _, variable = name.partition(".")
-        known = interfaces[unit].variables.get(variable) if unit in interfaces else None
-        if known is None or not known.takes_start:
-            continue
-        if name in network.inputs and network.inputs[name].driver:
-            raise ConfigError(f"parameter {name}: the input is driven by {network.inputs[name].driver}")
-        started.setdefault(unit, {})[variable] = named.pop(name)
-    return named, started
-
-
-def _starts(
-    system: System,
-    scenario: Scenario,
-    unit: str,
-    entry: UnitEntry,
-    interface: UnitInterface,
-    started: Mapping[str, Value],
-) -> dict[str, Value]:
-    """Return the start values of a unit's variables by name: the option's, scenario's or system's."""
-    starts = {}
-    given = {name: (f"{system.keys_of(unit)}start.{name}", value) for name, value in entry.start.items()}
-    for name, value in scenario.file.start.get(unit, {}).items():
-        given[name] = (f"{scenario.path}: start.{unit}.{name}", value)
-    given |= {name: (f"parameter {unit}.{name}", value) for name, value in started.items()}
-    for name, (place, value) in given.items():
-        variable = interface.require(unit, name, ("input", "output", "local"), place)
-        if not variable.takes_start:
-            raise ConfigError(
-                f"{place}: {unit}.{name} is a {variable.variability} {variable.causality} whose initial "
-                "value the FMU computes or fixes; a start is given to an input, or where the FMU declares "
-                'initial = "exact" or "approx"'
-            )
-        starts[name] = checked(value, variable, place)
-        as_double(variable, starts[name], place, Texts())
-    return starts
 
 
 def _drives(

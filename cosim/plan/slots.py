@@ -44,7 +44,7 @@ def allot(
     """Return slots for every input, and every recorded or `needed` (connected) output; and what is recorded.
 
     The second are pairs of a unit's name and a variable, in the units' order. Raises ConfigError, which
-    starts with `place`, when a pattern of `record` fits no variable.
+    starts with `place` if there is one, when a pattern of `record` fits no variable.
     """
     recorded = _recorded(interfaces, tuple(record), place)
     slots = Slots()
@@ -77,7 +77,7 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         if v.causality in ("input", "output", "local")
     }
     public = [name for name, causality in shown.items() if causality != "local"]
-    recorded: set[str] = set()
+    start, recorded = f"{place}: " if place else "", set[str]()
     out = [pattern[1:] for pattern in patterns if pattern.startswith("!")]
     for pattern in patterns:
         if pattern.startswith("!"):
@@ -86,7 +86,7 @@ def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...]
         fits = {pattern} if pattern in shown else set(fitting(pattern, public))
         if not fits and pattern != "*":
             why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
-            raise ConfigError(f"{place}: record: '{pattern}' {why}")
+            raise ConfigError(f"{start}record: '{pattern}' {why}")
         recorded |= fits
     return recorded.difference(*(fitting(pattern, recorded) for pattern in out))
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from numbers import Real
 from pathlib import Path
 from typing import Any, Literal, TypedDict, get_args
 
-from ..can.bus_settings import BusVariation
+from ..can.bus_settings import LONGEST_DELAY, BusVariation
 from ..errors import ConfigError, nearest, short
 from ..interface import Value
 from .system import LATEST, SHORTEST, Algorithm, EngineName, Isolation
@@ -20,6 +20,11 @@ class RunOptions(TypedDict, total=False):
     parameters: Mapping[str, Value] | None
     """Values by "unit.variable" of parameters, initial states and inputs that nothing drives, each in the
     variable's own unit; they override the files. Of an FMU by itself by its own names."""
+
+    start: Mapping[str, Value] | None
+    """Start values by "unit.variable" of inputs that nothing drives, and of states and other variables whose
+    initial value the FMU lets be given, each in the variable's own unit; they override the files. Of an FMU
+    by itself by its own names."""
 
     inputs: Mapping[str, Value | Path] | None
     """Of an FMU by itself: what its inputs receive by name, a constant or a table "FILE.csv" with the input's
@@ -40,6 +45,10 @@ class RunOptions(TypedDict, total=False):
     bus: BusVariation | None
     """Delay, resolution and cycle of all buses in this run."""
 
+    delay: float | None
+    """Time [s] by which every message of every bus arrives later than the files say, a multiple of the
+    communication step."""
+
     algorithm: Algorithm | None
     """The order of steps, "gauss_seidel" or "jacobi" (default: the system's)."""
 
@@ -47,7 +56,12 @@ class RunOptions(TypedDict, total=False):
     """The time [s] at which the run ends (default: the scenario's, else the system's)."""
 
     step_size: float | None
-    """Of an FMU by itself: the communication step [s] (default: that of its default experiment)."""
+    """The communication step [s] (default: the scenario's, else the system's; of an FMU by itself that of its
+    default experiment)."""
+
+    record: Sequence[str] | None
+    """Patterns of the variables to record, in place of the files', as ["vehicle.*", "!vehicle.power"]; figure
+    and metrics go without what they need beside (default: the scenario's, else the system's)."""
 
     interface: Literal["co_simulation", "model_exchange"] | None
     """Of an FMU by itself that has both: "co_simulation" (the default) or "model_exchange"."""
@@ -104,6 +118,14 @@ def _is_positive(value: Any) -> bool:
     return _is_time(value) and SHORTEST <= float(value) <= LATEST
 
 
+def _is_delay(value: Any) -> bool:
+    return _is_time(value) and 0.0 <= float(value) <= LONGEST_DELAY
+
+
+def _are_patterns(value: Any) -> bool:
+    return isinstance(value, list | tuple) and bool(value) and all(isinstance(e, str) and e for e in value)
+
+
 def _is_share(value: Any) -> bool:
     return _is_time(value) and 0.0 < float(value) < 1.0
 
@@ -112,15 +134,18 @@ _FLAG = (lambda value: isinstance(value, bool), "must be True or False")
 _BY_NAME = (lambda value: isinstance(value, Mapping), "must be a mapping of names")
 _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "parameters": _BY_NAME,
+    "start": _BY_NAME,
     "inputs": _BY_NAME,
     "fmus": _BY_NAME,
     "swaps": _BY_NAME,
     "allow_open": _FLAG,
     "ideal": _FLAG,
     "bus": (lambda value: isinstance(value, BusVariation), "must be a BusVariation"),
+    "delay": (_is_delay, f"must be a number of seconds from 0 to {LONGEST_DELAY:g}"),
     "algorithm": _one_of(Algorithm),
     "stop_time": (_is_time, f"must be a number of seconds, up to {LATEST:g}"),
     "step_size": (_is_positive, "must be a number of seconds above 0"),
+    "record": (_are_patterns, "must be a list of patterns of variables, one at least"),
     "interface": _one_of(Literal["co_simulation", "model_exchange"]),
     "tolerance": (_is_share, "must be a number between 0 and 1"),
     "isolation": _one_of(Isolation),

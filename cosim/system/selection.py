@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import dataclasses
+from collections.abc import Collection, Iterable
 
 from .figure_spec import FigureSpec
 from .metric_spec import MetricSpec
@@ -29,6 +30,31 @@ def figure_spec(system: System, scenario: Scenario) -> FigureSpec | None:
     if scenario.file.figure is not None or spec is None:
         return scenario.file.figure
     return spec.without(lambda name: _needs([name], scenario))
+
+
+def recorded_alone(
+    system: System, scenario: Scenario, recorded: Collection[str]
+) -> tuple[System, Scenario, tuple[str, ...]]:
+    """Return both without the metrics and lines of figures that need more than is recorded, and a remark.
+
+    It is for a run whose recorded variables are its caller's choice; () where nothing is left out.
+    """
+    gone = [s.name for s in metric_specs(system, scenario) if not set(s.all_signals) <= set(recorded)]
+    figure = figure_spec(system, scenario)
+
+    def drawn(spec: FigureSpec | None) -> FigureSpec | None:
+        return spec and spec.without(lambda name: name not in recorded)
+
+    def changes(metrics: list[MetricSpec], spec: FigureSpec | None) -> dict[str, object]:
+        return {"metrics": [m for m in metrics if m.name not in gone], "figure": drawn(spec)}
+
+    of_system, of_scenario = system.file, scenario.file
+    of_system = of_system.model_copy(update=changes(of_system.metrics, of_system.figure))
+    of_scenario = of_scenario.model_copy(update=changes(of_scenario.metrics, of_scenario.figure))
+    what = [f"the metrics {', '.join(gone)}"] if gone else []
+    what += ["lines of the figure"] if drawn(figure) != figure else []
+    said = (f"left out for want of what `record` leaves out: {' and '.join(what)}",) if what else ()
+    return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario), said
 
 
 def _needs(signals: Iterable[str], scenario: Scenario) -> bool:

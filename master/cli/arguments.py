@@ -10,12 +10,15 @@ from ...cosim.errors import ConfigError
 from ...cosim.interface import Value
 
 
-def parse_settings(options: Sequence[str], of_fmu: bool = False) -> dict[str, Value]:
-    """Return `--set` options as "unit.parameter" to value.
+def parse_settings(
+    options: Sequence[str], of_fmu: bool = False, typed: str = "--set", example: str = "mass=180"
+) -> dict[str, Value]:
+    """Return `--set` or other `typed` options as "unit.parameter" to value.
 
     Those `of_fmu` by itself have its own names of variables. Raises ConfigError, also for a name that is
     given twice.
     """
+    kind = "parameter" if typed == "--set" else "variable"
     values: dict[str, Value] = {}
     given: dict[str, str] = {}
     for option in options:
@@ -23,12 +26,10 @@ def parse_settings(options: Sequence[str], of_fmu: bool = False) -> dict[str, Va
         unit, _, parameter = ("fmu", ".", name) if of_fmu else name.partition(".")
         if not (equals and unit and parameter and text):
             written = (
-                "parameter=value, as in mass=180"
-                if of_fmu
-                else "unit.parameter=value, as in vehicle.mass=180"
+                f"{kind}=value, as in {example}" if of_fmu else f"unit.{kind}=value, as in vehicle.{example}"
             )
-            raise ConfigError(f"--set {option}: it is written {written}")
-        _note(given, "--set", option, name)
+            raise ConfigError(f"{typed} {option}: it is written {written}")
+        _note(given, typed, option, name)
         values[name] = scalar(text)
     return values
 
@@ -88,11 +89,26 @@ def _note(given: dict[str, str], option: str, text: str, name: str, kind: str = 
     given[name] = text
 
 
+_FLAGS = {
+    "stop_time": "--stop-time", "step_size": "--step-size", "delay": "--delay", "record": "--record",
+    "interface": "--interface", "tolerance": "--tolerance", "inputs": "--input", "fmus": "--fmu",
+    "swaps": "--swap", "ideal": "--ideal",
+}  # fmt: skip # a table: the option of the library, and that of the command line
+
+
 @contextlib.contextmanager
-def as_typed(settings: Sequence[str], fmus: Sequence[str] = (), inputs: Sequence[str] = ()) -> Iterator[None]:
+def as_typed(
+    settings: Sequence[str],
+    fmus: Sequence[str] = (),
+    inputs: Sequence[str] = (),
+    starts: Sequence[str] = (),
+) -> Iterator[None]:
     """Put the option that was typed into an error: `--set` for its parameter, `--fmu` for its unit."""
-    places = {f"parameter {_name(option)}:": f"--set {option}:" for option in settings}
-    places |= {f"parameter fmu.{_name(option)}:": f"--set {option}:" for option in settings}
+    places: dict[str, str] = {}
+    for word, flag, given in (("parameter", "--set", settings), ("start", "--start", starts)):
+        for option in given:
+            typed = f"{flag} {option}:"
+            places |= dict.fromkeys((f"{word} {_name(option)}:", f"{word} fmu.{_name(option)}:"), typed)
     places |= {f"input {_name(option)}:": f"--input {option}:" for option in inputs}
     places |= {f"input fmu.{_name(option)}.constant:": f"--input {option}:" for option in inputs}
     for option in fmus:
@@ -105,6 +121,10 @@ def as_typed(settings: Sequence[str], fmus: Sequence[str] = (), inputs: Sequence
         for place, typed in places.items():
             if str(error).startswith(place):
                 raise ConfigError(f"{typed}{str(error).removeprefix(place)}") from error
+        word, space, rest = str(error).partition(" ")
+        name = word.removesuffix(":")
+        if space and name in _FLAGS:
+            raise ConfigError(f"{_FLAGS[name]}{word.removeprefix(name)} {rest}") from error
         raise
 
 

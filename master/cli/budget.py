@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
 
 
-@takes_run_options("ideal", *ALONE)
+@takes_run_options("ideal", "record", *ALONE)
 def budget(
     system: SystemArgument,
     scenario: ScenarioOption = None,

@@ -59,8 +59,9 @@ ParametersOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="[UNIT.]PARAMETER=VALUE", help="Set a parameter; can be given again."),
 ]
-StepSizeOption = Annotated[
-    float | None, typer.Option(metavar="T", help="Step of an FMU alone [s]; default: its own.")
+StartValuesOption = Annotated[
+    list[str] | None,
+    typer.Option("--start", metavar="[UNIT.]VARIABLE=VALUE", help="Set a start value; can be given again."),
 ]
 FolderOption = Annotated[
     Path | None,
@@ -68,7 +69,7 @@ FolderOption = Annotated[
 ]
 
 
-@takes_run_options("settings", "stop_time", *ALONE)
+@takes_run_options("settings", "starts", "stop_time", "record", *ALONE)
 def identify(
     target: TargetArgument,
     scenario: ScenarioOption = None,
@@ -83,9 +84,9 @@ def identify(
     repeats: RepeatsOption = None,
     band: BandOption = None,
     settings: ParametersOption = None,
+    starts: StartValuesOption = None,
     *,
     options: RunOptions,
-    step_size: StepSizeOption = None,
     folder: FolderOption = None,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figures.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
@@ -107,7 +108,7 @@ def identify(
         _check_options_of_one_fmu(target, options)
     where = output_folder(folder or Path("results") / f"{Path(target).stem}-identification")
     bar = not (as_json or quiet)
-    found = _measure(target, spec, scenario, settings or [], options, step_size, bar)
+    found = _measure(target, spec, scenario, (settings or [], starts or []), options, bar)
     files = _write(where, found, not no_plot)
     _report(found, where, files, as_json, quiet)
     return 0
@@ -119,6 +120,8 @@ def _check_options_of_one_fmu(target: str, options: RunOptions) -> None:
 
     if options.get("ideal"):
         raise ConfigError(f"--ideal: {target} is an FMU alone: there is no bus to leave out")
+    if options.get("delay"):
+        raise ConfigError(f"--delay: {target} is an FMU alone: there is no bus to be late")
     if options.get("algorithm"):
         raise ConfigError(f"--algorithm: {target} is an FMU alone: one unit's steps have no order")
 
@@ -167,20 +170,27 @@ def _measure(
     target: str,
     spec: IdentificationSpec,
     scenario: str | None,
-    settings: Sequence[str],
+    given: tuple[Sequence[str], Sequence[str]],
     options: RunOptions,
-    step_size: float | None,
     bar: bool,
 ) -> list[Identification]:
-    """Identify the target at each working point of the spec, with a bar over all of them."""
+    """Identify the target at each working point of the spec, with a bar over all of them.
+
+    `given` are the options `--set` and `--start`.
+    """
     from ..studies.identification import each_working_point, identify
     from ..studies.identification_target import is_fmu
     from .arguments import as_typed, parse_settings
     from .console import progress_bar
     from .interrupts import Interrupts
 
-    parameters = parse_settings(settings, of_fmu=is_fmu(target))
-    options = {**options, "parameters": parameters, "step_size": step_size}
+    alone = is_fmu(target)
+    settings, starts = given
+    options = {
+        **options,
+        "parameters": parse_settings(settings, alone),
+        "start": parse_settings(starts, alone, "--start", "speed=8"),
+    }
     points = each_working_point(spec)
     found = []
     with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
@@ -191,7 +201,7 @@ def _measure(
                 show(done + begin + length * share)
                 interrupts.check()
 
-            with as_typed(settings):
+            with as_typed(settings, starts=starts):
                 found.append(identify(target, point, scenario, progress=progress, **options))
     return found
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-ALONE = ("inputs", "step_size", "interface", "tolerance")
+ALONE = ("inputs", "interface", "tolerance")
 """The options that are for an FMU by itself."""
 
 
@@ -115,7 +115,26 @@ InputsOption = Annotated[
         "--input", metavar="NAME=X", help="FMU: what an input receives, 3.5 or table.csv; can be given again."
     ),
 ]
-StepSizeOption = Annotated[float | None, typer.Option(metavar="H", help="FMU: the communication step [s].")]
+StepSizeOption = Annotated[
+    float | None, typer.Option(metavar="H", help="The communication step [s]; default: as the files say.")
+]
+StartsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--start",
+        metavar="UNIT.VARIABLE=VALUE",
+        help="Set a start value, of a state or input; can be repeated.",
+    ),
+]
+DelayOption = Annotated[
+    float | None, typer.Option(metavar="T", help="Let every bus message arrive later by T [s].")
+]
+RecordOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="PATTERN", help="Record these, as in 'vehicle.*' or '!ecu.*' (not); can be given again."
+    ),
+]
 InterfaceOption = Annotated[
     InterfaceChoice | None,
     typer.Option(help="FMU: which interface of two; default: co_simulation.", show_default=False),
@@ -131,17 +150,20 @@ QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors a
 
 def _run_options(
     settings: SettingsOption = None,
+    starts: StartsOption = None,
     fmus: FmusOption = None,
     swaps: SwapsOption = None,
     allow_open: AllowOpenOption = False,
     ideal: IdealOption = False,
+    delay: DelayOption = None,
     algorithm: AlgorithmOption = None,
     isolation: IsolationOption = None,
     trust: TrustOption = False,
     engine: EngineOption = None,
     stop_time: StopTimeOption = None,
-    inputs: InputsOption = None,
     step_size: StepSizeOption = None,
+    record: RecordOption = None,
+    inputs: InputsOption = None,
     interface: InterfaceOption = None,
     tolerance: ToleranceOption = None,
     strict: StrictOption = False,
@@ -156,8 +178,11 @@ def _run_options(
 
     return {
         "parameters": parse_settings(settings or [], of_fmu),
+        "start": parse_settings(starts or [], of_fmu, "--start", "speed=8"),
         "inputs": parse_inputs(inputs or []),
+        "delay": delay,
         "step_size": step_size,
+        "record": record,
         "interface": interface.value if interface else None,
         "tolerance": tolerance,
         "fmus": parse_files("--fmu", fmus or [], "my/Vehicle.fmu"),
@@ -190,7 +215,7 @@ def takes_run_options(*without: str) -> Callable[[Callable[..., T]], Callable[..
 
             given = {parameter.name: arguments.pop(parameter.name) for parameter in declared}
             of_fmu = "inputs" in given and names_fmu(arguments.get("system"))
-            with as_typed(given.get("settings") or [], given.get("fmus") or [], given.get("inputs") or []):
+            with as_typed(*(given.get(name) or [] for name in ("settings", "fmus", "inputs", "starts"))):
                 return verb(**arguments, options=_run_options(**given, of_fmu=of_fmu))
 
         own = inspect.signature(verb, locals={"RunOptions": Any}, eval_str=True).parameters.values()

@@ -123,6 +123,7 @@ def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
     """Return the part of a folder's name that says what was set for a run; "" where nothing was, or much."""
     parts = [Path(scenario).stem] if scenario else []
     parts += [f"{name}={value}" for name, value in (options.get("parameters") or {}).items()]
+    parts += [f"{name}={value}" for name, value in (options.get("start") or {}).items()]
     parts += [f"{name}={Path(str(x)).name}" for name, x in (options.get("inputs") or {}).items()]
     for files in (options.get("fmus") or {}, options.get("swaps") or {}):
         parts += [f"{unit}={Path(path).stem}" for unit, path in files.items()]
@@ -130,9 +131,11 @@ def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
     parts += [str(each) for each in (options.get("algorithm"), options.get("engine")) if each]
     parts += [f"isolation={options['isolation']}"] if options.get("isolation") else []
     parts += [str(options["interface"])] if options.get("interface") else []
+    parts += [f"delay={options['delay']:g}"] if options.get("delay") else []
     parts += [f"step_size={options['step_size']:g}"] if options.get("step_size") else []
     parts += [f"tolerance={options['tolerance']:g}"] if options.get("tolerance") else []
     parts += [f"stop_time={options['stop_time']:g}"] if options.get("stop_time") is not None else []
+    parts += [f"record={','.join(options['record'] or ())}"] if options.get("record") else []
     text = re.sub(r"[^A-Za-z0-9._=+-]+", "_", "-".join(parts))
     return text if len(text) <= _LONGEST else ""
 

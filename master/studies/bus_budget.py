@@ -33,13 +33,16 @@ def budget(
 ) -> Budget:
     """Measure the bus budget of a system: its buses varied, judged by the metric of its [budget] table.
 
-    The arguments are those of `simulate`, except for `bus` and `ideal`, which a budget sets itself;
+    The arguments are those of `simulate`, except for `bus` and `ideal`, which a budget sets itself, and
+    `record`, since it keeps no results;
     `workers` and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
     Raises ConfigError before any run; a run that fails is a broken point.
     """
     for name in ("bus", "ideal"):
         if options.get(name):
             raise ConfigError(f"a bus budget varies the buses itself, so that '{name}' cannot be given")
+    if options.get("record"):
+        raise ConfigError("a bus budget keeps no results, so that 'record' cannot be given")
     prepared = prepare(system, scenario, **options)
     entry, spec = _criterion(prepared)
     planned = series(prepared.plan.experiment.step_size)

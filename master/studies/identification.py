@@ -23,6 +23,7 @@ from ...cosim.analysis.frequency_response import FrequencyResponse, averaged, fr
 from ...cosim.analysis.sweep import Sweep, sweep_of
 from ...cosim.clock import Clock
 from ...cosim.errors import ConfigError, RunError
+from ...cosim.plan.resolve import step_size_of
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
 from ...cosim.system.run_options import RunOptions
@@ -109,8 +110,8 @@ def identify(
 ) -> Identification:
     """Identify `target` (a system, or an FMU alone) at the first working point of `spec`.
 
-    Without a spec the scenario's is taken. Parameters of an FMU alone are named without a unit, and
-    `step_size` is for it alone; the options are those of `Simulation`, except `stop_time`.
+    Without a spec the scenario's is taken. Parameters and start values of an FMU alone are named without a
+    unit; the options are those of `Simulation`, except `stop_time` and `record`.
     Raises ConfigError for input that does not fit, before the sweep; RunError if the run fails, or the
     output does not come to rest or does not react.
     """
@@ -119,25 +120,22 @@ def identify(
         raise ConfigError(f"{target}: which input and output? There is no [identification] in its scenario")
     if options.get("stop_time") is not None:
         raise ConfigError("an identification ends when it is done, so that 'stop_time' cannot be given")
+    if options.get("record"):
+        raise ConfigError("an identification keeps no results, so that 'record' cannot be given")
     each_working_point(spec)  # refuses two kinds of them
     sweep = sweep_of(spec)
     alone = is_fmu(target)
     prefix = f"{UNIT}." if alone else ""
-    step_size = options.get("step_size")
-    options["step_size"] = None  # the system has it
-    system = one_unit_system(target, step_size) if alone else load_system(target)
+    system = one_unit_system(target, options.get("step_size")) if alone else load_system(target)
     scenario = scenario if alone else default_scenario(system, scenario)
     if alone and scenario is not None:
         raise ConfigError(f"{target} is an FMU: it has no scenario '{scenario}'")
-    if step_size is not None and not alone:
-        raise ConfigError(f"{target} is a system: its step size stands in its file")
     options["parameters"] = {prefix + n: value for n, value in (options.get("parameters") or {}).items()}
-    stop_time = longest(sweep, system.file.experiment.step_size)
-    options["stop_time"] = stop_time
+    options["start"] = {prefix + n: value for n, value in (options.get("start") or {}).items()}
     driven = load_scenario(system, None if scenario is None else str(scenario))
-    experiment = system.file.experiment
-    steps = round(stop_time / experiment.step_size)
-    clock = Clock.counted(experiment.start_time, experiment.step_size, steps)
+    step_size = step_size_of(system, driven, options)
+    options["stop_time"] = stop_time = longest(sweep, step_size)
+    clock = Clock.counted(system.file.experiment.start_time, step_size, round(stop_time / step_size))
     driven, changes = held(driven, spec.input, clock)
     with Simulation(system, driven, **options) as simulation:
         run = IdentificationRun(simulation, spec, sweep, prefix, progress or (lambda what, share: None))

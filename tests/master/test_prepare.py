@@ -38,6 +38,38 @@ def test_buses_are_varied_in_this_run_only():
     assert {message.delay for message in prepare(system).plan.messages} == {0}
 
 
+def test_a_delay_is_added_to_that_of_the_files_and_of_a_variation():
+    late = prepare("lane_keeping", delay=0.02, step_size=0.005, stop_time=1.0)
+    assert {m.delay for m in late.plan.messages} == {4}
+    both = prepare("scooter", delay=0.02, bus=BusVariation(delay_steps=3))
+    assert {m.delay for m in both.plan.messages} == {5}
+
+
+def test_the_step_size_of_an_option_counts_before_those_of_the_files():
+    plan = prepare("scooter", step_size=0.005).plan
+    assert (plan.clock.step, plan.steps) == (0.005, 8000)
+    assert {m.every for m in plan.messages} <= {2, 20}
+
+
+def test_what_an_option_records_takes_the_place_of_the_files_or_something_out_of_it():
+    names = [v.name for v in prepare("scooter").plan.columns]
+    alone = prepare("scooter", record=["vehicle.speed", "ecu.*", "!ecu.state"])
+    assert {n.partition(".")[0] for n in (v.name for v in alone.plan.columns)} == {"ecu", "vehicle"}
+    assert "ecu.state" not in [v.name for v in alone.plan.columns]
+    assert any("left out for want of" in text for text in alone.plan.warnings)
+    less = prepare("scooter", record=["!battery.*"])
+    assert [v.name for v in less.plan.columns] == [n for n in names if not n.startswith("battery.")]
+
+
+def test_the_command_that_repeats_a_run():
+    prepared = prepare("scooter", "fig9", delay=0.02, start={"vehicle.road_grade": 0.01})
+    assert prepared.options == {"delay": 0.02, "start": {"vehicle.road_grade": 0.01}}
+    assert prepared.command == (
+        "evcosim run scooter --scenario fig9 --start vehicle.road_grade=0.01 --delay 0.02"
+    )
+    assert prepare(load_system("scooter")).command == ""
+
+
 def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
     own = tmp_path / "own.fmu"
     own.write_bytes(fmu_file("Battery").read_bytes())
@@ -48,6 +80,16 @@ def test_an_fmu_in_the_place_of_another_is_read_from_its_path(tmp_path):
     ("options", "text"),
     [
         ({"ideal": True, "bus": BusVariation(cycle=2)}, "'ideal' leaves the buses out"),
+        ({"ideal": True, "delay": 0.01}, "'ideal' leaves the buses out, so that 'delay' has none"),
+        ({"delay": 0.015}, r"^delay = 0\.015 s is not a multiple of the communication step 0\.01 s"),
+        (
+            {"step_size": 0.03},
+            r"^step_size = 0\.03 s, where the files have 0\.01 s: .*fig8\.toml: experiment\.",
+        ),
+        (
+            {"record": ["vehicle.sped"]},
+            r"^record: 'vehicle\.sped' fits no variable \(did you mean 'vehicle.speed'",
+        ),
         (
             {"fmus": {"batery": "x.fmu"}},
             r"^fmus: there is no unit 'batery' \(did you mean 'battery'\?\)",

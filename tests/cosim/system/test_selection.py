@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile, load_scenario, scenario_names
-from evcosim.cosim.system.selection import figure_spec, metric_specs
+from evcosim.cosim.system.selection import figure_spec, metric_specs, recorded_alone
 from evcosim.cosim.system.system import System, SystemFile, load_system, system_names
 
 UNITS = {name: {"fmu": "F"} for name in ("a", "b")}
@@ -33,6 +33,19 @@ def scenario(**keys: object) -> Scenario:
 def test_an_empty_scenario_leaves_all_as_it_is() -> None:
     assert figure_spec(SYSTEM, scenario()) == SYSTEM.file.figure
     assert metric_specs(SYSTEM, scenario()) == SYSTEM.file.metrics
+
+
+def test_what_is_not_recorded_takes_metrics_and_lines_along() -> None:
+    system, driven, said = recorded_alone(SYSTEM, scenario(), {"a.x"})
+    figure = figure_spec(system, driven)
+    assert figure is not None
+    assert [[s.name for s in panel.signals] for panel in figure.panels] == [["a.x"]]
+    assert [spec.name for spec in metric_specs(system, driven)] == ["of a"]
+    assert said == (
+        "left out for want of what `record` leaves out: the metrics of both and lines of the figure",
+    )
+    whole = recorded_alone(SYSTEM, scenario(), {"a.x", "b.x", "b.y"})
+    assert (whole[0], whole[2]) == (SYSTEM, ())
 
 
 def test_a_unit_that_is_left_out_takes_its_signals_along() -> None:

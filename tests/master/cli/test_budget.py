@@ -25,7 +25,7 @@ def test_the_scooter_names_its_metric(evcosim):
         (["scooter", "-s", "fig88"], "'fig88' (did you mean 'fig8'?)"),
         (["scooter", "--set", "ecu.gian=1"], "--set ecu.gian=1:"),
         (["scooter", "--set", "vehicle.mass"], "--set vehicle.mass:"),
-        (["scooter", "--stop-time", "-1"], "stop_time -1.0 s is not after start_time"),
+        (["scooter", "--stop-time", "-1"], "--stop-time -1.0 s is not after start_time"),
         (["scooter", "--workers", "0"], "--workers"),
         (["scooter", "-o", "file/out"], "output folder file/out: cannot be written"),
         ([], "SYSTEM"),

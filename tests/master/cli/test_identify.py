@@ -67,7 +67,13 @@ def test_command_as_json(evcosim):
         ([*FMU, "--amplitude", "2", "--ideal"], ["--ideal: Scooter is an FMU alone"]),
         ([*FMU, "--amplitude", "2", "--algorithm", "jacobi"], ["--algorithm: Scooter is an FMU alone"]),
         ([*FMU, "--amplitude", "2", "--set", "mas=1"], ["(did you mean 'mass'?)"]),
-        (["identify", "scooter", "--step-size", "0.1"], ["scooter is a system"]),
+        (
+            ["identify", "scooter", "--step-size", "0.1"],
+            ["--step-size = 0.1 s, where the files have 0.01 s: "],
+        ),
+        (["identify", "scooter", "--start", "ecu.x=1"], ["--start ecu.x=1: unit 'ecu' has no variable 'x'"]),
+        ([*FMU, "--amplitude", "2", "--start", "mass=1"], ["--start fmu.mass=1: fmu.mass is a parameter"]),
+        ([*FMU, "--amplitude", "2", "--delay", "0.1"], ["--delay: Scooter is an FMU alone"]),
         (["identify", "scooter", "--output", "ecu.state"], ["output ecu.state: it is no Real"]),
     ],
 )

@@ -38,14 +38,15 @@ def verb(system: SystemArgument, *, options: RunOptions, quiet: QuietOption = Fa
 
 def test_a_verb_declares_them_in_the_place_of_its_argument():
     names = list(inspect.signature(verb).parameters)
-    assert names[:4] == ["system", "settings", "fmus", "swaps"]
+    assert names[:5] == ["system", "settings", "starts", "fmus", "swaps"]
     assert names[-2:] == ["strict", "quiet"]
     assert not {"options", "ideal"} & set(names)
     assert verb.__doc__ == "Show the options."
 
 
 def test_a_verb_receives_them_as_one_record():
-    given = dict.fromkeys(("fmus", "swaps", "isolation"))
+    given = dict.fromkeys(("fmus", "swaps", "isolation", "step_size"))
+    given |= {"starts": ["vehicle.road_grade=0.1"], "delay": 0.02, "record": ["vehicle.*", "!*.power"]}
     given |= {"settings": ["vehicle.mass=180"], "strict": True, "stop_time": 2.0}
     given |= {"allow_open": True, "trust": True}
     given |= {"algorithm": options.AlgorithmChoice.jacobi, "engine": options.EngineChoice.python}
@@ -53,6 +54,9 @@ def test_a_verb_receives_them_as_one_record():
     assert (system, quiet) == ("scooter", True)
     assert found == {
         "parameters": {"vehicle.mass": 180},
+        "start": {"vehicle.road_grade": 0.1},
+        "delay": 0.02,
+        "record": ["vehicle.*", "!*.power"],
         "inputs": {},
         "step_size": None,
         "interface": None,
@@ -81,12 +85,39 @@ def test_an_error_about_a_parameter_names_the_option():
 
 
 @pytest.mark.parametrize(
-    ("name", "missing"), [("run", ()), ("budget", ("--ideal",)), ("identify", ("--stop-time",))]
+    ("said", "typed"),
+    [
+        ("stop_time 0.0 s is not after start_time 0.0 s", "--stop-time 0.0 s is not after start_time 0.0 s"),
+        ("step_size = 0: must be a number", "--step-size = 0: must be a number"),
+        ("record: 'a' fits no variable", "--record: 'a' fits no variable"),
+        ("fmus is for a system", "--fmu is for a system"),
+        ("start a.b: too large", "--start a.b=9: too large"),
+        ("recorded by nobody", "recorded by nobody"),
+    ],
+)
+def test_an_error_about_an_option_names_it_as_it_was_typed(said, typed):
+    @takes_run_options()
+    def refuse(*, options: RunOptions):
+        raise ConfigError(said)
+
+    given = dict.fromkeys(inspect.signature(refuse).parameters)
+    with pytest.raises(ConfigError) as caught:
+        refuse(**given | {"starts": ["a.b=9"]})
+    assert str(caught.value) == typed
+
+
+@pytest.mark.parametrize(
+    ("name", "missing"),
+    [("run", ()), ("budget", ("--ideal", "--record")), ("identify", ("--stop-time", "--record"))],
 )
 def test_verbs_that_run_a_system_take_all_of_them(evcosim, name, missing):
     shown = evcosim(name, "--help").out
     known = (
         "--set",
+        "--start",
+        "--delay",
+        "--step-size",
+        "--record",
         "--fmu",
         "--swap",
         "--ideal",
