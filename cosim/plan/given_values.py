@@ -77,10 +77,7 @@ def _check_is_none(unit: str, name: str, interface: UnitInterface, place: str) -
     """Raise ConfigError for a parameter, which has a value in the whole run and not a start alone."""
     found = interface.variables.get(name)
     if found is not None and found.causality == "parameter":
-        raise ConfigError(
-            f"{place}: {unit}.{name} is a parameter: it is set by --set {unit}.{name}=VALUE, in Python by "
-            "`parameters`"
-        )
+        raise ConfigError(f"{place}: {unit}.{name} is a parameter, which --set sets, in Python `parameters`")
 
 
 def _check_undriven(name: str, place: str, network: Network) -> None:

@@ -28,7 +28,7 @@ def test_a_start_value_of_an_option_counts_before_those_of_the_files() -> None:
         ({"car.grade": "steep"}, r"^start car\.grade: grade is a finite Real number, not 'steep'"),
         (
             {"car.mass": 9.0},
-            r"^start car\.mass: car\.mass is a parameter: it is set by --set car\.mass=",
+            r"^start car\.mass: car\.mass is a parameter, which --set sets",
         ),
         ({"car.speed": 9.0}, r"^start car\.speed: .* whose initial value the FMU computes or fixes"),
         ({"ecu.speed": 9.0}, r"^start ecu\.speed: the input is driven by car\.speed via can0"),

@@ -72,7 +72,7 @@ def test_command_as_json(evcosim):
             ["--step-size = 0.1 s, where the files have 0.01 s: "],
         ),
         (["identify", "scooter", "--start", "ecu.x=1"], ["--start ecu.x=1: unit 'ecu' has no variable 'x'"]),
-        ([*FMU, "--amplitude", "2", "--start", "mass=1"], ["--start fmu.mass=1: fmu.mass is a parameter"]),
+        ([*FMU, "--amplitude", "2", "--start", "mass=1"], ["--start mass=1: fmu.mass is a parameter"]),
         ([*FMU, "--amplitude", "2", "--delay", "0.1"], ["--delay: Scooter is an FMU alone"]),
         (["identify", "scooter", "--output", "ecu.state"], ["output ecu.state: it is no Real"]),
     ],
