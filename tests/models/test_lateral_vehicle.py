@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,20 +16,34 @@ P = Vehicle.Parameters()
 numbers = st.floats(-1.0, 1.0)
 states = st.builds(Vehicle.State, numbers, numbers, numbers, numbers)
 angles = st.builds(Vehicle.Inputs, numbers, numbers)
+disturbed = st.builds(Vehicle.Inputs, numbers, numbers, st.floats(-30.0, 30.0), numbers)
 
 
 def derivative(p: Vehicle.Parameters, x: Vehicle.State, u: Vehicle.Inputs) -> Vehicle.State:
-    """From the forces of the axles instead of A and B: slip angles, Newton, Euler, the lane's geometry."""
+    """From the forces of wind and tires, not A, B and E: slip angles, Newton, Euler, the lane's geometry."""
+    lost = abs(u.front_blowout)
+    sound, blown = p.front_cornering_stiffness, p.blown_stiffness * p.front_cornering_stiffness
+    front_stiffness = sound + (1.0 - lost) * sound + lost * blown
+    wheelbase = p.front_axle_distance + p.rear_axle_distance
+    drag = p.blown_resistance * p.mass * 9.81 * p.rear_axle_distance / wheelbase / 2.0 * u.front_blowout
+    attack = math.atan(u.crosswind / p.speed)
+    wind = p.air_density / 2.0 * p.side_area * attack * math.hypot(p.speed, u.crosswind) ** 2
     front_slip = u.front_steering_angle - (x.lateral_velocity + p.front_axle_distance * x.yaw_rate) / p.speed
     rear_slip = u.rear_steering_angle - (x.lateral_velocity - p.rear_axle_distance * x.yaw_rate) / p.speed
     front, rear = (
-        2.0 * p.front_cornering_stiffness * front_slip,
+        front_stiffness * front_slip,
         2.0 * p.rear_cornering_stiffness * rear_slip,
     )
     return Vehicle.State(
-        (front + rear) / p.mass - p.speed * x.yaw_rate,
+        (front + rear + wind) / p.mass - p.speed * x.yaw_rate,
         x.yaw_rate,
-        (p.front_axle_distance * front - p.rear_axle_distance * rear) / p.yaw_inertia,
+        (
+            p.front_axle_distance * front
+            - p.rear_axle_distance * rear
+            + p.wind_distance * wind
+            + p.track / 2.0 * drag
+        )
+        / p.yaw_inertia,
         -x.lateral_velocity - p.speed * x.heading_angle,
     )
 
@@ -57,12 +72,12 @@ def close(a: Vehicle.State, b: Vehicle.State, tolerance: float) -> bool:
     return dataclasses.astuple(a) == pytest.approx(dataclasses.astuple(b), abs=tolerance)
 
 
-@given(states, angles)
+@given(states, st.one_of(angles, disturbed))
 def test_a_step_solves_the_forces_of_the_axles(x: Vehicle.State, u: Vehicle.Inputs) -> None:
     assert close(Vehicle.step(P, x, u, 0.1), runge_kutta(x, u, 0.1, 50), 1e-7)
 
 
-@given(states, angles, st.sampled_from([0.001, 0.01, 0.3]))
+@given(states, st.one_of(angles, disturbed), st.sampled_from([0.001, 0.01, 0.3]))
 def test_one_step_is_two_of_half_the_size(x: Vehicle.State, u: Vehicle.Inputs, dt: float) -> None:
     half = Vehicle.step(P, Vehicle.step(P, x, u, dt / 2), u, dt / 2)
     assert close(Vehicle.step(P, x, u, dt), half, 1e-11)
@@ -120,3 +135,40 @@ def test_the_exponential_is_computed_once_for_a_step_size(monkeypatch: pytest.Mo
     x = Vehicle.step(p, Vehicle.State(1.0), Vehicle.Inputs(), 0.01)
     monkeypatch.setattr("scipy.linalg.expm", lambda _: pytest.fail("computed again"))
     assert math.isfinite(Vehicle.step(p, x, Vehicle.Inputs(), 0.01).displacement)
+
+
+@given(states, angles)
+def test_without_wind_and_blow_out_a_step_is_that_of_a_and_b(x: Vehicle.State, u: Vehicle.Inputs) -> None:
+    """To the last bit, whatever wind and blown tire would do, and next to nothing of them changes little."""
+    given = (*dataclasses.astuple(x), u.front_steering_angle, u.rear_steering_angle)
+    plain = np.array(P.transition(0.01)) @ given
+    other = dataclasses.replace(P, side_area=9.0, blown_stiffness=0.0, blown_resistance=1.0, track=3.0)
+    assert dataclasses.astuple(Vehicle.step(other, x, u, 0.01)) == pytest.approx(plain, abs=1e-13)
+    assert Vehicle.step(other, x, u, 0.01) == Vehicle.step(P, x, u, 0.01)
+    barely = dataclasses.replace(u, crosswind=1e-12, front_blowout=1e-12)
+    assert close(Vehicle.step(P, x, barely, 0.01), Vehicle.step(P, x, u, 0.01), 1e-11)
+
+
+@given(states, disturbed)
+def test_in_a_mirror_everything_is_mirrored(x: Vehicle.State, u: Vehicle.Inputs) -> None:
+    turned = Vehicle.step(
+        P,
+        moved(Vehicle.State(), x, -1.0),
+        Vehicle.Inputs(-u.front_steering_angle, -u.rear_steering_angle, -u.crosswind, -u.front_blowout),
+        0.01,
+    )
+    assert close(turned, moved(Vehicle.State(), Vehicle.step(P, x, u, 0.01), -1.0), 1e-15)
+
+
+def test_wind_to_the_left_drifts_to_the_left_and_a_blown_left_tire_turns_left() -> None:
+    """To the left is against the displacement."""
+    windy = Vehicle.step(P, Vehicle.State(), Vehicle.Inputs(crosswind=10.0), 0.1)
+    assert windy.lateral_velocity > 0.0 > windy.displacement
+    assert Vehicle.step(P, Vehicle.State(), Vehicle.Inputs(front_blowout=1.0), 0.1).yaw_rate > 0.0
+
+
+def test_a_blow_out_beyond_its_range_is_a_whole_one() -> None:
+    x = Vehicle.State(0.1, 0.02, 0.3, 0.4)
+    for whole in (1.0, -1.0):
+        beyond = Vehicle.step(P, x, Vehicle.Inputs(front_blowout=2.0 * whole), 0.01)
+        assert beyond == Vehicle.step(P, x, Vehicle.Inputs(front_blowout=whole), 0.01)

@@ -6,6 +6,7 @@ seen are in docs/systems/lane_keeping.md.
 
 from __future__ import annotations
 
+import dataclasses
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +17,7 @@ from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system.toml import DATA
 from evcosim.models import lane_keeping_analysis as analysis
 from evcosim.models.lane_keeping_controller import LaneKeepingController
+from evcosim.models.lateral_vehicle import LateralVehicle
 
 P = LaneKeepingController.Parameters()
 STEP = 200  # the reference steps at 2 s
@@ -198,3 +200,71 @@ def test_metrics_are_the_numbers_of_the_table(runs):
     assert values["front steering angle, lowest"] == pytest.approx(-0.2820, abs=1e-4)
     assert values["rear steering angle, highest"] == pytest.approx(0.1023, abs=1e-4)
     assert values["ripple of the displacement after 5 s"] <= 6.0
+
+
+STEERING = {"four wheels": 1.0, "two wheels": 1e6}  # R: the weight of the rear angle
+
+
+@pytest.fixture(scope="module", params=["crosswind", "blowout"])
+def disturbed(request):
+    """A disturbance, and the runs with four and with two steered wheels, without the bus."""
+    runs = {
+        steering: simulate(
+            "lane_keeping", request.param, ideal=True, parameters={"controller.rear_steering_weight": weight}
+        )
+        for steering, weight in STEERING.items()
+    }
+    return request.param, runs
+
+
+def test_two_steered_wheels_are_slower_and_damped_less():
+    """The paper says so of the damping; it prints no numbers of two wheels."""
+    slowest = {
+        steering: analysis.closed_loop_poles(analysis.Parameters(rear_steering_weight=weight))[-1]
+        for steering, weight in STEERING.items()
+    }
+    assert slowest["four wheels"] == pytest.approx(-3.2296 + 3.1087j, abs=1e-4)
+    assert slowest["two wheels"] == pytest.approx(-1.5468 + 1.6857j, abs=1e-4)
+    damping = {steering: -pole.real / abs(pole) for steering, pole in slowest.items()}
+    assert damping["two wheels"] < damping["four wheels"] - 0.04
+
+
+def test_the_step_with_two_steered_wheels(runs):
+    results = simulate("lane_keeping", "two_wheel_steering")
+    assert not results["vehicle.rear_steering_angle"].any()
+    (more, later), (overshoot, settled) = numbers(results), numbers(runs["bus"])
+    assert 1.2 * overshoot < more < 6.0
+    assert 2.0 * settled < later < 3.0
+
+
+def test_four_steered_wheels_hold_the_lane_far_better(disturbed):
+    scenario, runs = disturbed
+    worst = {steering: np.abs(each["vehicle.displacement"]).max() for steering, each in runs.items()}
+    assert worst["four wheels"] < 0.011
+    assert worst["two wheels"] / worst["four wheels"] > {"crosswind": 9.0, "blowout": 5.5}[scenario]
+
+
+def test_a_lasting_disturbance_leaves_the_offset_of_the_closed_loop(disturbed):
+    """(A - B K) x + E d = 0, with the weakened front axle in A and B; there is no integral of the error."""
+    scenario, runs = disturbed
+    vehicle = LateralVehicle.Parameters()
+    if scenario == "crosswind":
+        car, force, at = vehicle, 0.6 * 4.5 * np.arctan(15.0 / 21.3) * (21.3**2 + 15.0**2), 299
+        disturbance = [force / car.mass, 0.0, 0.4 * force / car.yaw_inertia, 0.0]
+    else:
+        car, at = dataclasses.replace(vehicle, front_cornering_stiffness=0.625 * 30e3), -1
+        drag = 0.3 * 1380.0 * 9.81 * 1.27 / 2.52 / 2.0
+        disturbance = [0.0, 0.0, 0.75 * drag / car.yaw_inertia, 0.0]
+    for steering, weight in STEERING.items():
+        gain = np.array(analysis.Parameters(rear_steering_weight=weight).gain)
+        left = -np.linalg.solve(np.array(car.a) - np.array(car.b) @ gain, disturbance)[3]
+        close = 0.06 if steering == "two wheels" else 0.002
+        assert runs[steering]["vehicle.displacement"][at] == pytest.approx(left, rel=close)
+
+
+def test_without_steering_a_disturbance_takes_the_vehicle_out_of_its_lane():
+    with Simulation("lane_keeping", "blowout") as sim:
+        for angle in ("front_steering_angle", "rear_steering_angle"):
+            sim.override(f"vehicle.{angle}", 0.0)
+        sim.run()
+        assert sim.results["vehicle.displacement"].min() < -10.0
