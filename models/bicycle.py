@@ -16,11 +16,12 @@ One wheel stands for the two of an axle. C_f and C_r are the cornering stiffness
 twice as much. The paper's axes are SAE (y right, z down); the equations are the same in ISO 8855 (y left, z
 up), which the bus uses. beta counts against y: it is positive to the right in ISO and to the left in SAE.
 
-Deviations: two misprints of the paper are corrected. It prints a13 without the leading minus. It prints the
-mass as 1280 kg, but its A and B are those of m = 1380 kg, the default here.
+Deviations: misprints of the paper are corrected. Its (12) has a13 without the leading minus of its (7), and
+a33 with the formula of a31. Its list of data has a mass of 1280 kg, its listing one of 1380 kg, which gives
+its A and B and is the default here.
 
-published: C_f = C_r = 30000 N/rad, J_z = 2200 kg.m2, l_1 = 1.25 m, l_2 = 1.27 m, v_x = 21.3 m/s.
-chosen: nothing but the corrected mass.
+published: C_f = C_r = 30000 N/rad, m = 1380 kg, J_z = 2200 kg.m2, l_1 = 1.25 m, l_2 = 1.27 m, v_x = 21.3 m/s.
+chosen: nothing.
 
 At the edges: v_x is at least 0.1 m/s, because (B2) and (B3) divide by it.
 

@@ -21,8 +21,7 @@ A stop ends as there, and the springs move on, the deceleration being given:
 
 Deviations: the lean m_s g e phi, and q = 1, shift load beyond (5).
 
-published: v_0 = 100 km/h, Burckhardt's table of mu; that there are suspensions, tire elasticity,
-relaxation.
+published: v_0 = 100 km/h; that there are suspensions, tire elasticity, relaxation.
 chosen: h = 0.46 m, calibrated to Table I (lower than in (5), because of both deviations); m, r, l_f, l_r,
 J, CdA, rho, road and g as in `two_wheeler_braking`; m_uf = 14 kg, m_ur = 18 kg, I = 28 kg.m2; k_f = 18, k_r
 = 24 kN/m, c_f = 1200, c_r = 1600 N.s/m (2.5 Hz, half of critical); k_t = 160 kN/m, c_t = 400 N.s/m; sigma =

@@ -12,7 +12,7 @@ w_1 is the left wheel's reference and w_2 the right one's; d > 0 [rad] steers to
 Deviations: the labels of two lengths, which the paper's Table 1 swaps, are put right: the wheelbase is
 L = 2.5 m and the track d_w = 1.5 m.
 
-published: L, d_w, R_w = 0.36 m.
+published: L = 2.5 m, d_w = 1.5 m, R_w = 0.36 m.
 chosen: the stop of the steering, 45 deg.
 
 At the edges: an angle beyond the stop counts as the stop; a stop at which R <= d_w/2 is refused at the start

@@ -27,7 +27,7 @@ taken from the power whichever way that flows. T* is limited to -+247 N.m.
     tau dT/dt = T* - T,   i_d = i_d*,  i_q from (F1),  u in steady state                             (I1)
     T* = (request at the wheel)/g,  wheel torque = g T,  g = N eta driving, N/eta braking            (G1)
 
-Deviations: f_c = 0.0014 N.m.s is published and 0 here. Gear and efficiency are part of the drive.
+Deviations: f_c is printed as 0.0014, without a unit, and 0 here. Gear and efficiency are part of the drive.
 
 published: 247 N.m, R_r = 0.003, R_s = 0.0044 ohm, L_ls = 16.1, L_m = 482, L_lr = 12.9 uH, 4 poles, gear 10,
 efficiency 93 %.

@@ -4,8 +4,9 @@ Source: Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme, 1993.
 
     mu(lambda) = th_1 (1 - exp(-th_2 lambda)) - th_3 lambda [1]      for 0 <= lambda <= 1        (F1)
 
-published: th_1, th_2, th_3 of the standard table, for all four roads.
-chosen: mu is odd in lambda, mu(-lambda) = -mu(lambda): a wheel faster than the vehicle drives it.
+published: nothing in the papers of the systems, which print the formula without numbers.
+chosen: th_1, th_2, th_3 of Burckhardt's standard table, for all four roads; mu is odd in lambda,
+mu(-lambda) = -mu(lambda): a wheel faster than the vehicle drives it.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class Friction(NamedTuple):
 
 
 FRICTION = {
-    Road.DRY: Friction(1.2801, 23.99, 0.52),  # published, all four
+    Road.DRY: Friction(1.2801, 23.99, 0.52),  # of the standard table, all four
     Road.WET: Friction(0.857, 33.822, 0.347),
     Road.COBBLE: Friction(1.3713, 6.4565, 0.6691),
     Road.SNOW: Friction(0.1946, 94.129, 0.0646),

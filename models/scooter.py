@@ -26,10 +26,12 @@ limits force and command at the start of the step and at its end, so that the P 
 battery that steps after the vehicle delivers all of it. A comes from the battery's charge alone, so that no
 loop arises.
 
-published: mu = 0.46 km/h per % and the pole 0.03 Hz, both at 30 km/h, the clipping of the throttle to
-0..100 %, the limit of 50 km/h, v = (w_f r_f + w_r r_r)/2.
-chosen: M = 200 kg, rho = 1.2 kg/m3, CxA = 0.60 m2, r_v = 10 N.s/m, C_r = 0.014, F_b = 850 N, tau_m = 5 ms,
-(S6), the fade of 1 km/h, r_f = r_r = 0.2 m, eta = 0.85, P_0 = 40 W, g = 9.81 m/s2.
+published: mu = 0.46 and the pole 0.03 Hz, both at one working point, the clipping of the throttle to 0..100
+%, the limit of 50 km/h, v = (w_f r_f + w_r r_r)/2.
+inferred: mu is in km/h per %.
+chosen: the working point of both, 30 km/h; M = 200 kg, rho = 1.2 kg/m3, CxA = 0.60 m2, r_v = 10 N.s/m, C_r =
+0.014, F_b = 850 N, tau_m = 5 ms, (S6), the fade of 1 km/h, r_f = r_r = 0.2 m, eta = 0.85, P_0 = 40 W,
+g = 9.81 m/s2.
 
 At the edges: the vehicle never moves backward. At v = 0 it stands as long as the drive does not overcome
 brake, grade and rolling resistance, and its acceleration is then 0. Negative brake forces count as none.
@@ -50,9 +52,9 @@ from math import cos, exp, pi, sin
 from .base import Model, record, var
 from .constants import AIR_DENSITY, GRAVITY, KMH
 
-MATCHED_GAIN = 0.46  # km/h per %, published
+MATCHED_GAIN = 0.46  # published, without its unit: km/h per %
 MATCHED_POLE = 0.03  # Hz at MATCHED_SPEED, published
-MATCHED_SPEED = 30.0  # km/h, published
+MATCHED_SPEED = 30.0  # km/h, chosen
 NO_LIMIT = 1e12  # W
 
 

@@ -16,9 +16,10 @@ speed estimation: the case of two-wheeled vehicles", IEEE CDC 2008. SI; forces t
 Deviations: the air drag in (1); the max in (3) and the odd mu, for a wheel faster than the vehicle (the paper
 has lambda >= 0 only).
 
-published: v_0 = 100 km/h, Burckhardt's table of mu.
+published: v_0 = 100 km/h.
 chosen: calibrated to the paper's Table I, m = 200 kg, r = 0.25 m, l_f = 0.834 m, l_r = 0.516 m, h = 0.506 m,
-J = 0.79 kg.m2 per wheel, CdA = 0.388 m2; rho = 1.2 kg/m3, dry road, g = 9.81 m/s2.
+J = 0.79 kg.m2 per wheel, CdA = 0.388 m2; rho = 1.2 kg/m3, dry road by Burckhardt's table, g = 9.81
+m/s2.
 
 At the edges: w_i >= 0, a locked wheel stands until the road overcomes its brake. F_zi >= 0: where (S1) gives
 less, the other wheel carries all the weight. A negative torque counts as 0. From `stop_speed` on the vehicle

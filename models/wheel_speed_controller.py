@@ -16,10 +16,11 @@ Common errors see gains of (1 + kappa), differences of the two wheels gains of (
 PID (6) for each wheel; kappa = 1 would leave the difference of the wheels without control.
 
 Deviations: (8) does not define the cross error; E_i is chosen. (6) prints 1/K_i where (8) prints K_i, which
-is used; `reciprocal_integral` is the literal form of (6). K_d is 0, where the paper prints 2500 N.m.s2/rad:
-at 100 Hz that throws the torque from limit to limit ("Derivations" in docs/systems/multi_drive.md).
+is used; `reciprocal_integral` is the literal form of (6). K_d is 0, where the paper prints 2500, without a
+unit: at 100 Hz that throws the torque from limit to limit ("Derivations" in docs/systems/multi_drive.md).
 
-published: K_p = 1200, K_i = 400, T_max = 247 N.m x 10 x 93 % = 2297.1 N.m at the wheel.
+published: K_p = 1200, K_i = 400; of the motor 247 N.m, gear 10, efficiency 93 %.
+inferred: T_max = 247 N.m x 10 x 93 % = 2297.1 N.m at the wheel.
 chosen: kappa = 0.5, K_d = 0, conditional integration, that errors are wheel speeds in rad/s and the u_i
 torques at the wheels.
 
@@ -33,7 +34,7 @@ from __future__ import annotations
 
 from .base import Model, record, var
 
-TORQUE_LIMIT = 247.0 * 10.0 * 0.93  # N.m: the motor's, through the gear and its efficiency, published
+TORQUE_LIMIT = 247.0 * 10.0 * 0.93  # N.m: the motor's, through the gear and its efficiency, inferred
 
 
 class WheelSpeedController(Model):

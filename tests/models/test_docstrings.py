@@ -3,7 +3,7 @@
 Name: one sentence.
 Source: ...                      then the equations, numbered as in the paper, the first within ten lines
 Deviations: ...                  from the source, where there are any
-published: ..., chosen: ...      the parameters
+published: ..., inferred: ..., chosen: ...    the parameters
 At the edges: ...
 Step: ...                        integration, order, error
 """
@@ -29,7 +29,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "systems"
 NO_EQUATIONS = ("base", "constants")
 NUMBER = re.compile(r"\(([A-Z]?\d+)\)")
 NUMBERED = re.compile(r" {4}.*? {2}((?:\([A-Z]?\d+\)(?:-|, )?)+)")
-PART = re.compile(r"(Source|Deviations|published|chosen|At the edges|Step): \S")
+PART = re.compile(r"(Source|Deviations|published|inferred|chosen|At the edges|Step): \S")
 POINTER = re.compile(r'"([^"]+)"\s+in\s+docs/systems/(\w+)\.md')
 
 MODULES = [
@@ -92,8 +92,8 @@ def test_the_parts_stand_in_one_order_behind_the_equations(module: ModuleType) -
     lines = lines_of(module)
     parts = [(number, match[1]) for number, match in enumerate(map(PART.match, lines)) if match]
     names = [name for _, name in parts]
-    optional = ["Deviations"] if model_of(module) else ["Deviations", "At the edges", "Step"]
-    wanted = ["Source", "Deviations", "published", "chosen", "At the edges", "Step"]
+    optional = ["Deviations", "inferred"] + ([] if model_of(module) else ["At the edges", "Step"])
+    wanted = ["Source", "Deviations", "published", "inferred", "chosen", "At the edges", "Step"]
     assert names == [name for name in wanted if name in names]
     assert set(wanted) - set(names) <= set(optional)
     last_equation = max(number for number, line in enumerate(lines) if NUMBERED.fullmatch(line))
