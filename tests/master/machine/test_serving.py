@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 _DO_STEP = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_double, ctypes.c_double, ctypes.c_int)
-run = njit("int64(int64)", nogil=True)(serving.run)
+run = njit(nogil=True)(serving.run)  # compiled at its first call
 
 
 class Process:
