@@ -47,8 +47,13 @@ def manifest(
         "ideal": plan.ideal,
         "order": [unit.name for unit in plan.units],
         "units": {unit.name: _unit(unit, prepared, isolation[unit.name]) for unit in plan.units},
+        "defaults": {unit.name: _defaults(unit) for unit in plan.units},
+        "connect": _connected(system, {unit.name for unit in plan.units}),
         "connections": _scaled(system),
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
+        "events": [
+            {"time": plan.clock.at(k), **event.model_dump(exclude={"time"})} for k, event in plan.events
+        ],
         "steps": engine.k,
         "saturations": saturations(engine),
         "outside": list(prepared.outside),
@@ -94,6 +99,25 @@ def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str,
         "isolation": isolation,
         "map": prepared.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
     }
+
+
+def _defaults(unit: UnitPlan) -> dict[str, Any]:
+    """Return of each parameter and start value that is set what the FMU declares: value, unit, text."""
+    declared = {name: unit.interface.variables[name] for name in (*unit.parameters, *unit.start)}
+    return {
+        name: {"value": v.default, "unit": v.unit, "description": v.description}
+        for name, v in declared.items()
+    }
+
+
+def _connected(system: System, units: set[str]) -> list[dict[str, Any]]:
+    """Return the connections between these units as the file has them; over a bus also those to nobody."""
+    found = []
+    for connection in system.file.connect:
+        ends = [receiver for receiver in connection.to if receiver.partition(".")[0] in units]
+        if connection.source.partition(".")[0] in units and (ends or connection.via):
+            found.append(connection.model_dump(by_alias=True, exclude_defaults=True) | {"to": ends})
+    return found
 
 
 def _scaled(system: System) -> list[dict[str, Any]]:

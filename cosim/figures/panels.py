@@ -24,10 +24,8 @@ def panel_height(panel: PanelSpec) -> float:
 
 def draw_panel(axes: Axes, results: Results, panel: PanelSpec, time_axis: TimeAxis, limit: int) -> None:
     """Draw the signals of a panel, of about `limit` points each. Raises ConfigError as `draw_signal` does."""
-    unused = _unnamed_dashes(panel)
-    for place, signal in enumerate(panel.signals):
-        dashes = NAMED_DASHES[signal.style] if signal.style else next(unused)
-        draw_signal(axes, results, signal, panel.unit, time_axis, limit, Stroke.of(place, dashes))
+    for signal, stroke in zip(panel.signals, strokes(panel), strict=True):
+        draw_signal(axes, results, signal, panel.unit, time_axis, limit, stroke)
     _name_states(axes, results, panel)
     if panel.limits is None:
         fit_value_axis(axes)
@@ -41,6 +39,15 @@ def _counts(results: Results, panel: PanelSpec) -> bool:
     """Return whether a panel shows numbers of things, whose unit 1 nobody writes, and no ratio."""
     kinds = {results.variable(signal.name).type for signal in panel.signals}
     return panel.unit == "1" and not kinds & {"Real", "Float32", "Float64"}
+
+
+def strokes(panel: PanelSpec) -> list[Stroke]:
+    """Return the strokes of a panel's lines, in their order."""
+    unused = _unnamed_dashes(panel)
+    return [
+        Stroke.of(place, NAMED_DASHES[signal.style] if signal.style else next(unused))
+        for place, signal in enumerate(panel.signals)
+    ]
 
 
 def _unnamed_dashes(panel: PanelSpec) -> Iterator[Any]:

@@ -22,12 +22,12 @@ def draw_states(panels: list[Axes], results: Results, name: str, time_axis: Time
     """Shade each panel for as long as a state of the enumeration `name` lasts."""
     from matplotlib.patches import Patch
 
-    time, values = _course(results, name)
+    time, values = course(results, name, _SPANS)
     handles = [Patch(visible=False, label=f"{on_one_line(name)}:")]
     for place, (value, text) in enumerate(results.variable(name).items):
         face = SHADES[place % len(SHADES)]
         hatch = "///" if place >= len(SHADES) else None
-        spans = [(time_axis.scale * a, time_axis.scale * (b - a)) for a, b in _spans(time, values, value)]
+        spans = [(time_axis.scale * a, time_axis.scale * (b - a)) for a, b in spans_of(time, values, value)]
         for axes in panels if spans else []:
             bars = axes.broken_barh(spans, (0.0, 1.0), transform=axes.get_xaxis_transform())
             bars.set(facecolor=face, hatch=hatch, edgecolor="#C0C0C0", linewidth=0.0, zorder=0.1)
@@ -46,18 +46,18 @@ def draw_states(panels: list[Axes], results: Results, name: str, time_axis: Time
     legend.set_clip_on(False)  # the layout makes room for what is not clipped
 
 
-def _course(results: Results, name: str) -> tuple[Array, Array]:
+def course(results: Results, name: str, most: int) -> tuple[Array, Array]:
     """Return times [s] and values of a held variable, shapes (n,): at the start, at each change, at the end.
 
-    More than _SPANS changes would not be seen: then the state at each of as many equal distances counts.
+    More than `most` changes would not be seen: then the state at each of as many equal distances counts.
     """
     times, kept, count = [np.empty(0)], [np.empty(0)], 0
     for time, values in results.pieces([name], overlap=1):
         x = values[:, 0]
         at = np.flatnonzero(x[1:] != x[:-1]) + 1
         count += len(at)
-        if count > _SPANS:
-            rows = np.linspace(0, len(results) - 1, _SPANS).astype(np.intp).tolist()
+        if count > most:
+            rows = np.linspace(0, len(results) - 1, most).astype(np.intp).tolist()
             few = [next(results.pieces([name], first=k, rows=1)) for k in rows]
             return np.concatenate([t for t, _ in few]), np.concatenate([v[:, 0] for _, v in few])
         at = at if len(times) > 1 else np.insert(at, 0, 0)
@@ -69,7 +69,7 @@ def _course(results: Results, name: str) -> tuple[Array, Array]:
     return np.concatenate(times), np.concatenate(kept)
 
 
-def _spans(time: Array, values: Array, value: float) -> list[tuple[float, float]]:
+def spans_of(time: Array, values: Array, value: float) -> list[tuple[float, float]]:
     """Return the stretches [t_k, t_j) [s] of a course, shapes (n,), in which it has this value."""
     inside = np.concatenate(([False], values[:-1] == value, [False]))  # the last value lasts no time
     edges = np.flatnonzero(inside[1:] != inside[:-1])

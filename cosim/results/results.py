@@ -323,6 +323,17 @@ class Results:
             figures.write(figure, Path(path))
         return figure
 
+    def report(self, path: str | os.PathLike[str], spec: FigureSpec | None = None) -> Path:
+        """Write a page (.html) of the run, its curves, metrics and settings, that needs no network.
+
+        The figure is that of the run's system, another `spec`, or else signals grouped by unit of measure.
+        Raises ConfigError for a spec that does not fit, and where the file cannot be written.
+        """
+        from ..report.page import write_report  # knows figures and units of measure, as `plot` does
+
+        write_report(Path(path), self, spec)
+        return Path(path)
+
 
 def _of_rows(path: Path) -> Results:
     """Read the rows that a run, which may have been killed, has saved up to now."""

@@ -28,9 +28,10 @@ from .text_table import texts_path
 from .variable import ResultVariable
 
 FIGURES = ("figure.png", "figure.svg")
+REPORT = "report.html"
 CAN_LOGS = ("can.log", "can.blf", "can.asc")
 _SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
-FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, *CAN_LOGS)
+FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, REPORT, *CAN_LOGS)
 """The files of a run that has ended."""
 
 

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ...cosim.results.folder_lock import FolderLock
     from ...cosim.results.results import Results
     from ...cosim.results.run_folder import RunFolder
+    from ...cosim.system.figure_spec import FigureSpec
     from ...cosim.system.run_options import RunOptions
     from ..simulation import Simulation
 
@@ -159,11 +160,31 @@ def write_results(folder: RunFolder, results: Results) -> list[str]:
     return [CSV_NAME, *texts, MANIFEST_NAME]
 
 
+def figure_of(results: Results) -> FigureSpec | None:
+    """Return what the figure of a run shows; None where it has nothing to draw."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.figures.default_figure import default_spec
+
+    if results.figure is not None or not len(results):
+        return results.figure
+    try:
+        return default_spec(results)
+    except ConfigError:  # it records texts alone
+        return None
+
+
 def write_figure(folder: Path, results: Results) -> list[str]:
     """Draw and write the figure and return the names of its files. Raises ConfigError."""
     from ...cosim.figures import draw as figures
 
     return [path.name for path in figures.save(results.plot(), folder)]
+
+
+def write_report(folder: Path, results: Results) -> list[str]:
+    """Write the page of a run, and return the name of its file. Raises ConfigError."""
+    from ...cosim.results.run_folder import REPORT
+
+    return [results.report(folder / REPORT).name]
 
 
 def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from . import completion
 from .options import QuietOption, ScenarioOption, takes_run_options
+from .repeat import repeating
 
 if TYPE_CHECKING:
     from ...cosim.results.results import Results
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 @takes_run_options()
 def run(
+    context: typer.Context,
     system: Annotated[
         str,
         typer.Argument(
@@ -45,22 +47,33 @@ def run(
         bool, typer.Option("--can-log", help="Write the CAN frames (.log .blf .asc).")
     ] = False,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figure.")] = False,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Write no page (report.html).")] = False,
     profile: Annotated[bool, typer.Option("--profile", help="Show what takes the time of a step.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what happened as JSON.")] = False,
     quiet: QuietOption = False,
 ) -> int:
-    """Run a system, or an FMU by itself; write results.csv, run.json, a figure."""
+    """Run a system, or an FMU by itself; write results.csv, run.json, a figure and a page (report.html)."""
     bar = not (as_json or quiet)
-    order = Order(system, scenario, options, output, replace, can_log, not no_plot, profile, bar)
+    files = Wanted(can_log, not no_plot, not no_report)
+    command = repeating(context, "output", "replace", "as_json", "quiet", "profile")
+    order = Order(system, scenario, options, output, replace, files, profile, bar, command)
     return _carry_out(order, as_json, quiet)
+
+
+class Wanted(NamedTuple):
+    """The files of a run that are wanted beside its results."""
+
+    can_log: bool
+    figure: bool
+    report: bool
 
 
 @dataclasses.dataclass(frozen=True)
 class Order:
     """A run as the command line describes it; `output` is its folder (None: the default).
 
-    With `replace` the run may replace results of other settings. `can_log` and `figure` are wanted files,
-    `profile` measures the parts of a step, `bar` shows the progress.
+    With `replace` the run may replace results of other settings. `profile` measures the parts of a step,
+    `bar` shows the progress, `command` does the same run again.
     """
 
     system: str
@@ -68,10 +81,10 @@ class Order:
     options: RunOptions
     output: Path | None
     replace: bool
-    can_log: bool
-    figure: bool
+    files: Wanted
     profile: bool
     bar: bool
+    command: str
 
 
 @dataclasses.dataclass
@@ -96,7 +109,7 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
     with contextlib.ExitStack() as keeping:
         finished, interrupts = _run(order, keeping)
         with finished.folder:
-            _evaluate(finished)
+            _evaluate(finished, order.command)
             _write(finished, order, interrupts, keeping)
     if as_json:
         print_json(summary.as_data(finished))
@@ -121,13 +134,13 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
     from .interrupts import Interrupted, Interrupts
     from .outputs import default_folder, run_folder, suffix_of
 
-    if order.can_log and order.options.get("ideal"):
+    if order.files.can_log and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
     simulation = Simulation(
         order.system,
         order.scenario,
-        log_frames=order.can_log,
+        log_frames=order.files.can_log,
         profile=order.profile,
         to_stop=True,
         **order.options,
@@ -169,11 +182,12 @@ def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:
         simulation.run(look)
 
 
-def _evaluate(finished: FinishedRun) -> None:
-    """Evaluate the metrics of a whole run, and note them, or the error of a failed one, for run.json."""
+def _evaluate(finished: FinishedRun, command: str) -> None:
+    """Note for run.json the metrics of a whole run, or the error of a failed one, and the command."""
     from ..keeping import ended
 
     manifest = finished.results.manifest
+    manifest["command"] = command
     if finished.error is None:
         finished.metrics = finished.results.metrics()
         manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in finished.metrics}
@@ -183,10 +197,13 @@ def _evaluate(finished: FinishedRun) -> None:
 def _write(
     finished: FinishedRun, order: Order, interrupts: Interrupts, keeping: contextlib.ExitStack
 ) -> None:
-    """Write results, CAN logs and, unless a signal came, the figure. Raises RunError naming what is there."""
+    """Write results, CAN logs and, unless a signal came, figure and page.
+
+    Raises RunError naming what is there.
+    """
     from ...cosim.errors import ConfigError, RunError
     from .interrupts import Interrupted, say
-    from .outputs import write_figure, write_results
+    from .outputs import write_results
 
     folder = finished.folder
     finished.files += write_results(folder, finished.results)
@@ -196,18 +213,31 @@ def _write(
         keeping.close()
         if interrupts.number:
             finished.error = finished.error or Interrupted(interrupts.number)
-        elif order.figure and not finished.results.variables:
-            finished.remarks.append("no figure: the run records no numbers")
-        elif order.figure and len(finished.results) > 1:
-            finished.files += write_figure(folder.path, finished.results)
+        else:
+            _draw(finished, order.files)
     except ConfigError as error:
         raise RunError(f"{error}\nin {folder.path}: {', '.join(finished.files)}") from error
+
+
+def _draw(finished: FinishedRun, wanted: Wanted) -> None:
+    """Write the figure and the page of a run. Raises ConfigError."""
+    from .outputs import figure_of, write_figure, write_report
+
+    results, folder = finished.results, finished.folder.path
+    if wanted.figure or wanted.report:
+        results.figure = figure_of(results)  # which both draw
+    if wanted.figure and not results.variables:
+        finished.remarks.append("no figure: the run records no numbers")
+    elif wanted.figure and len(results) > 1:
+        finished.files += write_figure(folder, results)
+    if wanted.report:
+        finished.files += write_report(folder, results)
 
 
 def _write_logs(finished: FinishedRun, order: Order) -> None:
     from .outputs import write_can_logs
 
-    if order.can_log and not finished.simulation.plan.messages:
+    if order.files.can_log and not finished.simulation.plan.messages:
         finished.remarks.append("no CAN log: no connection of the system is over a bus")
-    elif order.can_log:
+    elif order.files.can_log:
         finished.files += write_can_logs(finished.folder.path, finished.simulation)

@@ -184,6 +184,8 @@ def test_model_that_raises_in_step_500(evcosim, system, tmp_path):
     assert np.array_equal(results["cart.way"], np.arange(500.0))
     assert results.manifest["status"] == "failed"
     assert "the chain came off" in results.manifest["error"]
+    page = (tmp_path / "results" / "bench" / "report.html").read_text(encoding="utf-8")
+    assert page.index("The run failed") < page.index("the chain came off") < page.index('class="charts"')
 
 
 def test_failed_run_as_json(evcosim, system):
@@ -194,11 +196,13 @@ def test_failed_run_as_json(evcosim, system):
     assert answer.json["steps"] == 7
 
 
-def test_model_that_raises_in_its_first_step(evcosim, system):
+def test_model_that_raises_in_its_first_step(evcosim, system, tmp_path):
     answer = evcosim("run", system({"cart": "Fragile"}), "--set", "cart.last=0")
     assert answer.code == 1
     assert "t = 0 s" in answer.err
     assert "no step was recorded" in answer.err
+    page = (tmp_path / "results" / "bench" / "report.html").read_text(encoding="utf-8")
+    assert page.index("The run failed") < page.index("No row was recorded")
 
 
 def test_nan_on_a_connection(evcosim, system, tmp_path):

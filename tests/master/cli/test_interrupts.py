@@ -41,6 +41,7 @@ def test_ctrl_c_keeps_what_was_recorded(process, tmp_path):
     assert results.manifest["status"] == "interrupted"
     assert 0 < len(results) < 136_900
     assert results.manifest["steps"] == len(results) - 1
+    assert not (tmp_path / "out" / "report.html").exists()  # nobody waits for it
 
 
 def test_second_ctrl_c_ends_a_unit_that_is_stuck(process, system, tmp_path):

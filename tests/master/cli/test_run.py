@@ -23,7 +23,8 @@ def test_run_says_and_writes_what_happened(evcosim, tmp_path):
     assert "distance" in answer.out
     assert len(answer.out.splitlines()) < 24
     folder = tmp_path / "results" / "scooter-fig8"
-    expected = {"results.csv", "run.json", "figure.png", "figure.svg", "can.log", "can.blf", "can.asc"}
+    expected = {"results.csv", "run.json", "figure.png", "figure.svg", "report.html"}
+    expected |= {"can.log", "can.blf", "can.asc"}
     assert {path.name for path in folder.iterdir()} == expected
     assert answer.out.splitlines()[-1].startswith("in results/scooter-fig8: results.csv, run.json")
     manifest = json.loads((folder / "run.json").read_text(encoding="utf-8"))
@@ -33,7 +34,9 @@ def test_run_says_and_writes_what_happened(evcosim, tmp_path):
 
 
 def test_run_as_json(evcosim):
-    data = evcosim("run", "scooter", "--stop-time", "1", "--no-plot", "--json", "-o", "out").json
+    data = evcosim(
+        "run", "scooter", "--stop-time", "1", "--no-plot", "--no-report", "--json", "-o", "out"
+    ).json
     assert data["status"] == "done"
     assert data["simulated_seconds"] == pytest.approx(1.0)
     assert data["files"] == ["results.csv", "run.json"]
@@ -111,7 +114,7 @@ def test_texts_are_set_shown_compared_and_not_drawn(evcosim, tmp_path):
     first = evcosim("run", "texts.toml", "--set", 'a.title=one, "two"', "-o", "first")
     assert first.code == 0
     assert """a.shown   'one, "two"'""" in first.out and """b.text    'one, "two"'""" in first.out
-    files = "results.csv, results.texts.csv, run.json, figure.png, figure.svg"
+    files = "results.csv, results.texts.csv, run.json, figure.png, figure.svg, report.html"
     assert f"in first: {files}\n" in first.out
     second = evcosim("run", "texts.toml", "--set", 'a.title="5"', "-o", "second", "--json").json
     assert (second["final"]["b.text"], second["files"]) == ("5", files.split(", "))

@@ -1,0 +1,93 @@
+"""The interactive panels of a run as a part of a page: its HTML, with the numbers in it.
+
+`assets.py` has what a page needs once, however many of these parts stand in it.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..errors import ConfigError
+from ..figures.axes import TimeAxis
+from ..figures.check import check
+from ..figures.default_figure import MAX_PANELS, default_spec
+from ..results.results import Results
+from ..system.figure_spec import FigureSpec
+from ..visible import flowing
+from .columns import Columns
+from .panels import any_signals, figure_panels, states_data
+from .recorded import recorded
+
+Event = tuple[float, str]
+"""The time [s] of an event, and the text of its mark."""
+
+
+def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Event] = ()) -> str:
+    """Return the panels of a figure as HTML, and a search for all other signals.
+
+    Without a spec the figure is that of `default_spec(results)`. Raises ConfigError for a spec that names a
+    variable that is not there or measures something else.
+    """
+    if not len(results):
+        return "<p>No row was recorded.</p>"
+    if spec is None:
+        spec = _default(results)
+    else:
+        check(spec, {v.name: v for v in (*results.variables, *results.text_table.variables)}, "figure")
+    page = Columns()
+    panels = spec.panels if spec else []
+    drawn = list(dict.fromkeys(signal.name for panel in panels for signal in panel.signals))
+    found = recorded(results, drawn, page)
+    signals = any_signals(results, found)
+    return element(
+        TimeAxis.of(results),
+        page,
+        panels=figure_panels(results, spec, found) if spec else signals[:MAX_PANELS],
+        signals=signals,
+        states=states_data(results, spec.shade if spec else None, found.items),
+        events=events,
+        said=[found.said, *([flowing(spec.note)] if spec and spec.note else [])],
+    )
+
+
+def _default(results: Results) -> FigureSpec | None:
+    try:
+        return default_spec(results)
+    except ConfigError:  # there are texts alone, or parameters
+        return None
+
+
+def element(
+    axis: TimeAxis,
+    page: Columns,
+    *,
+    panels: list[dict[str, Any]],
+    signals: list[dict[str, Any]],
+    states: Mapping[str, Any] | None = None,
+    events: Sequence[Event] = (),
+    said: Sequence[str] = (),
+) -> str:
+    """Return panels over a time axis as HTML; `said` are the lines of text below them."""
+    data = {
+        "time": {"scale": axis.scale, "unit": axis.unit, "begin": axis.begin, "end": axis.end},
+        **page.as_data(),
+        "panels": panels,
+        "signals": signals,
+        "states": states,
+        "events": [{"time": time, "text": flowing(text)} for time, text in events],
+    }
+    notes = "".join(f'<p class="note">{html.escape(text)}</p>' for text in said)
+    return (
+        '<section class="charts"><p class="wait">This page draws its curves by a script of its own. '
+        "The browser has not run it.</p>"
+        f'<script type="application/json">{as_json(data)}</script>{notes}</section>'
+    )
+
+
+def as_json(data: Any) -> str:
+    """Return data as JSON in ASCII, without a sign that could end the element that it stands in."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
