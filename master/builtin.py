@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.reading import is_file
+from ..cosim.system.kinds import kind_of
 from ..cosim.writing import reason
 
 
@@ -101,6 +102,8 @@ def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
         if is_file(path):
+            if path.suffix.lower() not in (".fmu", ".zip") and (said := kind_of(path, "FMU")):
+                raise ConfigError(f"{start}{said}")
             return path
     if name.endswith(".fmu") or "/" in name or "\\" in name:
         raise ConfigError(f"{start}{name[:200]}: there is no such FMU file")

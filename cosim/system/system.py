@@ -10,8 +10,10 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from ..can.bus_settings import BusSettings
+from ..errors import ConfigError
 from ..interface import InterfaceType
 from .figure_spec import FigureSpec
+from .kinds import other_file
 from .metric_spec import MetricSpec
 from .scaling import Scaling
 from .toml import (
@@ -327,4 +329,9 @@ def system_names() -> list[str]:
 def load_system(name: str) -> System:
     """Return the system of a built-in name or a path. Raises ConfigError naming file, key, rule and value."""
     path = find(name, [DATA / "systems"], "system")
-    return System(path, read_toml(path, SystemFile))
+    try:
+        return System(path, read_toml(path, SystemFile))
+    except ConfigError as error:
+        if said := other_file(path):
+            raise ConfigError(said) from error
+        raise

@@ -24,6 +24,7 @@ from pydantic import (
 from ..errors import ConfigError, nearest, short
 from ..interface import Value
 from ..reading import content, is_file
+from .kinds import kind_of
 from .problems import sentences
 
 DATA = Path(__file__).parents[1] / "data"
@@ -186,12 +187,16 @@ def find(name: str, folders: list[Path], kind: str, owner: str = "") -> Path:
     """
     if name.endswith(".toml") or "/" in name or "\\" in name:
         path = Path(name)
+        if said := kind_of(path, kind):
+            raise ConfigError(said)
         if not is_file(path):
             raise ConfigError(f"{path}: there is no such {kind} file")
         return path
     for folder in folders:
         if is_file(folder / f"{name}.toml"):
             return folder / f"{name}.toml"
+    if said := kind_of(Path(name), kind):
+        raise ConfigError(said)
     known = [known for folder in folders for known in names_in(folder)]
     said = f"{owner} has no {kind} '{name}'" if owner else f"unknown {kind} '{name}'"
     there_are = ", ".join(dict.fromkeys(known)) or "none"

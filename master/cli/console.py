@@ -79,6 +79,11 @@ def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
         print(_wrapped(head, value, len(head)))
 
 
+def print_flowing(text: str) -> None:
+    """Print a sentence, wrapped; an empty line before it stays."""
+    print("\n" * (len(text) - len(text.lstrip("\n"))) + _wrapped("", flowing(text.strip("\n")), 0))
+
+
 def print_title(text: str, first: bool = False) -> None:
     """Print a heading, after an empty line unless it is the first thing printed."""
     if not first:

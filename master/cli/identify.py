@@ -145,6 +145,7 @@ def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> Identific
     from ...cosim.errors import ConfigError
     from ...cosim.system.identification_spec import IdentificationSpec
     from ...cosim.system.toml import validate
+    from ..studies.identification import check_ends
     from ..studies.identification_target import spec_of
 
     base = spec_of(target, scenario)
@@ -162,6 +163,8 @@ def _spec(target: str, scenario: str | None, given: dict[str, Any]) -> Identific
     merged = known | given
     for key in ("input", "output", "amplitude"):
         if key not in merged:
+            if key == "amplitude":  # a misspelled name is said first
+                check_ends(target, validate(merged | {key: 1.0}, IdentificationSpec, target), scenario)
             raise ConfigError(f"{target}: --{key} is needed: no [identification] of a scenario gives it")
     return validate(merged, IdentificationSpec, target)
 

@@ -72,10 +72,13 @@ def _draw(system: str, path: Path) -> None:
 def fmu_path(name: str) -> Path:
     """Return the file of an FMU, by path or built-in name. Raises ConfigError with the nearest name."""
     from ...cosim.errors import ConfigError, nearest
+    from ...cosim.system.kinds import kind_of
     from ...cosim.system.system import system_names
     from ..builtin import builtin_names, fmu_file
 
     known = (*system_names(), *builtin_names())
+    if name not in known and not name.lower().endswith(".fmu") and (said := kind_of(Path(name), "FMU")):
+        raise ConfigError(said)
     if name in known or Path(name).exists() or any(c in name for c in "/\\."):
         return Path(name) if Path(name).exists() else fmu_file(name)
     raise ConfigError(

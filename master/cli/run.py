@@ -89,8 +89,12 @@ class Order:
 
 @dataclasses.dataclass
 class FinishedRun:
-    """A run at its end: `error` is its failure (None: none), `files` are the names of written files."""
+    """A run at its end: `error` is its failure (None: none), `files` are the names of written files.
 
+    `target` is the system or FMU as it was typed.
+    """
+
+    target: str
     simulation: Simulation
     folder: RunFolder
     results: Results
@@ -163,7 +167,8 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
             folder.release()
             raise
     remarks += simulation.warnings
-    return FinishedRun(simulation, folder, simulation.results, error, remarks=remarks), interrupts
+    finished = FinishedRun(order.system, simulation, folder, simulation.results, error, remarks=remarks)
+    return finished, interrupts
 
 
 def _step(simulation: Simulation, interrupts: Interrupts, bar: bool) -> None:

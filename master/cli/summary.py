@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
 from ...cosim.results.text_table import shown_text
 from . import interrupts
-from .console import number, print_fields, print_table
+from .console import number, print_fields, print_flowing, print_table
 
 if TYPE_CHECKING:
     from ...cosim.interface import Value
@@ -26,8 +27,7 @@ def show(finished: FinishedRun) -> None:
         *([("ended", manifest["ended"])] if "ended" in manifest else []),
         ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
     ]
-    if isolated := [name for name, unit in manifest["units"].items() if unit["isolation"] == "process"]:
-        fields.append(("isolated", f"{', '.join(isolated)} (each in a process of its own)"))
+    fields.append(("isolated", _isolated(manifest["units"])))
     fields += [("reads" if i == 0 else "", text) for i, text in enumerate(manifest["outside"])]
     for i, (signal, about) in enumerate(manifest["saturations"].items()):
         times = counted(int(about["count"]), "time")
@@ -41,7 +41,31 @@ def show(finished: FinishedRun) -> None:
     if profile := finished.simulation.profile:
         print()
         _show_profile(profile)
-    print(f"\nin {finished.folder.path}: {', '.join(finished.files)}")
+    print_flowing(f"\nin {finished.folder.path}: {', '.join(finished.files)}")
+    print()
+    print_fields([("next" if i == 0 else "", text) for i, text in enumerate(_next(finished))])
+
+
+def _isolated(units: dict[str, Any]) -> str:
+    """Return which units have a process of their own."""
+    isolated = [name for name, unit in units.items() if unit["isolation"] == "process"]
+    return f"{', '.join(isolated)} (each in a process of its own)" if isolated else "none"
+
+
+def _next(finished: FinishedRun) -> list[str]:
+    """Return commands that go on from here: another picture, another scenario, what the system is."""
+    from ...cosim.system.scenario import scenario_names
+
+    simulation, target = finished.simulation, shlex.quote(finished.target)
+    sources = [connection.source for connection in simulation.system.file.connect]
+    folder = shlex.quote(str(finished.folder.path))
+    unit = sources[0].partition(".")[0] if sources else simulation.plan.units[0].name
+    others = [name for name in scenario_names(simulation.system) if name != simulation.scenario.name]
+    return [
+        f"evcosim plot {folder} --signals '{unit}.*'",
+        *(f"evcosim run {target} --scenario {shlex.quote(name)}" for name in others[:1]),
+        f"evcosim info {target}",
+    ]
 
 
 def as_data(finished: FinishedRun) -> dict[str, Any]:

@@ -29,8 +29,9 @@ from ...cosim.system.identification_spec import IdentificationSpec
 from ...cosim.system.run_options import RunOptions
 from ...cosim.system.scenario import load_scenario
 from ...cosim.system.system import load_system
+from ..prepare import prepare
 from ..simulation import Simulation
-from .identification_run import IdentificationRun, PhaseProgress, longest
+from .identification_run import IdentificationRun, PhaseProgress, longest, real_variable
 from .identification_target import UNIT, default_scenario, held, is_fmu, one_unit_system, spec_of
 
 _FLAT = 0.2  # periods at an extreme: of a sine it is 0.06, quantized to 20 levels 0.1
@@ -140,6 +141,16 @@ def identify(
     with Simulation(system, driven, **options) as simulation:
         run = IdentificationRun(simulation, spec, sweep, prefix, progress or (lambda what, share: None))
         return _identified(run, target, changes)
+
+
+def check_ends(target: str, spec: IdentificationSpec, scenario: str | Path | None = None) -> None:
+    """Raise ConfigError for an input or output of `spec` that the target does not have; nothing is run."""
+    alone = is_fmu(target)
+    system = one_unit_system(target) if alone else load_system(target)
+    chosen = None if alone else default_scenario(system, scenario)
+    plan = prepare(system, load_scenario(system, None if chosen is None else str(chosen))).plan
+    for name, role in ((spec.input, "input"), (spec.output, "output")):
+        real_variable(plan, f"{UNIT}.{name}" if alone else name, role)
 
 
 def each_working_point(spec: IdentificationSpec) -> list[IdentificationSpec]:

@@ -18,6 +18,7 @@ from ...cosim.analysis.frequency_response import averaged, block_length, midpoin
 from ...cosim.analysis.sweep import Sweep
 from ...cosim.errors import ConfigError, RunError, nearest
 from ...cosim.interface import VariableInfo
+from ...cosim.plan.plan import Plan
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
 from ...cosim.system.system import LATEST
@@ -60,6 +61,28 @@ def _window(sweep: Sweep) -> float:
     return 0.5 / (2.0 * math.pi * sweep.start)
 
 
+def real_variable(plan: Plan, name: str, role: str) -> VariableInfo:
+    """Return a recorded Real variable, as an "input" or "output" of an identification.
+
+    Raises ConfigError with the reason and the nearest name.
+    """
+    known = {c.name: c for c in plan.columns}
+    offered = [
+        n for n, c in known.items() if c.type == "Real" and (role == "output" or c.causality == "input")
+    ]
+    if name not in offered:
+        why = "is no Real" if name in known and known[name].type != "Real" else "is not there"
+        if name in known and role == "input" and known[name].causality != "input":
+            why = f"is of causality {known[name].causality}"
+        shown, short = [n.removeprefix(f"{UNIT}.") for n in offered], name.removeprefix(f"{UNIT}.")
+        raise ConfigError(
+            f"{role} {short}: it {why}{nearest(short, shown)}; "
+            f"recorded Real {role}s: {', '.join(shown) or 'none'}"
+        )
+    unit, _, variable = name.partition(".")
+    return next(u for u in plan.units if u.name == unit).interface.variables[variable]
+
+
 class IdentificationRun:
     """A simulation with one input overridden; outputs are converted to the unit that the spec names.
 
@@ -89,22 +112,7 @@ class IdentificationRun:
         self.peak = 0.0
 
     def _real(self, name: str, role: str) -> VariableInfo:
-        """Return a recorded Real variable. Raises ConfigError with the reason and the nearest name."""
-        known = {c.name: c for c in self.simulation.plan.columns}
-        offered = [
-            n for n, c in known.items() if c.type == "Real" and (role == "output" or c.causality == "input")
-        ]
-        if name not in offered:
-            why = "is no Real" if name in known and known[name].type != "Real" else "is not there"
-            if name in known and role == "input" and known[name].causality != "input":
-                why = f"is of causality {known[name].causality}"
-            shown, short = [n.removeprefix(f"{UNIT}.") for n in offered], name.removeprefix(f"{UNIT}.")
-            raise ConfigError(
-                f"{role} {short}: it {why}{nearest(short, shown)}; "
-                f"recorded Real {role}s: {', '.join(shown) or 'none'}"
-            )
-        unit, _, variable = name.partition(".")
-        return next(u for u in self.simulation.plan.units if u.name == unit).interface.variables[variable]
+        return real_variable(self.simulation.plan, name, role)
 
     def _conversion(self, shown: VariableInfo, unit: str) -> Affine:
         owner = self.output.partition(".")[0]

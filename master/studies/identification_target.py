@@ -11,6 +11,7 @@ from ...cosim.clock import Clock
 from ...cosim.errors import ConfigError, nearest
 from ...cosim.system.held_stimuli import course
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...cosim.system.kinds import kind_of
 from ...cosim.system.problems import shown
 from ...cosim.system.scenario import Scenario, StimulusEntry, load_scenario, scenario_names
 from ...cosim.system.system import (
@@ -44,6 +45,8 @@ def is_fmu(target: str) -> bool:
     known = system_names()
     if target in known or target.endswith(".toml") or "/" in target or "\\" in target:
         return False
+    if said := kind_of(Path(target), "system"):
+        raise ConfigError(said)
     names = [*known, *builtin_names()]
     raise ConfigError(
         f"there is no system or FMU '{target}'{nearest(target, names)}; systems: {', '.join(known)}; "

@@ -26,7 +26,7 @@ def test_run_says_and_writes_what_happened(evcosim, tmp_path):
     expected = {"results.csv", "run.json", "figure.png", "figure.svg", "report.html"}
     expected |= {"can.log", "can.blf", "can.asc"}
     assert {path.name for path in folder.iterdir()} == expected
-    assert answer.out.splitlines()[-1].startswith("in results/scooter-fig8: results.csv, run.json")
+    assert "\nin results/scooter-fig8: results.csv, run.json" in answer.out
     manifest = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     assert manifest["status"] == "done"
     assert manifest["metrics"]["distance"]["value"] > 0.0
@@ -73,7 +73,9 @@ def test_results_name_own_files(evcosim, system, tmp_path):
 def test_the_units_in_processes_of_their_own_are_named(evcosim):
     apart = evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "--isolation", "process")
     assert "isolated" in apart.out and "(each in a process of its own)" in apart.out
-    assert "isolated" not in evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "here").out
+    assert (
+        "isolated  none\n" in evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "here").out
+    )
     units = evcosim("info", "scooter", "--json").json["units"]
     assert {unit["isolation"] for unit in units} == {"none"}
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 import pytest
 
 
@@ -37,3 +39,20 @@ def test_run_reports_saturation(evcosim, system, tmp_path):
     assert "can0.Way.Meters 79 times, first at 0.21 s" in answer.out
     about = evcosim("run", path, "--no-plot", "--json").json["saturations"]["can0.Way.Meters"]
     assert about == {"count": 79, "first_time": pytest.approx(0.21)}
+
+
+def test_a_run_says_what_is_isolated_where_results_are_and_what_to_type_next(evcosim, tmp_path):
+    shown = evcosim("run", "scooter", "--stop-time", "1", "--no-plot").out
+    assert "isolated  none\n" in shown
+    assert "\nin results/scooter-fig8: results.csv, run.json" in shown
+    commands = [line.strip() for line in shown.partition("\nnext")[2].splitlines()]
+    assert commands == [
+        "evcosim plot results/scooter-fig8 --signals 'vehicle.*'",
+        "evcosim run scooter --scenario ece15",
+        "evcosim info scooter",
+    ]
+    for command in commands:
+        words = shlex.split(command)[1:]
+        assert evcosim(*words, *(["--stop-time", "1", "--no-plot"] if words[0] == "run" else [])).code == 0
+    isolated = evcosim("run", "scooter", "--stop-time", "1", "--no-plot", "--isolation", "process").out
+    assert "isolated  planner, ecu, vehicle, battery (each in a process of its own)\n" in isolated
