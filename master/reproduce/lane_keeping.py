@@ -6,23 +6,27 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim.figures import draw as figures
+from ...cosim.results.results import Results
 from ...cosim.row_store import Array
-from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models import lane_keeping_analysis as analysis
-from ...models.constants import GRAVITY
+from ...models import lane_keeping_limits as limits
 from ...models.lane_keeping_controller import LaneKeepingController
-from ..simulation import simulate
+from ..simulation import Simulation, simulate
 from ..studies.parallel import Task
 from . import printed
-from .page import Found, Page, Paper, Picture, at_most, holds, near, page
+from .lane_keeping_pictures import STEERING, pictures
+from .page import Finding, Findings, Found, Page, Paper, at_most, holds, near, page
 
 _P = LaneKeepingController.Parameters()
 _TARGET = 0.3  # m
 _STEP = 200  # the reference steps at 2 s
 _HALF_A_DIGIT = 5e-5  # of numbers printed with four decimals
 _BEST_FRICTION = 1.3  # of a dry road
-_STATE = ("lateral_velocity", "heading_angle", "yaw_rate")
+_STATE = ("lateral_velocity", "heading_angle", "yaw_rate", "displacement")
+_WEIGHTS = {"four": 1.0, "two": 1e6}  # of the rear angle: two steered wheels are four of which two cost much
+_DISTURBANCES = ("crosswind", "blowout")
+_OUTPUTS = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # y' and theta, those of the text
+_ROOM = 0.85  # m: half of what a lane of 3.5 m leaves beside a car of 1.8 m
 
 
 def _runs() -> tuple[Task[Any], ...]:
@@ -32,7 +36,32 @@ def _runs() -> tuple[Task[Any], ...]:
         Task("ideal", simulate, ("lane_keeping", "step"), {"ideal": True}),
         Task("one", simulate, ("lane_keeping", "step"), {"ideal": True} | one_late),
         Task("two", simulate, ("lane_keeping", "delayed"), {"ideal": True}),
+        Task("step two", simulate, ("lane_keeping", "two_wheel_steering"), {"ideal": True}),
+        *(
+            Task(
+                f"{scenario} {steering}",
+                simulate,
+                ("lane_keeping", scenario),
+                {"parameters": {"controller.rear_steering_weight": weight}},
+            )
+            for scenario in _DISTURBANCES
+            for steering, weight in _WEIGHTS.items()
+        ),
+        *(Task(f"{scenario} none", _unsteered, (scenario,)) for scenario in _DISTURBANCES),
     )
+
+
+def _unsteered(scenario: str) -> float:
+    """Return how far [m] the vehicle gets from its lane in a scenario when its wheels stay straight."""
+    with Simulation("lane_keeping", scenario) as sim:
+        for axle in ("front", "rear"):
+            sim.override(f"vehicle.{axle}_steering_angle", 0.0)
+        sim.run()
+        return _farthest(sim.results)
+
+
+def _farthest(results: Results) -> float:
+    return float(np.abs(results["vehicle.displacement"]).max())
 
 
 def _page(found: dict[str, Any]) -> Page:
@@ -45,12 +74,16 @@ def _page(found: dict[str, Any]) -> Page:
             "of the paper's listing in place of the 1280 of its list of data, which does not give the "
             "printed A and B. The reference of the displacement steps to 0.3 m at 2 s."
         ),
-        found=_models() | _matrices() | _run(found),
+        found={**_models(), **_matrices(), **_run(found), **_steering(found)},
         own=_own(found),
-        pictures=_pictures(found),
+        pictures=pictures(found),
         commands=(
             "evcosim run lane_keeping",
             "evcosim run lane_keeping --ideal",
+            "evcosim run lane_keeping --scenario two_wheel_steering --ideal",
+            "evcosim run lane_keeping --scenario crosswind",
+            "evcosim run lane_keeping --scenario blowout",
+            "evcosim run lane_keeping --scenario blowout --set controller.rear_steering_weight=1e6",
             "evcosim run lane_keeping --scenario delayed --ideal",
         ),
     )
@@ -107,7 +140,8 @@ def _matrices() -> dict[str, Found]:
     k_hat = np.sort(np.abs(_printed("K-hat")))
     apart = np.abs(np.sort(np.abs(_P.gain), axis=1) - k_hat).max(axis=1).min()
     finals = analysis.final_states(_P, _printed("Bc"))[3] * _TARGET
-    singular = analysis.smallest_singular_value(_P, ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0)))
+    singular = analysis.smallest_singular_value(_P, _OUTPUTS)
+    seen = limits.observability_rank(_P, _OUTPUTS)
     return {
         "A": _four_digits("A", _P.a),
         "B": _four_digits("B", _P.b),
@@ -120,6 +154,7 @@ def _matrices() -> dict[str, Found]:
             f"{1e3 * finals[0]:.1f} and {1e3 * finals[1]:.1f} mm", bool(np.abs(finals - _TARGET).min() > 0.01)
         ),
         "outputs": holds(f"there is none: C (A - B K)^-1 B is singular, to {singular:.0e}", singular < 1e-12),
+        "observability": holds(f"rank {seen} of 4", seen == 3),
         "stable": holds(
             f"largest real part {poles.real.max():.4f} 1/s", bool(poles.real.max() < 0.0), "below 0"
         ),
@@ -140,9 +175,8 @@ def _run(found: dict[str, Any]) -> dict[str, Found]:
     times, states = analysis.step_response(_P, _TARGET, 4.0)
     settled = analysis.settling_time(times, states[:, 3], _TARGET)
     begin = float(ideal.time[np.flatnonzero(reference)[0]])
-    highest = [float(np.abs(ideal[f"vehicle.{name}"]).max()) for name in _STATE]
-    force = 2.0 * _P.front_cornering_stiffness * abs(_angle(ideal, "front"))
-    load = _P.mass * GRAVITY * _P.rear_axle_distance / (_P.front_axle_distance + _P.rear_axle_distance)
+    moving = _STATE[:3]
+    highest = [float(np.abs(ideal[f"vehicle.{name}"]).max()) for name in moving]
     return {
         "steady state": near(float(beta[-1]), _TARGET, 1e-4, "m", digits=7),
         "settling": at_most(settled, 2.0, "s"),
@@ -156,17 +190,67 @@ def _run(found: dict[str, Any]) -> dict[str, Found]:
         ),
         "limited": holds(
             f"{highest[0]:.3f} m/s, {highest[1]:.4f} rad, {highest[2]:.3f} rad/s",
-            bool(all(abs(ideal[f"vehicle.{name}"][-1]) < 1e-3 for name in _STATE)),
+            bool(all(abs(ideal[f"vehicle.{name}"][-1]) < 1e-3 for name in moving)),
             "all back at 0 at 6 s",
         ),
-        "demand": holds(
-            f"{1e-3 * force:.1f} kN on an axle that carries {1e-3 * load:.1f} kN: μ = {force / load:.1f}",
-            force / load > _BEST_FRICTION,
-        ),
+        "demand": _demand(ideal),
     }
 
 
-def _own(found: dict[str, Any]) -> dict[str, Found]:
+def _demand(results: Results) -> Found:
+    """Return what the step asks of the front tires, and the lateral acceleration that it gives."""
+    states = np.column_stack([results[f"vehicle.{name}"] for name in _STATE])
+    angles = np.column_stack([results[f"vehicle.{axle}_steering_angle"] for axle in ("front", "rear")])
+    forces = limits.side_forces(_P, states, angles)
+    force, load = float(np.abs(forces[:, 0]).max()), float(limits.axle_loads(_P)[0])
+    acceleration = float(np.abs(limits.lateral_acceleration(_P, forces)).max())
+    return holds(
+        f"{1e-3 * force:.1f} kN on an axle that carries {1e-3 * load:.1f} kN: μ = {force / load:.1f}; "
+        f"lateral acceleration {acceleration:.1f} m/s²",
+        force / load > _BEST_FRICTION,
+    )
+
+
+def _steering(found: dict[str, Any]) -> Findings:
+    """Return what two and four steered wheels do, alone and where something disturbs the vehicle."""
+    slow = {steering: _slow_pole(weight) for steering, weight in _WEIGHTS.items()}
+    damping = {steering: -pole.real / abs(pole) for steering, pole in slow.items()}
+    alone = found["step two"]["vehicle.displacement"]
+    return {
+        "two wheels": holds(
+            f"{1e3 * abs(alone[-1] - _TARGET):.1f} mm left at 6 s, overshoot "
+            f"{100.0 * analysis.overshoot(alone, _TARGET):.1f} %",
+            abs(alone[-1] - _TARGET) < 2e-3 and analysis.overshoot(alone, _TARGET) < 0.1,
+            "at most 2 mm, 10 %",
+        ),
+        "damping": [
+            holds(f"{damping[steering]:.3f}, slow poles {_shown(slow[steering])} 1/s", better, of=text)
+            for better in (damping["four"] > damping["two"] and slow["four"].real < slow["two"].real,)
+            for steering, text in STEERING.items()
+        ],
+        "disturbances": [
+            holds(
+                f"{_farthest(found[f'{scenario} four']):.3f} m from the lane, "
+                f"{found[f'{scenario} none']:.1f} m without steering",
+                _farthest(found[f"{scenario} four"]) < _ROOM < found[f"{scenario} none"],
+                f"at most {_ROOM} m, the room of a lane",
+                of=scenario,
+            )
+            for scenario in _DISTURBANCES
+        ],
+    }
+
+
+def _slow_pole(rear_weight: float) -> complex:
+    """Return the slowest pole [1/s] of the loop, the one above the real axis."""
+    return complex(analysis.closed_loop_poles(analysis.Parameters(rear_steering_weight=rear_weight))[-1])
+
+
+def _shown(pole: complex) -> str:
+    return f"{pole.real:.2f} ± {pole.imag:.2f}i"
+
+
+def _own(found: dict[str, Any]) -> dict[str, Finding]:
     times, states = analysis.step_response(_P, _TARGET, 4.0)
     beta, bus = found["ideal"]["vehicle.displacement"], found["bus"]
     late = bus["vehicle.displacement"][bus.time > 6.0]
@@ -184,80 +268,42 @@ def _own(found: dict[str, Any]) -> dict[str, Found]:
         ),
         "two more steps: spectral radius": near(analysis.spectral_radius(_P, 2), 1.0225, 1e-4, digits=5),
         "two more steps: the run": holds(f"displacement up to {growth:.1f} m", growth > 10.0, "diverges"),
+        **_own_steering(found),
+    }
+
+
+def _own_steering(found: dict[str, Any]) -> dict[str, Finding]:
+    alone = found["step two"]
+    beta, time = alone["vehicle.displacement"][_STEP:], alone.time[_STEP:] - alone.time[_STEP]
+    poles = {"four": -3.2296 + 3.1087j, "two": -1.5468 + 1.6857j}
+    widths = {"crosswind": (10.4, 104.1), "blowout": (9.9, 60.4)}  # mm, in the order of STEERING
+    return {
+        "slow poles": [
+            holds(_shown(_slow_pole(_WEIGHTS[k])), abs(_slow_pole(_WEIGHTS[k]) - pole) < 1e-4, of=STEERING[k])
+            for k, pole in poles.items()
+        ],
+        "two steered wheels: overshoot": near(100.0 * analysis.overshoot(beta, _TARGET), 5.02, 0.1, "%"),
+        "two steered wheels: 2 % settling time": near(
+            analysis.settling_time(time, beta, _TARGET), 2.70, 0.02, "s"
+        ),
+        **{
+            f"{scenario}: displacement over the bus, peak to peak": [
+                near(
+                    1e3 * float(np.ptp(found[f"{scenario} {steering}"]["vehicle.displacement"])),
+                    width,
+                    0.02 * width,
+                    "mm",
+                    of=text,
+                )
+                for (steering, text), width in zip(STEERING.items(), both, strict=True)
+            ]
+            for scenario, both in widths.items()
+        },
     }
 
 
 def _angle(results: Any, axle: str) -> float:
     return float(results[f"controller.{axle}_steering_angle"][_STEP])
-
-
-def _pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
-    ideal = found["ideal"]
-    return (
-        Picture("fig7", "Fig. 7: desired lane and response of the vehicle", figures.draw(ideal, _LANE)),
-        Picture("fig8", "Fig. 8: front steering angle", figures.draw(ideal, _FRONT)),
-        Picture("fig9", "Fig. 9: rear steering angle", figures.draw(ideal, _REAR)),
-        Picture(
-            "states",
-            "Beyond the paper: lateral velocity, heading and yaw rate",
-            figures.draw(ideal, _STATES),
-        ),
-        Picture(
-            "delay", "Beyond the paper: zero, one and two more steps of 10 ms of delay", _delay_figure(found)
-        ),
-    )
-
-
-def _panel(label: str, unit: str, *signals: tuple[str, str]) -> PanelSpec:
-    return PanelSpec(label=label, unit=unit, signals=[SignalSpec(name=n, label=text) for n, text in signals])
-
-
-_STATES = FigureSpec(
-    title="Lane keeping: lateral velocity, heading, yaw rate",
-    panels=[
-        _panel("Lateral velocity", "m/s", ("vehicle.lateral_velocity", "y'")),
-        _panel("Heading", "deg", ("vehicle.heading_angle", "θ")),
-        _panel("Yaw rate", "deg/s", ("vehicle.yaw_rate", "ω_z")),
-    ],
-)
-_LANE = FigureSpec(
-    title="Lane keeping: desired lane and response",
-    panels=[
-        _panel(
-            "Displacement",
-            "m",
-            ("controller.displacement_reference", "desired lane"),
-            ("vehicle.displacement", "vehicle"),
-        )
-    ],
-)
-_FRONT = FigureSpec(
-    title="Lane keeping: front steering angle",
-    panels=[_panel("Front", "deg", ("vehicle.front_steering_angle", "δ_f"))],
-)
-_REAR = FigureSpec(
-    title="Lane keeping: rear steering angle",
-    panels=[_panel("Rear", "deg", ("vehicle.rear_steering_angle", "δ_r"))],
-)
-
-
-def _delay_figure(found: dict[str, Any]) -> Any:
-    with figures.canvas(2, height=2.6, title="Lane keeping: delay in the loop", share_x=True) as (
-        figure,
-        axes,
-    ):
-        for i, (name, label) in enumerate((("ideal", "none"), ("one", "one step"), ("two", "two steps"))):
-            results = found[name]
-            for row, limits in enumerate(((-0.05, 0.4), (-25.0, 25.0))):
-                axes[row, 0].plot(
-                    results.time, results["vehicle.displacement"], label=label, **figures.look(i)
-                )
-                axes[row, 0].set_ylim(*limits)
-                axes[row, 0].set_ylabel("displacement [m]")
-        axes[0, 0].legend(title="extra delay", loc="upper left", bbox_to_anchor=(1.01, 1.0))
-        axes[1, 0].set_xlabel("time [s]")
-        axes[1, 0].set_xlim(0.0, found["two"].time[-1])
-    return figure
 
 
 PAPER = Paper("lane_keeping", _runs, _page)
