@@ -25,6 +25,9 @@ def check(spec: FigureSpec, variables: Mapping[str, ResultVariable], place: str)
         for j, signal in enumerate(panel.signals, 1):
             here = f"{place}.panels {i}.signals {j}"
             panel_conversion(_known(signal.name, variables, here), panel.unit, here)
+    if spec.until is not None:
+        variable = _known(spec.until.signal, variables, f"{place}.until")
+        panel_conversion(variable, spec.until.unit or variable.unit, f"{place}.until")
     if spec.shade is not None and not _known(spec.shade, variables, f"{place}.shade").items:
         raise ConfigError(f"{place}.shade: '{spec.shade}' is not an enumeration, so it has no states")
 

@@ -17,6 +17,7 @@ from .canvas import canvas, grid
 from .check import check
 from .comparison import draw_comparison
 from .default_figure import default_spec, title_of
+from .end import until
 from .panels import draw_panel, panel_height
 from .saving import save, write
 from .states import draw_states
@@ -36,6 +37,7 @@ def draw(results: Results, spec: FigureSpec | None = None, *, title: str | None 
     """
     spec = spec or default_spec(results)
     check(spec, {v.name: v for v in (*results.variables, *results.text_table.variables)}, "figure")
+    results = until(results, spec.until)
     heights = [panel_height(panel) for panel in spec.panels]
     with style():
         shown = title or spec.title or title_of(results)

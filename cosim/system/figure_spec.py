@@ -58,6 +58,19 @@ class PanelSpec(FiniteModel):
         return self
 
 
+class EndSpec(FiniteModel):
+    """End of the time axis: the last time before a signal first is at or below a value."""
+
+    signal: str = Field(examples=["vehicle.speed"])
+    """The variable, written `unit.variable`."""
+
+    below: float
+    """The value, in `unit`."""
+
+    unit: str | None = None
+    """The unit of measure of the value; without it the variable's own."""
+
+
 class FigureSpec(FileModel):
     """The figure that `evcosim run` draws: panels from top to bottom over a common time axis."""
 
@@ -70,6 +83,10 @@ class FigureSpec(FileModel):
     panels: list[PanelSpec] = Field(min_length=1)
     """The panels, from top to bottom."""
 
+    until: EndSpec | None = None
+    """The end of the time axis, where the run goes on beyond what the figure is about; without it that of the
+    run."""
+
     note: str | None = None
     """A line of text below the figure."""
 
@@ -80,5 +97,6 @@ class FigureSpec(FileModel):
             for panel in self.panels
         ]
         shade = None if self.shade is None or gone(self.shade) else self.shade
+        until = None if self.until is None or gone(self.until.signal) else self.until
         panels = [panel for panel in panels if panel.signals]
-        return self.model_copy(update={"panels": panels, "shade": shade}) if panels else None
+        return self.model_copy(update={"panels": panels, "shade": shade, "until": until}) if panels else None
