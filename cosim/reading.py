@@ -7,6 +7,7 @@ import stat
 from pathlib import Path
 
 from .errors import ConfigError
+from .file_names import check_name, flaw_of_name
 
 LARGEST = 64 << 20
 """Bytes of a file that is read whole: a system, a scenario, a swap or a CAN database."""
@@ -17,11 +18,12 @@ def require_file(path: Path, about: str = "") -> os.stat_result:
 
     A pipe or a device would be read without an end, or waited for.
     """
+    check_name(path, f"{about}cannot be read: ")
     start = f"{path}: {about}"
     try:
         found = path.stat()
-    except (OSError, ValueError) as error:  # ValueError: a NUL in its name
-        raise ConfigError(f"{start}cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    except OSError as error:
+        raise ConfigError(f"{start}cannot be read: {error.strerror or error}") from error
     if stat.S_ISDIR(found.st_mode):
         raise ConfigError(f"{start}cannot be read: it is a folder, not a file")
     if not stat.S_ISREG(found.st_mode):
@@ -31,10 +33,7 @@ def require_file(path: Path, about: str = "") -> os.stat_result:
 
 def is_file(path: Path) -> bool:
     """Return True for a file; False for what is none, and for a name that no file can have."""
-    try:
-        return path.is_file()
-    except OSError:  # it is too long
-        return False
+    return not flaw_of_name(path) and path.is_file()
 
 
 def content(path: Path, about: str = "") -> bytes:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from .errors import ConfigError
+from .file_names import check_name, flaw_of_name
 from .leftovers import partial
 
 _DRAFT, _DRAFT_SUFFIX = ".evcosim-", ".part"  # begin and end of the name of a file that is being written
@@ -26,8 +27,7 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     regular file is refused. Raises ConfigError naming the path and the reason when the folder or the disk
     refuses, within the block too.
     """
-    if not path.name:  # "", "." or "/"
-        raise ConfigError(f"{path}: cannot be written: it is a folder")
+    _check_name(path)
     # beside it: a rename must not cross disks
     draft = path.with_name(f"{_DRAFT}{secrets.token_hex(6)}{_DRAFT_SUFFIX}")
     try:
@@ -37,6 +37,22 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
             with create(draft) as file:
                 yield file
             draft.replace(path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be written: {reason(path, error)}") from error
+
+
+def _check_name(path: Path) -> None:
+    check_name(path, "cannot be written: ")
+    if not path.name:  # "", "." or "/"
+        raise ConfigError(f"{path}: cannot be written: it is a folder")
+
+
+def check_writable(path: Path) -> None:
+    """Raise ConfigError where `replacing` could not write a file. Its folder is made and tried."""
+    _check_name(path)
+    try:
+        _check_replaceable(path)
+        try_folder(path.parent)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be written: {reason(path, error)}") from error
 
@@ -73,6 +89,8 @@ def remove_drafts(folder: Path) -> None:
 
 def reason(path: Path, error: OSError) -> str:
     """Return why a file cannot be written; the system's own words for a file among its folders mislead."""
+    if flaw := flaw_of_name(path):
+        return flaw
     for folder in path.parents:
         if folder.exists() and not folder.is_dir():
             return f"{folder} is a file, not a folder"

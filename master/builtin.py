@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest, short
+from ..cosim.file_names import check_name
 from ..cosim.reading import is_file
 from ..cosim.system.kinds import kind_of
 from ..cosim.writing import reason
@@ -78,6 +79,8 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
     """
     from ..fmus import build
 
+    if folder is not None:
+        check_name(folder, f"{name}.fmu cannot be written: ")
     try:
         path = build.built(name, anew=True) if folder is None else build.build(name, folder)
     except OSError as error:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from ..errors import ConfigError
+from ..file_names import flaw_of_name, short_path
 from ..writing import reason, try_folder
 from .manifest import read_manifest
 
@@ -29,6 +30,8 @@ class FolderLock:
     def __init__(self, folder: Path) -> None:
         self.path = folder
         self._descriptor: int | None = None
+        if flaw := flaw_of_name(folder):
+            raise ConfigError(f"output folder {short_path(folder)}: cannot be written: {flaw}")
         try:
             try_folder(folder)
         except OSError as error:

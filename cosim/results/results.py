@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ConfigError, nearest
+from ..file_names import check_name
 from ..row_store import Array, Grid, MemoryTable, Table
 from ..writing import replacing
 from .folder_lock import MANIFEST_NAME, status
@@ -249,6 +250,7 @@ class Results:
                 )
 
     def _save(self, path: Path, form: Format) -> Path:
+        check_name(path, "cannot be written: ")
         # the texts first: where the rows of a run stand, its texts do
         write_texts(path, self.text_table, self.time if self.texts else np.empty(0))
         with replacing(path) as file:
@@ -278,6 +280,7 @@ class Results:
         results.csv every variable is a Real without a unit of measure. Raises ConfigError for another suffix,
         and naming file, line, column and value of what is not a number, or the last line that was cut off.
         """
+        check_name(path)
         path = Path(path)
         if path.is_dir():
             rows, path = path / ROWS_NAME, path / CSV_NAME

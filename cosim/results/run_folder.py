@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ConfigError
+from ..file_names import check_name
 from ..writing import remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
 from .formats.csv import cut_row
@@ -182,6 +183,7 @@ def recover(folder: Path) -> Results | None:
     ConfigError for a run that lives, for one that had saved nothing, and for a folder that is none or cannot
     be written.
     """
+    check_name(folder)
     if not folder.is_dir():
         raise ConfigError(f"{folder}: there is no such folder")
     with RunFolder(folder) as locked:

@@ -21,6 +21,7 @@ from .reproduce import reproduce
 from .results import results
 from .run import run
 from .schema import schema
+from .typed_paths import checks_paths
 
 
 def command() -> Any:
@@ -49,7 +50,7 @@ def command() -> Any:
         "schema": schema,
     }
     for name, verb in verbs.items():
-        app.command(name)(verb)
+        app.command(name)(checks_paths(verb))
     app.add_typer(results, name="results")
     return typer.main.get_command(app)
 

@@ -174,10 +174,14 @@ def _tried(checked: _Checked, duration: float) -> Trial:
 
 
 def _check_new(path: Path, checked: str) -> None:
-    """Raise ConfigError where a file is there that somebody may have edited, other than the one checked."""
+    """Raise ConfigError where a file is there that somebody may have edited, other than the one checked, or
+    none can be written."""
     from ...cosim.errors import ConfigError
+    from ...cosim.reading import is_file
+    from ...cosim.writing import check_writable
 
-    if path.is_file() and not (Path(checked).is_file() and path.samefile(checked)):
+    check_writable(path)
+    if path.is_file() and not (is_file(Path(checked)) and path.samefile(checked)):
         raise ConfigError(
             f"--write {path}: the file is there, and what was edited in it would be lost; remove it, name "
             f"another one, or check what it says: evcosim check {path}"

@@ -12,6 +12,7 @@ import typer
 
 from ...cosim.visible import raw_stream, visible, visible_stream
 from . import interrupts, outputs
+from .typed_paths import check_given
 
 _SCREEN = 20  # lines of a message at most
 
@@ -40,6 +41,7 @@ def visible_streams() -> Iterator[None]:
 
 def _guarded(command: Any, arguments: Sequence[str], debug: bool) -> int:
     try:
+        check_given(arguments)
         with command.make_context("evcosim", arguments) as context:
             code = command.invoke(context)
         sys.stdout.flush()

@@ -71,16 +71,18 @@ def _draw(system: str, path: Path) -> None:
 
 def fmu_path(name: str) -> Path:
     """Return the file of an FMU, by path or built-in name. Raises ConfigError with the nearest name."""
-    from ...cosim.errors import ConfigError, nearest
+    from ...cosim.errors import ConfigError, nearest, short
+    from ...cosim.file_names import check_name
     from ...cosim.system.kinds import kind_of
     from ...cosim.system.system import system_names
     from ..builtin import builtin_names, fmu_file
 
     known = (*system_names(), *builtin_names())
+    check_name(name)
     if name not in known and not name.lower().endswith(".fmu") and (said := kind_of(Path(name), "FMU")):
         raise ConfigError(said)
     if name in known or Path(name).exists() or any(c in name for c in "/\\."):
         return Path(name) if Path(name).exists() else fmu_file(name)
     raise ConfigError(
-        f"there is no system or FMU '{name}'{nearest(name, known)}; built in: {', '.join(known)}"
+        f"there is no system or FMU {short(name)}{nearest(name, known)}; built in: {', '.join(known)}"
     )

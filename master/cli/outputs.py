@@ -91,10 +91,11 @@ def _candidates(wanted: Path, suffix: str) -> Iterator[Path]:
 
 def _is_taken(folder: Path, manifest: Mapping[str, Any]) -> bool:
     """Return True for a folder that holds files of somebody's own, or that another run of others has."""
+    from ...cosim.file_names import flaw_of_name
     from ...cosim.results.folder_lock import lives, manifest_of
     from ...cosim.results.run_folder import foreign_files, same_settings
 
-    if not folder.exists():
+    if flaw_of_name(folder) or not folder.exists():  # such a name is refused when it is to be made
         return False
     if not folder.is_dir():
         return True

@@ -19,7 +19,7 @@ def test_a_file_is_read_whole(tmp_path: Path) -> None:
 
 
 def test_what_is_no_file_is_refused_naming_it(tmp_path: Path) -> None:
-    refused = {tmp_path: "it is a folder", tmp_path / "none": "No such file", Path("a\0b"): "null byte"}
+    refused = {tmp_path: "it is a folder", tmp_path / "none": "No such file", Path("a\0b"): "it has a NUL"}
     if os.name == "posix":
         os.mkfifo(tmp_path / "pipe")  # of which nobody writes the other end
         refused |= {tmp_path / "pipe": "a pipe or a device", Path("/dev/zero"): "a pipe or a device"}
