@@ -19,7 +19,17 @@ from typing import TextIO
 
 import numpy as np
 
-from .csv_text import Comments, encoding_of, number_in, opened, read_header, time_column
+from .csv_text import (
+    Comments,
+    CutRow,
+    cut_row,
+    encoding_of,
+    number_in,
+    opened,
+    quoted_name,
+    read_header,
+    time_column,
+)
 from .errors import ConfigError, counted
 from .row_store import Array
 
@@ -51,6 +61,32 @@ class CsvFile:
     def time_column(self) -> int:
         """Return the column of the time, by its name. Raises ConfigError where there is none, or several."""
         return time_column(self.names, f"{self.path}: line {self.header_lines}")
+
+    def last_line_without_end(self) -> CutRow | None:
+        """Return the last line where it does not end: it may be complete, or cut off. None: it ends.
+
+        Raises ConfigError for a file as evcosim writes it, whose lines all end: one that does not was cut
+        off, and that within its last number nobody could see.
+        """
+        try:
+            row = cut_row(self.path)
+        except OSError as error:
+            raise ConfigError(f"{self.path}: cannot be read: {error.strerror or error}") from error
+        if row is None or not self._is_ours():
+            return row
+        raise ConfigError(
+            f"{self.path}: line {row.line}, the last, does not end: {row.text!r}; the file was cut off. "
+            "'evcosim results recover' leaves the line out of a run's folder; if nothing is missing, end the "
+            "line"
+        )
+
+    def _is_ours(self) -> bool:
+        """Return True for a header as that of results: `time,unit.variable,...`."""
+        if self.names[0] != "time" or not all("." in name for name in self.names[1:]):
+            return False
+        with opened(self.path, self.encoding) as lines:
+            header = "".join(itertools.islice(lines, self.header_lines))
+        return header.rstrip("\r\n") == ",".join(map(quoted_name, self.names))
 
     def numbers(
         self, columns: Sequence[int] | None = None, *, empty_lines: bool = False, truths: Sequence[int] = ()

@@ -13,6 +13,7 @@ import contextlib
 import csv
 import itertools
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -25,6 +26,7 @@ SEPARATORS = (";", "\t", ",")
 """In the order in which they are tried: a ';' or a tab that stands in each line is no part of a name."""
 
 _BLOCK = 1 << 20
+_SHOWN = 60  # bytes of a line
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF32_LE, "utf-32"),  # it begins as that of UTF-16 does
@@ -237,3 +239,34 @@ def time_column(names: tuple[str, ...], place: str) -> int:
 def both(names: Sequence[str], columns: Sequence[int]) -> str:
     """Return `columns 2 ('x') and 3 ('x')` for the first two of some columns, counted from 0."""
     return "columns " + " and ".join(f"{j + 1} ({names[j]!r})" for j in columns[:2])
+
+
+def quoted_name(name: str) -> str:
+    """Return a name as evcosim writes it: FMI's structured names may hold a comma, as in `x[1,2]`."""
+    if any(c in name for c in ',"\n\r'):
+        return '"' + name.replace('"', '""') + '"'
+    return name
+
+
+class CutRow(NamedTuple):
+    """The last line of a file that does not end: its number, the place where it begins, and its text."""
+
+    line: int
+    begin: int
+    text: str
+
+
+def cut_row(path: Path) -> CutRow | None:
+    """Return the last line of a text file, shortened, where it does not end; None: it does, or is the header.
+
+    Raises OSError.
+    """
+    with path.open("rb") as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - 2))
+        if file.read().rstrip(b"\0").endswith((b"\n", b"\r")):  # UTF-16 has a zero behind or before it
+            return None
+        file.seek(0)
+        lines, begin, last = 0, 0, b""
+        for line in file:
+            lines, begin, last = lines + 1, begin + len(last), line
+    return CutRow(lines, begin, last[:_SHOWN].decode("utf-8", "replace")) if lines > 1 else None

@@ -278,7 +278,9 @@ class Results:
         were saved are read, half a row at the end is left out. A .txt, .tsv or .dat file, or one without a
         suffix, is read as CSV: the time [s] is the column of such a name, and without a run.json beside
         results.csv every variable is a Real without a unit of measure. Raises ConfigError for another suffix,
-        and naming file, line, column and value of what is not a number, or the last line that was cut off.
+        and naming file, line, column and value of what is not a number, or the last line that was cut off:
+        in a file with the header that evcosim writes any last line that does not end, in others one that is
+        not complete.
         """
         check_name(path)
         path = Path(path)

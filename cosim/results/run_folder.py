@@ -16,11 +16,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..csv_text import cut_row
 from ..errors import ConfigError
 from ..file_names import check_name
 from ..writing import remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
-from .formats.csv import cut_row
 from .manifest import manifest_text, read_manifest, write_manifest
 from .results import CSV_NAME, Results
 from .rows_file import ROWS_NAME

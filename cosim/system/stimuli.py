@@ -207,6 +207,7 @@ def csv_of(entry: StimulusEntry, place: str, beside: Path | None) -> tuple[CsvFi
             f"{path}: line {max(1, file.header_lines)}: a header of two or more column names is needed, not "
             f"{list(file.names)}"
         )
+    file.last_line_without_end()  # raises for results that were cut off
     time = file.time_column() if entry.time_column is None else _column(file, entry.time_column, every)
     others = [j for j in every if j != time]
     value = _column(file, file.names[others[0]] if entry.column is None else entry.column, others)

@@ -7,28 +7,26 @@ it.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
 
 import numpy as np
 
 from ...csv_numbers import CsvFile
-from ...csv_text import both
+from ...csv_text import both, quoted_name
 from ...errors import ConfigError
 from ...row_store import Array
 from ..recording import Recording
 from ..variable import ResultVariable
 from .format import Contents
 
-_SHOWN = 60
 _ROWS = 4096  # formatted at a time: 40 columns of text then take about 10 MB
 
 
 def write(recording: Recording, file: BinaryIO) -> None:
     """Write all rows. Raises OSError where the disk refuses."""
     kinds = [v.type for v in recording.variables]
-    file.write((",".join(["time", *map(_quoted, recording.names)]) + "\n").encode())
+    file.write((",".join(["time", *map(quoted_name, recording.names)]) + "\n").encode())
     for time, values in recording.pieces(recording.names, rows=_ROWS):
         columns = [list(map(repr, time.tolist()))]
         columns += [_texts(values[:, j], kind) for j, kind in enumerate(kinds)]
@@ -50,29 +48,24 @@ def _texts(values: Array, kind: str) -> list[str]:
     return [text for text, length in zip(texts, lengths, strict=True) for _ in range(length)]
 
 
-def _quoted(name: str) -> str:
-    """Return a name as CSV writes it: FMI's structured names may hold a comma, as in `x[1,2]`."""
-    if any(c in name for c in ',"\n\r'):
-        return '"' + name.replace('"', '""') + '"'
-    return name
-
-
 def read(path: Path) -> Contents:
     """Read any CSV file of finite numbers of which a column is the time [s], by its name.
 
     Its variables, in the order of the other columns, are Reals without a unit of measure; true is 1 and
-    false is 0. Raises ConfigError naming file, line, column and value of what is missing, is no finite
-    number, or is a time before the one above it.
+    false is 0. The last line of another tool's file need not end, if it is complete; one with a header as
+    `write` makes it was cut off then, maybe within its last number. Raises ConfigError naming file, line,
+    column and value of what is missing, is no finite number, or is a time before the one above it.
     """
     file = CsvFile.of(path)
     time = _time_column(file)
-    if (row := cut_row(path)) is not None:
-        raise ConfigError(
-            f"{path}: line {row.line}, the last, does not end: {row.text!r}; the file was cut off. 'evcosim "
-            "results recover' leaves the line out of a run's folder; if nothing is missing, end the line"
-        )
+    row = file.last_line_without_end()
     others = [j for j in range(len(file.names)) if j != time]
-    table = file.numbers(truths=others)
+    try:
+        table = file.numbers(truths=others)
+    except ConfigError as error:
+        if row is None or not str(error).startswith(f"{path}: line {row.line}"):
+            raise
+        raise ConfigError(f"{error}; the line, the last, does not end: the file was cut off") from error
     times = table[:, time]
     backward = np.flatnonzero(times[1:] < times[:-1])
     if len(backward):
@@ -83,30 +76,6 @@ def read(path: Path) -> Contents:
         )
     variables = [ResultVariable(file.names[j]) for j in others]
     return Contents(times, table[:, 1:] if time == 0 else table[:, others], variables)
-
-
-class CutRow(NamedTuple):
-    """The last line of a file that does not end: its number, the place where it begins, and its text."""
-
-    line: int
-    begin: int
-    text: str
-
-
-def cut_row(path: Path) -> CutRow | None:
-    """Return the last line of a text file, shortened, where it does not end; None: it does, or is the header.
-
-    Raises OSError.
-    """
-    with path.open("rb") as file:
-        file.seek(max(0, file.seek(0, os.SEEK_END) - 2))
-        if file.read().rstrip(b"\0").endswith((b"\n", b"\r")):  # UTF-16 has a zero behind or before it
-            return None
-        file.seek(0)
-        lines, begin, last = 0, 0, b""
-        for line in file:
-            lines, begin, last = lines + 1, begin + len(last), line
-    return CutRow(lines, begin, last[:_SHOWN].decode("utf-8", "replace")) if lines > 1 else None
 
 
 def _time_column(file: CsvFile) -> int:

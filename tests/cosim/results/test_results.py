@@ -288,6 +288,28 @@ def test_a_file_that_was_cut_off_is_refused_wherever(line_end: bytes, tmp_path: 
             Results.read(path)
 
 
+@pytest.mark.parametrize(
+    "header", ["time,x", "t,a.x", "Time [s],a.x", '"time","a.x"', "time, a.x", "# made by b\ntime,a.x"]
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-8-sig"])
+def test_another_tools_file_need_not_end_its_last_line(header: str, encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    whole = f"{header}\n0.0,1.25\n0.5,-2.75"
+    path.write_bytes(whole.encode(encoding))
+    assert Results.read(path).data.tolist() == [[1.25], [-2.75]]
+    line = whole.count("\n") + 1
+    for left, said in (("0.5,-", "'-' is not a number"), ("0.5,", "is missing"), ("0.", "has 1 value, the")):
+        path.write_bytes(whole.replace("0.5,-2.75", left).encode(encoding))
+        with pytest.raises(
+            ConfigError, match=rf"x\.csv: line {line}.* {said}.* does not end: the file was cut"
+        ):
+            Results.read(path)
+    for encoded in (f"{header}\n0.0,no\n0.5,1".encode(encoding), f"{header}\n0.0,no\n".encode(encoding)):
+        path.write_bytes(encoded)
+        with pytest.raises(ConfigError, match=r"'no' is not a number$"):
+            Results.read(path)
+
+
 def test_a_suffix_that_no_reader_has_is_refused_with_those_that_are_known(tmp_path: Path) -> None:
     for name in ("x.xlsx", "x.mat", "results.csv.gz"):
         (tmp_path / name).write_text("time,a.x\n0,1\n")

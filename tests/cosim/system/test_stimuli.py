@@ -166,6 +166,17 @@ def test_a_name_that_two_columns_have_is_no_choice(tmp_path):
         values([0], csv=str(path), time_column="time")
 
 
+def test_results_that_were_cut_off_drive_nothing(tmp_path):
+    path = tmp_path / "results.csv"
+    path.write_text("time,a.v\n0.0,1.25\n2.0,3.2")  # it was 3.25
+    with pytest.raises(
+        ConfigError, match=r"results.csv: line 3, the last, does not end: '2.0,3.2'; the file"
+    ):
+        values([1], csv=str(path))
+    path.write_text("time,v\n0,1\n2,3")  # of a spreadsheet
+    assert values([1], csv=str(path)) == pytest.approx([2])
+
+
 def test_two_rows_too_far_apart_for_a_line_may_be_held():
     table = [[0.0, 1e308], [1.0, -1e308]]
     with pytest.raises(ConfigError, match=r'here.table: row 2: -1e\+308 is too far .* = "hold" needs none'):
