@@ -162,11 +162,11 @@ class Scooter(Model):
         tau = p.drive_time_constant
         decay = exp(-dt / tau)
         # Predictor: command and resistance of the start, over the whole step.
-        c0, r0 = _within(_command(p, v, u.throttle), v, work), _resistance(p, v)
+        c0, r0 = _within(command(p, v, u.throttle), v, work), _resistance(p, v)
         impulse = dt * c0 + tau * (f - c0) * (1.0 - decay)  # (S1), integrated
         v1 = max(0.0, v + (impulse - dt * (r0 + hold)) / m)
         # Corrector: both change linearly to their values at the predicted speed.
-        c1, r1 = _within(_command(p, v1, u.throttle), v1, work), _resistance(p, v1)
+        c1, r1 = _within(command(p, v1, u.throttle), v1, work), _resistance(p, v1)
         ramp = tau * (c1 - c0) / dt
         f1 = c1 - ramp + (f - c0 + ramp) * decay  # (S1)
         impulse = 0.5 * dt * (c0 + c1) - tau * (f1 - f)
@@ -196,7 +196,7 @@ class Scooter(Model):
         if after.available_power >= NO_LIMIT or u.throttle <= 0.0:
             return ""
         v = after.speed
-        wanted = _command(p, v, u.throttle) * v / p.drive_efficiency + p.auxiliary_power
+        wanted = command(p, v, u.throttle) * v / p.drive_efficiency + p.auxiliary_power
         limited = wanted > after.available_power or after.available_power <= p.auxiliary_power
         return (
             "the battery cannot deliver the power that is asked for: the drive gets what is left"
@@ -242,7 +242,7 @@ def maximum_force(p: Scooter.Parameters, v: float) -> float:
     return force
 
 
-def _command(p: Scooter.Parameters, v: float, throttle: float) -> float:
+def command(p: Scooter.Parameters, v: float, throttle: float) -> float:
     """Return the command of (S1), (g/100) fade(v) F_max(v) [N]."""
     return 0.01 * min(100.0, max(0.0, throttle)) * maximum_force(p, v)
 

@@ -56,7 +56,7 @@ def _draw(both: Results, number: int, text: str, unit: str, signals: tuple[tuple
             signals=[SignalSpec(name=f"{name}/{signal}", label=about) for signal, about in signals],
             limits=(low - space, high + space),
         )
-        for name, label in (("pid", f"PIDs (Fig. {number})"), ("mimo", f"MIMO-PID (Fig. {number + 1})"))
+        for name, label in (("pid", f"Fig. {number}: PIDs"), ("mimo", f"Fig. {number + 1}: MIMO"))
     ]
     return figures.draw(both, FigureSpec(title=f"Two-motor car: {text}", panels=panels))
 

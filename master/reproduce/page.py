@@ -41,7 +41,10 @@ Findings = Mapping[str, Finding]
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    """A row of a page, all in words; `place` and `printed` are "" for an own number."""
+    """A row of a page, all in words; `place` and `printed` are "" for an own number.
+
+    `picture` is the stem of the picture that redraws a figure, or "".
+    """
 
     place: str
     what: str
@@ -50,6 +53,7 @@ class Row:
     obtained: str
     verdict: str
     reason: str = ""
+    picture: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -138,12 +142,13 @@ def _all_of(row: printed.Printed, found: Findings, stems: set[str]) -> list[Foun
         for name, value, same in (parameters.compared(name, row) for name in row.parameters)
     ]
     if row.picture:
-        values.append(Found(f"picture {row.picture}"))
+        values.append(Found("redrawn"))
     return [*values, Found(row.where)] if row.where else values
 
 
 def _judged(row: printed.Printed, values: Sequence[Found]) -> Row:
-    return _row(row.place, row.quantity, row.shown, row.verdict, row.reason, values)
+    made = _row(row.place, row.quantity, row.shown, row.verdict, row.reason, values)
+    return dataclasses.replace(made, picture=row.picture)
 
 
 def _several(finding: Finding) -> Sequence[Found]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -28,16 +30,21 @@ table { border-collapse: collapse; width: 100%; font-size: 14px; }
 th, td { border-bottom: 1px solid #d0d0d0; padding: .35rem .6rem; text-align: left; vertical-align: top; }
 th { background: #f3f3f3; position: sticky; top: 0; }
 td.reproduced { color: #005a32; } td.calibrated, td.own { color: #08519c; } td.by { color: #4a4a4a; }
+td { overflow-wrap: break-word; } code { font-size: 92%; }
 td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
 figure { margin: 2rem 0; } figure img { max-width: 100%; height: auto; } figcaption { color: #444; }
 pre { background: #f6f6f6; padding: .8rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+.printed { table-layout: fixed; } .printed th { box-sizing: border-box; width: 10%; }
+.printed th:nth-child(1) { width: 8%; } .printed th:nth-child(2) { width: 20%; }
+.printed th:nth-child(4) { width: 20%; } .printed th:nth-child(7) { width: 22%; }
 @media (max-width: 800px) {
   thead { display: none; }
   table, tbody, tr, td { display: block; }
   tr { border-bottom: 2px solid #b0b0b0; padding: .5rem 0; }
-  td { border: 0; padding: .1rem .4rem .1rem 6rem; overflow-wrap: anywhere; min-height: 1.5em;
+  td { border: 0; padding: .1rem .4rem .1rem 9rem; overflow-wrap: anywhere; min-height: 1.5em;
     position: relative; }
   td::before { content: attr(data-head); position: absolute; left: .4rem; color: #666; }
+  .printed td, .ours td { padding-left: 5.2rem; }
   td:empty { display: none; }
 }
 """
@@ -98,10 +105,18 @@ def _cells(row: Row, head: Sequence[str], mark: str = "") -> list[str]:
     return [texts[name] for name in head]
 
 
+def _with_link(page: Page, row: Row) -> Row:
+    """Return a row whose value leads to its picture, in Markdown."""
+    if not row.picture:
+        return row
+    link = f"[{row.obtained}](figures/{page.name}-{row.picture}.png)"
+    return dataclasses.replace(row, obtained=link)
+
+
 def _markdown(page: Page) -> str:
     lines = [f"# {page.title}", "", page.source, "", page.about, ""]
     lines += [f"{_summary(page)}.", "", "```sh", *page.commands, "```", ""]
-    lines += markdown_table(_HEAD, [_cells(row, _HEAD, "**") for row in page.rows])
+    lines += markdown_table(_HEAD, [_cells(_with_link(page, row), _HEAD, "**") for row in page.rows])
     for picture in page.pictures:
         lines += [
             "",
@@ -122,7 +137,7 @@ def _summary(page: Page) -> str:
 def _html(page: Page, images: dict[str, Path]) -> str:
     e = html.escape
     pictures = "\n".join(
-        f'<figure><img alt="{e(p.caption)}" src="data:image/png;base64,'
+        f'<figure id="{e(p.stem)}"><img alt="{e(p.caption)}" src="data:image/png;base64,'
         f'{base64.b64encode(images[p.stem].read_bytes()).decode()}"><figcaption>{e(p.caption)}</figcaption></figure>'
         for p in page.pictures
     )
@@ -157,13 +172,19 @@ def _table(head: Sequence[str], rows: Sequence[Row]) -> str:
     lines = [
         _line(
             [
-                (name, html.escape(cell), row.verdict.split()[0] if name == "verdict" else "")
+                (name, _cell(row, name, cell), row.verdict.split()[0] if name == "verdict" else "")
                 for name, cell in zip(head, _cells(row, head), strict=True)
             ]
         )
         for row in rows
     ]
-    return _framed(head, "\n".join(lines))
+    return _framed(head, "\n".join(lines), "printed" if head == _HEAD else "ours")
+
+
+def _cell(row: Row, name: str, text: str) -> str:
+    """Return the HTML of a cell: names of code as such, the value of a figure as a link to its picture."""
+    made = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
+    return f'<a href="#{html.escape(row.picture)}">{made}</a>' if row.picture and name == "obtained" else made
 
 
 def _line(cells: Sequence[tuple[str, str, str]]) -> str:
@@ -175,9 +196,10 @@ def _line(cells: Sequence[tuple[str, str, str]]) -> str:
     return f"<tr>{''.join(made)}</tr>"
 
 
-def _framed(head: Sequence[str], body: str) -> str:
+def _framed(head: Sequence[str], body: str, kind: str = "") -> str:
     names = "".join(f"<th>{name}</th>" for name in head)
-    return f"<table><thead><tr>{names}</tr></thead><tbody>\n{body}\n</tbody></table>"
+    begin = f"<table class={kind!r}>" if kind else "<table>"
+    return f"{begin}<thead><tr>{names}</tr></thead><tbody>\n{body}\n</tbody></table>"
 
 
 def _document(title: str, body: str) -> str:

@@ -99,15 +99,17 @@ def _bus(found: dict[str, Any]) -> Findings:
     """Return sampling, resolution and limits as they stand in the runs."""
     run = found["fig8 bus"]
     rate, speeds = 1.0 / float(run.time[1] - run.time[0]), np.unique(run["ecu.speed_measured"])
-    step = float(np.diff(speeds).min())
-    throttles = [found[f"fig{i} bus"]["ecu.throttle"] for i in (8, 9)]
-    highest, lowest = max(float(g.max()) for g in throttles), min(float(g.min()) for g in throttles)
-    return {
-        "sampling": near(rate, _printed("sampling"), 1e-9, "Hz"),
-        "resolution": near(step, _printed("resolution"), 1e-12, "km/h"),
-        "upper limit": at_most(highest, _printed("upper limit"), "%"),
-        "lower limit": at_least(lowest, _printed("lower limit"), "%"),
+    low, high = numbers.throttle_limits()
+    fit = found["identification"].fit
+    values = {
+        "sampling": (round(rate, 6), "Hz"),
+        "resolution": (float(np.diff(speeds).min()), "km/h"),
+        "upper limit": (high, "%"),
+        "lower limit": (low, "%"),
+        "band from": (fit.band[0], "Hz"),
+        "band to": (fit.band[1], "Hz"),
     }
+    return {by: holds(f"{x:g} {unit}", x == _printed(by), "as printed") for by, (x, unit) in values.items()}
 
 
 def _vehicle() -> Findings:
@@ -141,8 +143,6 @@ def _identification(found: ScooterIdentification) -> Findings:
             near(f, PUBLISHED_POLE, reach * PUBLISHED_POLE, "Hz", of=of, reason=reason)
             for of, _, f, reach, reason in ways
         ],
-        "band from": near(fit.band[0], _printed("band from"), 1e-12, "Hz"),
-        "band to": near(fit.band[1], _printed("band to"), 1e-12, "Hz"),
         "ESR": at_most(found.numbers["mean ESR [%]"], _printed("ESR"), "%"),
         "single pole": at_most(100.0 * fit.residual, 25.0, "% (rms)", digits=2),
     }

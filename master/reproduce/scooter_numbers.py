@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...cosim.leftovers import temporary
 from ...cosim.results.results import Results
-from ...models.scooter import Scooter, level_road_load, maximum_force
+from ...models.scooter import Scooter, command, level_road_load, maximum_force
 from ..simulation import Simulation, simulate
 
 KMH = 3.6  # km/h in 1 m/s
@@ -25,6 +25,14 @@ def linearized(speed: float) -> tuple[float, float]:
     force_slope = (maximum_force(p, v + h) - maximum_force(p, v - h)) / (2.0 * h)
     damping = load_slope - level_road_load(p, v) / maximum_force(p, v) * force_slope  # N.s/m
     return KMH * maximum_force(p, v) / 100.0 / damping, damping / p.mass / (2.0 * math.pi)
+
+
+def throttle_limits() -> tuple[float, float]:
+    """Return the throttles [%] beyond which the drive's force [N] at 30 km/h changes no more."""
+    p, v = Scooter.Parameters(), 30.0 / KMH
+    force = {throttle: command(p, v, float(throttle)) for throttle in range(-50, 151)}
+    changing = [g for g in range(-50, 150) if force[g + 1] != force[g]]
+    return float(changing[0]), float(changing[-1] + 1)
 
 
 def boost(slow: float, fast: float) -> float:

@@ -65,12 +65,13 @@ def test_the_ways_to_a_value(mine):
     rows = mine({"length": near(1.5, 1.5, 0.1, "m")})
     assert [row.obtained for row in rows] == [
         "1.5 m",
-        "picture curve",
+        "redrawn",
         "in `Model`",
         "TwoMotorVehicle.mass = 3904 kg",
     ]
     assert [row.verdict for row in rows] == [row.verdict for row in TABLE]
     assert rows[0].printed == "1.5 m"
+    assert [row.picture for row in rows] == ["", "curve", "", ""]
 
 
 def test_each_variant_counts(mine):

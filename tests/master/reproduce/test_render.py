@@ -29,6 +29,7 @@ ROWS = (
     Row("(1)", "a | b < c", "1.0", "1 ± 0.1", "1.05", "reproduced"),
     Row("(2)", "x", "1.0", "1 ± 0.1", "2", "missed", "outside what was to be reached"),
     Row("(3)", "k λ*", "9", "", "3", "not reproducible", "two\nlines"),
+    Row("Fig. 1", "in `Model` <b>", "drawn", "", "redrawn", "by construction", picture="curve"),
 )
 OWN = (Row("", "ours", "", "1 ± 0.1", "2", "missed"), Row("", "settling", "", "2", "2", "own"))
 
@@ -51,6 +52,13 @@ def test_cells_cannot_end_the_table(made):
     assert "<title>Title &amp; co</title>" in html
 
 
+def test_code_and_pictures_in_a_cell(made):
+    markdown, html, *_ = made
+    assert '<td data-head="what">in <code>Model</code> &lt;b&gt;</td>' in html
+    assert '<td data-head="obtained"><a href="#curve">redrawn</a></td>' in html
+    assert "| [redrawn](figures/mine-curve.png) |" in markdown
+
+
 def test_a_verdict_has_its_class(made):
     _, html, *_ = made
     assert "<td data-head=\"verdict\" class='missed'>missed</td>" in html
@@ -63,13 +71,13 @@ def test_own_numbers_stand_in_a_table_of_their_own_and_are_not_counted(made):
     assert "| ours | 2 | 1 ± 0.1 | **missed** |  |" in own
     assert "settling" not in head
     assert "<h2>Own numbers</h2>" in html
-    assert "2 printed numbers" in index
+    assert "3 printed numbers" in index
 
 
 def test_the_index_counts_each_verdict(made):
     *_, index, html = made
     lines = index.splitlines()
-    counts = "| 1 | 0 | 0 | 1 | 2 |"
+    counts = "| 1 | 0 | 1 | 1 | 2 |"
     assert lines[4] == (
         "| system | paper | reproduced | calibrated | by construction | not reproducible | missed |"
     )

@@ -67,6 +67,10 @@ def test_time_above_the_bound_counts_in_acceleration_alone(run):
     assert numbers.time_above_bound(run) == pytest.approx(3.0)
 
 
+def test_the_drive_clips_the_throttle():
+    assert numbers.throttle_limits() == (0.0, 100.0)
+
+
 def test_the_boost_is_a_ratio_of_accelerations():
     assert numbers.boost(30.0, 30.0) == 1.0
     assert numbers.boost(24.0, 40.0) > 2.0
