@@ -33,7 +33,9 @@ td.reproduced { color: #005a32; } td.calibrated, td.own { color: #08519c; } td.b
 td { overflow-wrap: break-word; } code { font-size: 92%; }
 td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
 figure { margin: 2rem 0; } figure img { max-width: 100%; height: auto; } figcaption { color: #444; }
-pre { background: #f6f6f6; padding: .8rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+pre { background: #f6f6f6; padding: .8rem; white-space: pre-wrap; }
+pre div { padding-left: 2em; text-indent: -2em; }
+pre span { display: inline-block; text-indent: 0; max-width: 100%; overflow-wrap: anywhere; }
 .printed { table-layout: fixed; } .printed th { box-sizing: border-box; width: 10%; }
 .printed th:nth-child(1) { width: 8%; } .printed th:nth-child(2) { width: 20%; }
 .printed th:nth-child(4) { width: 20%; } .printed th:nth-child(7) { width: 22%; }
@@ -148,11 +150,17 @@ def _html(page: Page, images: dict[str, Path]) -> str:
 <p><em>{e(page.source)}</em></p>
 <p>{e(page.about)}</p>
 <p>{e(_summary(page))}.</p>
-<pre>{e(chr(10).join(page.commands))}</pre>
+<pre>{_commands(page.commands)}</pre>
 {_table(_HEAD, page.rows)}
 {pictures}
 {own}""",
     )
+
+
+def _commands(commands: Sequence[str]) -> str:
+    """Return the HTML of commands, a line each, that wrap between their words and nowhere else."""
+    lines = (" ".join(f"<span>{html.escape(word)}</span>" for word in line.split()) for line in commands)
+    return "".join(f"<div>{line}</div>" for line in lines)
 
 
 def _index(pages: Sequence[Page], total: str, head: Sequence[str], counts: Sequence[Sequence[str]]) -> str:

@@ -96,4 +96,4 @@ def test_a_page_stacks_its_cells_where_it_is_narrow(made):
     _, html, *_ = made
     assert "@media (max-width: 800px)" in html
     assert html.count('data-head="obtained"') == len(ROWS) + len(OWN)
-    assert "white-space: pre-wrap" in html
+    assert "<pre><div><span>evcosim</span> <span>run</span> <span>scooter</span></div></pre>" in html
