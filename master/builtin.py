@@ -92,6 +92,32 @@ def build_fmu(name: str, folder: Path | None = None) -> Path:
     return path
 
 
+def build_models(path: Path, folder: Path | None = None) -> list[Path]:
+    """Build an FMU of each model in a Python file, beside it or into a folder, and return their files.
+
+    The file is run. Raises ConfigError for what is no such file or cannot be built, and where nothing can be
+    written.
+    """
+    from ..fmus import from_file
+
+    if not is_file(path):
+        raise ConfigError(f"{path}: there is no such file")
+    try:
+        return from_file.build_file(path, folder)
+    except ValueError as error:
+        raise ConfigError(f"{path}: {error}") from error
+    except OSError as error:
+        where = folder or path.parent
+        raise ConfigError(f"{where}: an FMU cannot be written: {reason(where, error)}") from error
+
+
+def model_source(name: str) -> tuple[str, str]:
+    """Return the file name and the text of the model of a built-in FMU, to be copied and changed."""
+    from ..fmus import from_file
+
+    return from_file.model_source(name)
+
+
 def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
     """Return the file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 

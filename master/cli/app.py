@@ -16,6 +16,7 @@ from .compile import compile_
 from .identify import identify
 from .info import info
 from .listing import list_
+from .new import new
 from .plot import plot
 from .reproduce import reproduce
 from .results import results
@@ -37,6 +38,7 @@ def command() -> Any:
     app.callback(invoke_without_command=True)(_global_options)
     verbs: dict[str, Callable[..., int | None]] = {
         "run": run,
+        "new": new,
         "list": list_,
         "info": info,
         "check": check,

@@ -35,3 +35,13 @@ def test_build_repairs_the_cache(evcosim, tmp_path, monkeypatch):
     record.write_text(f"{hashlib.sha256(other).hexdigest()}  {path.name}\n")
     assert evcosim("build", "Battery").code == 0
     assert path.read_bytes() == whole
+
+
+def test_build_of_a_file_of_ones_own(evcosim, tmp_path):
+    assert evcosim("new", "car").code == 0
+    made = evcosim("build", "car/models/vehicle.py", "-o", "made")
+    assert (made.code, made.out.strip()) == (0, "made/Vehicle.fmu")
+    (tmp_path / "none.py").write_text("x = 1\n")
+    refused(evcosim("build", "none.py"), "none.py: defines no model")
+    refused(evcosim("build", "gone.py"), "gone.py: there is no such file")
+    refused(evcosim("build", "Batery"), "(did you mean 'Battery'?)", "is a Python file")

@@ -34,6 +34,7 @@ def test_names_for_a_line(offered):
     assert offered("evcosim run sc") == ["scooter"]
     assert offered("evcosim re") == ["reproduce", "results"]
     assert offered("evcosim run scooter --scenario f") == ["fig8", "fig9"]
+    assert offered("evcosim new mine --from b") == ["braking"]
     assert offered("evcosim info Sl") == ["SlipController"]
     assert offered("evcosim check my.fmu --as scooter.v") == ["scooter.vehicle"]
     assert offered("evcosim run my.toml --fmu ") == []  # then the shell offers files
