@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -65,15 +64,18 @@ def first_of_all(about: Mapping[str, Any]) -> str:
 
 def metrics_section(metrics: Iterable[Metric], about: Mapping[str, Any]) -> str:
     """Return the numbers of a run, or those that its manifest has."""
-    rows = [(m.name, "-" if math.isnan(m.value) else f"{m.value:.6g}", m.unit, m.reason) for m in metrics]
-    if not rows:
-        for name, facts in items_of(about.get("metrics")):
-            known = dict(items_of(facts))
-            number = known.get("value")
-            value = f"{number:.6g}" if isinstance(number, int | float) else "-"
-            rows.append((name, value, shown(known.get("unit")), ""))
-    cells = [(name, f"{value} {reason or _unit(unit)}".strip()) for name, value, unit, reason in rows]
-    return section("Metrics", table(("metric", "value"), cells))
+    cells = [(m.name, _number(m.value, m.unit) if m.value == m.value else m.text) for m in metrics]
+    return section("Metrics", table(("metric", "value"), cells or kept_metrics(about)))
+
+
+def kept_metrics(about: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return the names of the metrics that a manifest has, and their values with units."""
+    known = [(name, dict(items_of(metric))) for name, metric in items_of(about.get("metrics"))]
+    return [(name, _number(metric.get("value"), shown(metric.get("unit")))) for name, metric in known]
+
+
+def _number(value: object, unit: str) -> str:
+    return f"{value:.6g} {_unit(unit)}".strip() if isinstance(value, int | float) else "-"
 
 
 def _unit(unit: str) -> str:

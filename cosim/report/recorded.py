@@ -36,8 +36,16 @@ class Recorded:
     said: str
 
 
-def recorded(results: Results, drawn: Sequence[str], page: Columns) -> Recorded:
-    """Put variables and texts of a run, which has a row at least, into a page; `drawn` are the figure's."""
+Codes = dict[str, dict[str, int]]
+"""The numbers of texts by variable: runs on one page share them."""
+
+
+def recorded(results: Results, drawn: Sequence[str], page: Columns, codes: Codes | None = None) -> Recorded:
+    """Put variables and texts of a run, which has a row at least, into a page; `drawn` are the figure's.
+
+    `codes` are added to.
+    """
+    codes = {} if codes is None else codes
     count, names = len(results), (*results.names, *results.texts)
     rest = [name for name in names if name not in drawn]
     full = count <= FULL_ROWS
@@ -57,11 +65,25 @@ def recorded(results: Results, drawn: Sequence[str], page: Columns) -> Recorded:
             grid = page.grid(times)
             columns |= {name: page.column(grid, values[:, j].copy()) for j, name in enumerate(part)}
         for name in (name for name in some if name in results.texts):
-            codes, items[name] = _coded(results, name)
-            times, values = _joined(_extremes(_whole(results, codes, width), width))
-            columns[name] = page.column(page.grid(times), values[:, 0].copy())
+            texts, items[name] = _coded(results, name, codes.setdefault(name, {}))
+            columns[name] = page.column(*_column(page, results.time, texts, width))
     widths = (stretch(count, count if full else _OF_FIGURE), stretch(count, count if all_full else few))
     return Recorded(columns, items, _said(count, widths, bool(drawn), bool(rest)))
+
+
+def array_column(page: Columns, times: Array, values: Array) -> int:
+    """Put values at times [s], shapes (n,), into a page as those of a figure; return the column's number."""
+    width = stretch(len(times), len(times) if len(times) <= FULL_ROWS else _OF_FIGURE)
+    return page.column(*_column(page, times, values, width))
+
+
+def _column(page: Columns, times: Array, values: Array, width: int) -> tuple[int, Array]:
+    """Return the grid and the values, shape (k,), of the points of an array."""
+    size = width * max(1, PIECE // width)
+    starts = range(0, len(values), size)
+    pieces = ((times[k : k + size], values[k : k + size, None]) for k in starts)
+    at, kept = _joined(_extremes(pieces, width))
+    return page.grid(at), kept[:, 0].copy()
 
 
 def stretch(count: int, limit: int) -> int:
@@ -90,13 +112,6 @@ def _read(results: Results, names: Sequence[str], width: int) -> tuple[Array, Ar
     """Return times [s], shape (k,), and values, shape (k, len(names)), of the points of some variables."""
     pieces = results.pieces(names, rows=PIECE if width == 1 else width * max(1, PIECE // width))
     return _joined(pieces if width == 1 else _extremes(pieces, width))
-
-
-def _whole(results: Results, values: Array, width: int) -> Iterator[tuple[Array, Array]]:
-    """Yield times [s] and values of a column, shape (n,), in pieces of whole stretches."""
-    size = width * max(1, PIECE // width)
-    for start in range(0, len(values), size):
-        yield results.times(start, start + size), values[start : start + size, None]
 
 
 def _joined(pieces: Iterator[tuple[Array, Array]]) -> tuple[Array, Array]:
@@ -146,10 +161,9 @@ def _items(kind: str, items: Items) -> Items:
     return ((0, "false"), (1, "true")) if kind == "Boolean" else items
 
 
-def _coded(results: Results, name: str) -> tuple[Array, Items]:
+def _coded(results: Results, name: str, codes: dict[str, int]) -> tuple[Array, Items]:
     """Return the number of the text in each row, shape (n,), and the texts by number, long ones cut."""
     place = results.texts.index(name)
-    codes: dict[str, int] = {}
     found = np.zeros(len(results))
     changes = results.text_table.changes
     for (row, texts), end in zip(changes, [*(row for row, _ in changes[1:]), len(results)], strict=True):

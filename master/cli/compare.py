@@ -19,7 +19,8 @@ def compare(
         float, typer.Option(metavar="R", help="Difference allowed beside it, as a share of the range in A.")
     ] = 0.0,
     plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw what differs most (.png, .svg, .pdf).")
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw what differs most (.png .svg .pdf, .html a page)."),
     ] = None,
     signals: Annotated[
         list[str] | None,
@@ -31,7 +32,7 @@ def compare(
     from ...cosim.results import compare as comparing
     from ...cosim.results.results import Results
     from .console import print_json, print_table
-    from .plot import chosen
+    from .plot import chosen, is_page
 
     first, second = Results.read(a), Results.read(b)
     if signals:
@@ -39,7 +40,12 @@ def compare(
         common = [name for name in (*first.names, *first.texts) if name in second]
         second = second.part(slice(None), common)
     found = comparing.compare(first, second, tolerance, relative)
-    if plot is not None:
+    if plot is not None and is_page(plot):
+        from ...cosim.report.overlay import write_comparison
+
+        chosen_names = (*second.names, *second.texts) if signals else None
+        write_comparison(plot, found, first, second, (str(a), str(b)), chosen_names)
+    elif plot is not None:
         from ...cosim.figures import draw as figures
 
         names = second.names if signals else None

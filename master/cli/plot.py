@@ -20,7 +20,7 @@ def plot(
             "--output",
             "-o",
             metavar="FILE",
-            help="Where to: .png, .svg or .pdf; default: beside the results.",
+            help="Where to: .png, .svg, .pdf, or .html for a page; default: beside the results.",
         ),
     ] = None,
     signals: Annotated[
@@ -38,8 +38,16 @@ def plot(
     else:
         spec = spec_of(results)
     path = output or (result / "figure.png" if result.is_dir() else result.with_suffix(".png"))
-    figures.write(figures.draw(results, spec), path)
+    if is_page(path):
+        results.report(path, spec)
+    else:
+        figures.write(figures.draw(results, spec), path)
     print(path)
+
+
+def is_page(path: Path) -> bool:
+    """Return True for the name of a file that becomes a page to zoom into, and no picture."""
+    return path.suffix.lower() in (".html", ".htm")
 
 
 def chosen(results: Results, patterns: list[str]) -> Results:

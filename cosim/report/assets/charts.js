@@ -41,11 +41,11 @@
     return low - 1;
   }
 
-  /** Return the row that shows at a time: of a held signal the last one, else the nearest. */
+  /** Return the row that shows at a time: of a held signal the last one, else the nearest; -1 outside all rows. */
   function rowAt(line, time) {
-    const k = rowBefore(line.times, time), next = k + 1;
-    if (line.held || next >= line.times.length) return k;
-    return k < 0 || line.times[next] - time < time - line.times[k] ? next : k;
+    const k = rowBefore(line.times, time), next = k + 1, count = line.times.length;
+    if (k < 0 || (next === count && line.times[k] < time)) return -1;
+    return !line.held && next < count && line.times[next] - time < time - line.times[k] ? next : k;
   }
 
   /** Return a number as people read it, with six digits. */
@@ -196,7 +196,7 @@
         const k = rowAt(line, time), value = k < 0 ? null : line.values[k];
         const name = new Map(this.about.items).get(value);
         const unit = this.about.unit ? ` ${this.about.unit}` : "";
-        this.values[i].textContent = value === null ? "–" : name ?? `${number(value)}${unit}`;
+        this.values[i].textContent = value === null ? "-" : name ?? `${number(value)}${unit}`;
       });
     }
 

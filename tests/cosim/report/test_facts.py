@@ -61,7 +61,7 @@ def test_the_head_says_how_it_ended(about):
 
 def test_metrics_with_a_reason_where_there_is_no_value():
     made = facts.metrics_section([Metric("a", 1.5, "km/h"), Metric("b", math.nan, "m", "too short")], {})
-    assert "1.5 km/h" in made and "- too short" in made
+    assert "1.5 km/h" in made and "- (too short)" in made
     kept = facts.metrics_section(
         [], {"metrics": {"a": {"value": 2.0, "unit": "m/s2"}, "b": {"value": None, "unit": "1"}}}
     )

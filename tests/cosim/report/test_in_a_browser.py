@@ -206,5 +206,7 @@ def test_two_runs_on_their_own_times_share_a_panel(chromium, tmp_path):
     chromium.open(tmp_path / "two.html")
     chromium.run(f"{CHARTS}.show(1.6)")
     assert values(chromium)[:2] == ["20 m", "15 m"]  # the nearest row, and the one that is held
+    chromium.run(f"{CHARTS}.show(2.5)")
+    assert values(chromium)[:2] == ["-", "-"]  # behind the end of both
     assert chromium.run(f"[...{CHARTS}.panels[0].plot.data[0]]") == [0, 0.5, 1, 1.5, 2]
     assert chromium.said == []

@@ -14,6 +14,19 @@ def test_plot(evcosim, two_runs):
     assert evcosim("plot", "a", "-o", "figure.txt").code == 2
 
 
+def test_a_page_again(evcosim, two_runs):
+    assert evcosim("plot", "a", "-o", "again.html").out.strip() == "again.html"
+    assert (two_runs / "again.html").read_bytes() == (two_runs / "a" / "report.html").read_bytes()
+    assert evcosim("plot", "a", "--signals", "vehicle.*", "-o", "some.html").code == 0
+    assert (
+        "ecu.throttle"
+        not in (two_runs / "some.html")
+        .read_text(encoding="utf-8")
+        .partition("run.json")[0]
+        .partition("<section><h2>")[0]
+    )
+
+
 def test_plot_of_a_system_that_is_gone(evcosim, system, tmp_path):
     path = system({"cart": "Fragile"}, stop_time=1.0)
     assert evcosim("run", path, "--no-plot", "-q", "-o", "out").code == 0
