@@ -167,10 +167,11 @@ def _repeats(results: Results, variable: ResultVariable, other: ResultVariable) 
         return False
     low, high, equal, squares = math.inf, -math.inf, True, 0.0
     for _, values in results.pieces([variable.name, other.name]):
-        a, b = convert.scale * values[:, 0] + convert.offset, values[:, 1]
-        low, high = min(low, float(np.min(b))), max(high, float(np.max(b)))
-        equal = equal and np.array_equal(a, b)
-        squares += float(np.sum((a - b) ** 2))
+        with np.errstate(over="ignore", invalid="ignore"):  # infinite squares repeat nothing
+            a, b = convert.scale * values[:, 0] + convert.offset, values[:, 1]
+            low, high = min(low, float(np.min(b))), max(high, float(np.max(b)))
+            equal = equal and np.array_equal(a, b)
+            squares += float(np.sum((a - b) ** 2))
     return equal or (high > low and math.sqrt(squares / len(results)) <= 5e-3 * (high - low))
 
 

@@ -41,7 +41,7 @@ _MADE = (
 _ROWS = 20  # of a table that is not folded
 
 Labels = tuple[str, str]
-"""How the two runs are called."""
+"""The names of the two runs."""
 
 
 def write_comparison(
