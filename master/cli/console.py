@@ -16,6 +16,7 @@ from typing import Any
 import typer
 
 from ...cosim.visible import flowing, on_one_line, raw_stream, visible, visible_json, visible_stream
+from .wrapping import wrapped
 
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
 _NARROW = 24  # a text is not wrapped to fewer columns
@@ -68,6 +69,18 @@ def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Se
                 show(_wrapped(_BELOW, cells[last], len(_BELOW)))
         else:
             show(_wrapped(line(cells) + _GAP if fixed else "", cells[last], left))
+
+
+def print_wrapped(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print rows below headers, each cell wrapped inside its column where the terminal is too narrow."""
+    head, *lines = wrapped(headers, [[flowing(text) for text in row] for row in rows], _width())
+    _print_bold(head)
+    print("\n".join(lines))
+
+
+def print_paragraph(text: str) -> None:
+    """Print a text, wrapped to the width of the terminal."""
+    print(_wrapped("", flowing(text), 0))
 
 
 def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:

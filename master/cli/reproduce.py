@@ -71,15 +71,16 @@ def _as_data(page: Page) -> dict[str, Any]:
 def _show(pages: list[Page], folder: Path, seconds: float) -> None:
     from ..reproduce.printed import sentence
     from ..reproduce.render import missed
-    from .console import print_table, print_title
+    from .console import print_paragraph, print_title, print_wrapped
 
     for i, page in enumerate(pages):
         print_title(f"{page.name}: {page.title}", first=i == 0)
         head = ["place", "what", "printed", "obtained", "verdict"]
-        print_table(head, [[r.place, r.what, r.printed, r.obtained, r.verdict] for r in page.rows])
+        print_wrapped(head, [[r.place, r.what, r.printed, r.obtained, r.verdict] for r in page.rows])
         if page.own:
             print_title(f"{page.name}: own numbers")
-            print_table(["what", "obtained", "to reach"], [[r.what, r.obtained, r.reach] for r in page.own])
+            print_wrapped(["what", "obtained", "to reach"], [[r.what, r.obtained, r.reach] for r in page.own])
     names = ", ".join(f"{page.name}.md and .html" for page in pages)
-    print(f"\nin {folder}, after {seconds:.0f} s: README.md, index.html, {names}, figures/")
-    print(f"{sentence(row.verdict for page in pages for row in page.rows)}; {missed(pages)}")
+    print()
+    print_paragraph(f"in {folder}, after {seconds:.0f} s: README.md, index.html, {names}, figures/")
+    print_paragraph(f"{sentence(row.verdict for page in pages for row in page.rows)}; {missed(pages)}")

@@ -24,6 +24,14 @@ def test_tables_lose_nothing_however_narrow(capsys, monkeypatch, columns):
     assert not any(line != line.rstrip() for line in said.splitlines())
 
 
+def test_a_wrapped_table_is_no_wider_than_the_terminal(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    console.print_wrapped(("what", "obtained"), [("a long name of a quantity", "a long text\nof two lines")])
+    said = capsys.readouterr().out
+    assert max(map(len, said.splitlines())) <= 40
+    assert "a long name of a     a long text of two" in said
+
+
 def test_json_has_no_nan(capsys):
     console.print_json({"a": [float("nan"), np.float64(1.0)], "b": float("inf")})
     assert json.loads(capsys.readouterr().out) == {"a": [None, 1.0], "b": None}
