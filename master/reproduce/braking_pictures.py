@@ -13,20 +13,19 @@ from ...cosim.results.results import Results
 from ...cosim.row_store import Array
 from ...models import braking_analysis as analysis
 from ...models.road_friction import Road, friction_coefficient
+from . import braking_maneuvers
 from .braking_runs import CONTROLLED, NOMINAL, critical, locking, stop_of
 from .page import Picture
 
 _SHORT = {"known_speed": "(a)", "front_only": "(c)", "front_compensated": "(d)"}
-_MANEUVERS = {
-    "known_speed": "(a) full slip control, speed measured",
-    "estimated_speed": "(b) full slip control, speed estimated",
-    "front_only": "(c) front brake only",
-    "front_compensated": "(d) front brake, rear wheel compensated",
-}
+_ABOUT_FIG_3 = (
+    "Fig. 3: Psi, the torque that keeps a wheel at its slip, over that slip, on a dry road: (a) front wheel, "
+    "(b) rear wheel, for slips of the other wheel of 0.1 (solid), 0.5 (dashed) and 0.9 (dotted; printed as "
+    "0.1 again, a misprint)"
+)
 _ABOUT_PSI = (
-    "Fig. 3: Psi, the torque that keeps a wheel at its slip. Above on a dry road over both slips; below on "
-    "four roads with the other wheel at 0.22, and the torque of a controller with 1.05 k-bar: on each road "
-    "it meets Psi once"
+    "Beyond the paper: Psi on a dry road over both slips, and on four roads with the other wheel at 0.22; "
+    "the torque of a controller with 1.05 k-bar meets it once on each road"
 )
 _ABOUT_PROPOSITIONS = (
     "Propositions 3.1 and 3.2 on a dry road: with the true speed every start ends at one point, with the "
@@ -37,6 +36,7 @@ _ABOUT_VEHICLE = (
     "(ideal signals). Half the inertia doubles the gain of the slip loop, for which 100 Hz is too slow"
 )
 _ABOUT_DELAY = "Beyond the paper: brakes later than the published 10 ms (ideal signals)"
+_OTHER_SLIPS = (0.1, 0.5, 0.9)  # the last is chosen for a misprint
 _SLIPS = np.linspace(0.0, 1.0, 201)
 
 
@@ -46,12 +46,10 @@ def pictures(
     """Return all pictures; the runs have delays `extra` [s], and `heights` and `inertias` as shares."""
     return (
         Picture("friction", "Fig. 2: friction by Burckhardt's formula on four roads", _friction()),
-        Picture("psi", _ABOUT_PSI, _psi()),
+        Picture("psi", _ABOUT_FIG_3, _psi_lines()),
+        Picture("psi-roads", _ABOUT_PSI, _psi()),
         Picture("propositions", _ABOUT_PROPOSITIONS, _portraits()),
-        *(
-            Picture(f"fig{i}", f"Fig. {i}: {text}", _maneuver(found[name], name))
-            for i, (name, text) in enumerate(_MANEUVERS.items(), 4)
-        ),
+        *braking_maneuvers.pictures(found),
         Picture("lock", "Fig. 5 enlarged: the first half second", _lock(found["estimated_speed"])),
         Picture("vehicle", _ABOUT_VEHICLE, _vehicle(found, heights, inertias)),
         Picture("delay", _ABOUT_DELAY, _delay(found, extra)),
@@ -73,12 +71,38 @@ def _friction() -> Any:
     return figure
 
 
+def _psi_lines() -> Any:
+    """Draw Psi of each wheel over its own slip, a line for each slip of the other one."""
+    with figures.canvas(1, 2, height=3.6, title="Braking: Psi of both wheels") as (figure, axes):
+        for i, (wheel, other) in enumerate((("f", "r"), ("r", "f"))):
+            panel = axes[0, i]
+            for j, slip in enumerate(_OTHER_SLIPS):
+                panel.plot(
+                    _SLIPS, _cut(NOMINAL.road, i, slip), label=f"λ_{other} = {slip:g}", **figures.look(j)
+                )
+            panel.set(xlabel=f"slip λ_{wheel} [1]", ylabel=f"Ψ_{wheel} [N·m]", title=f"({'ab'[i]})")
+            panel.set(xlim=(0.0, 1.0))
+            panel.legend(title="other wheel", loc="upper right")
+        _equal_ranges(axes[0])
+    return figure
+
+
+def _equal_ranges(panels: Sequence[Any]) -> None:
+    """Give panels that stand side by side one range, from 0 on."""
+    high = max(panel.get_ylim()[1] for panel in panels)
+    for panel in panels:
+        panel.set_ylim(0.0, high)
+
+
 def _psi() -> Any:
     side = np.linspace(0.0, 1.0, 81)
     front, rear = np.meshgrid(side, side)
     at = analysis.reduced(NOMINAL, front, rear)
     gains = critical(1.05)
-    with figures.canvas(2, 2, height=3.4, title="Braking: Psi of both wheels") as (figure, axes):
+    with figures.canvas(2, 2, height=3.4, title="Braking: Psi over both slips, and on four roads") as (
+        figure,
+        axes,
+    ):
         for i, (psi, name) in enumerate(((at.psi_front, "f"), (at.psi_rear, "r"))):
             above, below = axes[0, i], axes[1, i]
             filled = above.contourf(front, rear, psi, 12, cmap="Greys", vmax=1.3 * float(psi.max()))
@@ -93,14 +117,15 @@ def _psi() -> Any:
                 _SLIPS, torque, label="torque of 1.05 k̄ (λ* - λ)", **figures.look(4) | {"linewidth": 2.4}
             )
             below.set(xlabel=f"slip λ_{name} [1]", ylabel=f"Ψ_{name} [N·m]", xlim=(0.0, 1.0))
+        _equal_ranges(axes[1])
         figure.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 
-def _cut(road: Road, wheel: int) -> Array:
-    """Return Psi [N.m] of a wheel (0 front, 1 rear) over its own slip, the other one at the set point."""
+def _cut(road: Road, wheel: int, other_slip: float = analysis.TARGET_SLIP) -> Array:
+    """Return Psi [N.m] of a wheel (0 front, 1 rear) over its own slip, for a slip of the other one."""
     p = dataclasses.replace(NOMINAL, road=road)
-    other = np.full_like(_SLIPS, analysis.TARGET_SLIP)
+    other = np.full_like(_SLIPS, other_slip)
     if wheel == 0:
         return analysis.psi_front(p, _SLIPS, other)
     return analysis.psi_rear(p, other, _SLIPS)
@@ -135,15 +160,8 @@ def _portraits() -> Any:
     return figure
 
 
-def _maneuver(results: Results, name: str) -> Any:
-    spec = results.figure
-    if spec is not None and name == "estimated_speed":
-        spec = spec.model_copy(update={"note": None})  # it is about wheels that roll to the end
-    return figures.draw(results, spec, title=f"Braking: {_MANEUVERS[name]}")
-
-
 def _lock(results: Results) -> Any:
-    figure = _maneuver(results, "estimated_speed")
+    figure = figures.draw(results, results.figure, title="Braking: (b) full slip control, speed estimated")
     figure.axes[0].set_xlim(0.0, 0.5)  # all panels share it
     return figure
 

@@ -28,16 +28,25 @@ def test_verdicts(braking_page):
     assert {row.verdict for row in braking_page.own} == {"own"}
 
 
-def test_every_row_of_table_1_has_both_variants(braking_page):
+def test_every_row_of_table_1_has_its_variants(braking_page):
     rows = [row for row in braking_page.rows if row.place.startswith("Table I") and "distance" in row.what]
     assert len(rows) == 3
-    assert all("over the bus: " in row.obtained and "ideal signals: " in row.obtained for row in rows)
+    for variant in ("over the bus", "ideal signals", "detailed plant"):
+        assert all(f"{variant}: " in row.obtained for row in rows)
     assert [row.printed for row in rows] == ["33.34 m", "51.32 m", "46.4 m"]
 
 
 def test_a_stop_that_is_too_long_is_missed(braking_runs):
     late = braking_runs | {"known_speed": braking_runs["2 late"]}
     assert missed(load("braking").page(late)) == ["pid", "(a)", "(c) longer", "(d) longer"]
+
+
+def test_a_detailed_plant_that_does_something_else_is_missed(braking_runs):
+    other = {
+        "front_only, detailed": braking_runs["estimated_speed, detailed"],
+        "estimated_speed, detailed": braking_runs["known_speed, detailed"],
+    }
+    assert missed(load("braking").page(braking_runs | other)) == ["(b)", "(c)", "(c) longer"]
 
 
 def test_wheels_that_do_not_lock_are_missed(braking_runs):
@@ -52,6 +61,7 @@ def test_a_start_that_goes_elsewhere_is_missed(braking_runs):
         "both",
         "3.1 equilibria",
         "3.1 spread",
+        "3.1 set points",
         "3.2",
     ]
 
