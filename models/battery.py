@@ -21,7 +21,7 @@ counted with it. Current and voltage follow the power at the same instant (direc
 computes (B3) as i = 2 P_d/(U + sqrt(...)), the same root without the difference of two near numbers.
 
 published: nothing.
-chosen: U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h, P_c = 0.
+chosen: U_0 = 46 V, U_1 = 8 V, R_0 = 0.06 ohm, Q = 40 A.h, P_c = 0, xi = 1 at the start.
 
 At the edges: a power above A counts as A, one below -P_c as -P_c. Where the charge does not last for a step,
 as for one longer than the last, the current flows for the part of it that it does: the energy that the

@@ -33,9 +33,10 @@ and bumpless switching that the paper draws in its Fig. 7 ("Derivations" in docs
 `use_observer = false` is the paper's comparison: v_m in place of v_e, and as a_e its difference through a
 first-order low-pass.
 
-published: mu = 0.46, T from the pole at 0.03 Hz, 100 Hz, a bandwidth of 0.3 Hz of the speed loop, the
+published: mu = 0.46, the pole 0.03 Hz, 100 Hz, a bandwidth of 0.3 Hz of the speed loop, the
 clipping of g_e to 0..100 %.
-inferred: mu is in km/h per %; the bandwidth is the crossover of R_v, w_c = 2 pi 0.3 rad/s.
+inferred: mu is in km/h per %; T = 1/(2 pi 0.03 Hz); the bandwidth is the crossover of R_v, w_c = 2 pi 0.3
+rad/s.
 chosen: w_o = 1.2 rad/s, zeta = 1, w_c = 1.5 rad/s of R_a ("slightly lower" in the paper), T_i = T, T_t = 10
 ms, no dwell time, a low-pass of 0.5 s.
 

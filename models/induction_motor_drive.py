@@ -31,6 +31,7 @@ Deviations: f_c is printed as 0.0014, without a unit, and 0 here. Gear and effic
 
 published: 247 N.m, R_r = 0.003, R_s = 0.0044 ohm, L_ls = 16.1, L_m = 482, L_lr = 12.9 uH, 4 poles, gear 10,
 efficiency 93 %.
+inferred: 2 pairs of poles.
 chosen: everything of the control: i_d* = 419 A, I_max = 650 A, U_max = 400 V, tau = 3 ms; the reasons, and
 that of f_c = 0: "Derivations" in docs/systems/multi_drive.md.
 

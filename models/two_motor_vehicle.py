@@ -20,8 +20,9 @@ the labels of L and d_w. f_e = 0.001, which the paper lists without an equation,
 
 published: M = 3904 kg, J_e = 7.07 kg.m2, R = 0.36 m, A = 3.48 m2, C_x = K_d = 0.46, f_v = 0.01, L = 2.5 m,
 d_w = 1.5 m.
-chosen: rho = 1.2 kg/m3, (V1)-(V6), a quarter of the weight on each rear wheel, dry asphalt, g = 9.81 m/s2,
-the stop of the steering, 45 deg. The paper's 93.2 N.m of air at 60 km/h would need rho = 1.164 kg/m3.
+chosen: rho = 1.2 kg/m3, (V1)-(V6), a quarter of the weight on each rear wheel, dry asphalt (th_1 = 1.2801,
+th_2 = 23.99, th_3 = 0.52), g = 9.81 m/s2, the stop of the steering, 45 deg. The paper's 93.2 N.m of air at
+60 km/h would need rho = 1.164 kg/m3.
 
 At the edges: below 0.1 m/s rolling resistance is in proportion to the speed, so that it stops the car and
 does not push it backward; on a slope the car rolls back. Angles of the steering beyond its stop count as the

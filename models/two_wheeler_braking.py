@@ -19,7 +19,7 @@ has lambda >= 0 only).
 published: v_0 = 100 km/h.
 chosen: calibrated to the paper's Table I, m = 200 kg, r = 0.25 m, l_f = 0.834 m, l_r = 0.516 m, h = 0.506 m,
 J = 0.79 kg.m2 per wheel, CdA = 0.388 m2; rho = 1.2 kg/m3, dry road by Burckhardt's table, g = 9.81
-m/s2.
+m/s2; `stop_speed` = 1 m/s.
 
 At the edges: w_i >= 0, a locked wheel stands until the road overcomes its brake. F_zi >= 0: where (S1) gives
 less, the other wheel carries all the weight. A negative torque counts as 0. From `stop_speed` on the vehicle

@@ -137,13 +137,22 @@ def _all_of(row: printed.Printed, found: Findings, stems: set[str]) -> list[Foun
     if row.by and row.by not in found:
         raise KeyError(f"{row}: nothing was found by {row.by!r}")
     values = list(_several(found[row.by])) if row.by else []
-    values += [
-        Found(f"{name} = {value}", "as printed", same)
-        for name, value, same in (parameters.compared(name, row) for name in row.parameters)
-    ]
+    values += _parameters(row)
     if row.picture:
         values.append(Found("redrawn"))
     return [*values, Found(row.where)] if row.where else values
+
+
+def _parameters(row: printed.Printed) -> list[Found]:
+    """Return the parameters of a row, those of one value together."""
+    by_value: dict[tuple[str, bool], list[str]] = {}
+    for path in row.parameters:
+        name, value, same = parameters.compared(path, row)
+        by_value.setdefault((value, same), []).append(name)
+    return [
+        Found(f"{', '.join(names)} = {value}", "as printed", same)
+        for (value, same), names in by_value.items()
+    ]
 
 
 def _judged(row: printed.Printed, values: Sequence[Found]) -> Row:

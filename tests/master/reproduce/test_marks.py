@@ -20,7 +20,9 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units.conversion import between
+from evcosim.fmus.catalog import CATALOG
 from evcosim.master.reproduce import printed
+from evcosim.models.base import variables
 
 ROOT = Path(__file__).parents[3]
 OF_PAPER = {  # what names the paper in a model's source
@@ -35,6 +37,7 @@ REFERENCE = re.compile(
     r"|\b(?:Figs?\.|Tables?|section|Propositions?) [\dIV][\d.]*(?:(?:,| and| to) \d+)*"
     r"|\(\d x \d\)"
 )
+FACTORS = (1.0, 1e3, 1e-3, 100.0, 1e6, 3.6, 180.0 / math.pi, 1.0 / (2.0 * math.pi))  # between units
 SPELLED = {"N m": "N.m", "kg m²": "kg.m2", "m²": "m2", "m/s²": "m/s2", "Ω": "ohm", "µH": "uH"}
 UNITS = sorted(
     [
@@ -179,6 +182,40 @@ def test_a_printed_parameter_is_marked_so_by_its_model(row):
         marked = list(numbers(text))
         symbols = row.place == "4.3"  # Q = I and R = I have no number
         assert symbols or any(_equal(n, row.unit, *each) for each in marked for n in row.numbers), path
+
+
+def defaults(model: str) -> list[tuple[str, float]]:
+    """Return path and value of the parameters of a model that have a number other than 0."""
+    module = CATALOG[model].module
+    record = getattr(importlib.import_module(f"evcosim.models.{module}"), model).Parameters
+    numeric = [v for v in variables(record) if type(v.start) in (int, float) and v.start]
+    return [(f"{module}.{model}.{v.name}", float(v.start)) for v in numeric]
+
+
+def marks_of(value: float, module: str) -> set[str]:
+    """Return the parts of a model's docstring, or of one that it names, which have a value in some unit."""
+    docs = [docstring(module)]
+    docs += [
+        docstring(name) for name in re.findall(r"`(\w+)`", docs[0]) if (ROOT / f"models/{name}.py").exists()
+    ]
+    found = set()
+    for name in ("published", "inferred", "chosen"):
+        numbers_there = [number for doc in docs for number, _ in numbers(part(doc, name))]
+        if any(math.isclose(value * f, n, rel_tol=1e-3) for f in FACTORS for n in numbers_there):
+            found.add(name)
+        if any(math.isclose(1.0 / (2.0 * math.pi * value), n, rel_tol=1e-3) for n in numbers_there):
+            found.add(name)  # a time constant from a frequency
+    return found
+
+
+@pytest.mark.parametrize("model", CATALOG)
+def test_every_parameter_of_a_model_has_a_mark(model):
+    """And one that has no other mark than "published" is the parameter of a printed number."""
+    named = {path for row in printed.rows() for path in row.parameters}
+    for path, value in defaults(model):
+        marks = marks_of(value, CATALOG[model].module)
+        assert marks, f"{path} = {value:g}: neither published nor inferred nor chosen"
+        assert marks != {"published"} or path in named, f"{path} = {value:g}: no row names it"
 
 
 def test_a_number_that_no_paper_prints_is_found_out():
