@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -36,11 +36,14 @@ def budget(
     the metric of its [budget] table. Writes budget.md, budget.json and a figure.
     """
     from ...cosim.analysis.bus_budget import as_data
+    from ...cosim.results.repeat import given_options
     from ..studies.bus_budget import budget as measure_budget
     from .console import print_json, progress_bar
-    from .outputs import output_folder
+    from .failures import complain
+    from .studies import study_folder
 
-    folder = output_folder(output or _default_folder(system, scenario))
+    kept = {"system": system, "scenario": scenario, "options": given_options(options)}
+    folder, remarks = study_folder(output, (*_names(system, scenario), "budget"), _DATA, kept)
     with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measure_budget(
             system,
@@ -49,32 +52,36 @@ def budget(
             progress=lambda done, total, _: show(done / total),
             **options,
         )
-    files = _write(folder, found)
+    files = _write(folder, found, kept)
     if as_json:
         print_json(as_data(found) | {"folder": str(folder), "files": files})
     else:
         _show(found, folder, files)
+    for remark in remarks:
+        complain(f"warning: {remark}")
 
 
-def _default_folder(system: str, scenario: str | None) -> Path:
+def _names(system: str, scenario: str | None) -> tuple[str, str]:
+    """Return the names of system and scenario, of which that of the folder is made."""
     from ...cosim.system.scenario import load_scenario
     from ...cosim.system.system import load_system
-    from .outputs import default_folder
 
     read = load_system(system)
-    return default_folder(read.file.name, load_scenario(read, scenario).name, "budget")
+    return read.file.name, load_scenario(read, scenario).name
 
 
-def _write(folder: Path, found: Budget) -> list[str]:
+def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> list[str]:
     """Write page, data and figure and return the names of the files. Raises ConfigError."""
     from ...cosim.analysis.bus_budget import as_data, as_markdown
     from ...cosim.figures import draw as figures
     from ...cosim.figures.bus_budget import draw_budget
     from ...cosim.visible import visible_json
     from ...cosim.writing import write_text
+    from .studies import with_settings
 
     write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
-    write_text(folder / _DATA, visible_json(json.dumps(as_data(found), indent=2, ensure_ascii=False)) + "\n")
+    data = with_settings(as_data(found), settings)
+    write_text(folder / _DATA, visible_json(json.dumps(data, indent=2, ensure_ascii=False)) + "\n")
     drawn = figures.save(draw_budget(found), folder, _FIGURE)
     return [_PAGE, _DATA, *(path.name for path in drawn)]
 

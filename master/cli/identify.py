@@ -65,7 +65,9 @@ StartValuesOption = Annotated[
 ]
 FolderOption = Annotated[
     Path | None,
-    typer.Option("--output-folder", "-o", metavar="DIR", help="Default: results/<target>-identification."),
+    typer.Option(
+        "--output-folder", "-o", metavar="DIR", help="Default: results/<target>-<scenario>-identify."
+    ),
 ]
 
 
@@ -94,8 +96,10 @@ def identify(
 ) -> int:
     """Identify gain and pole from an input to an output."""
     from ...cosim.analysis.sweep import sweep_of
+    from ...cosim.results.repeat import given_options
     from ..studies.identification_target import is_fmu
-    from .outputs import output_folder
+    from .failures import complain
+    from .studies import study_folder
 
     given: dict[str, Any] = {
         "input": input, "output": output, "unit": unit, "at": at, "at_input": at_input,
@@ -106,12 +110,43 @@ def identify(
     sweep_of(spec)
     if is_fmu(target):
         _check_options_of_one_fmu(target, options)
-    where = output_folder(folder or Path("results") / f"{Path(target).stem}-identification")
+    options = _with_values(options, settings or [], starts or [], is_fmu(target))
+    kept = {"target": target, "scenario": scenario, "spec": spec.model_dump(mode="json")}
+    kept["options"] = given_options(options)
+    where, remarks = study_folder(folder, (*_names(target, scenario), "identify"), DATA, kept)
     bar = not (as_json or quiet)
     found = _measure(target, spec, scenario, (settings or [], starts or []), options, bar)
-    files = _write(where, found, not no_plot)
+    files = _write(where, found, not no_plot, kept)
     _report(found, where, files, as_json, quiet)
+    for remark in remarks:
+        complain(f"warning: {remark}")
     return 0
+
+
+def _with_values(
+    options: RunOptions, settings: Sequence[str], starts: Sequence[str], of_fmu: bool
+) -> RunOptions:
+    """Return the options with the values of `--set` and `--start`. Raises ConfigError."""
+    from .arguments import parse_settings
+
+    return {
+        **options,
+        "parameters": parse_settings(settings, of_fmu),
+        "start": parse_settings(starts, of_fmu, "--start", "speed=8"),
+    }
+
+
+def _names(target: str, scenario: str | None) -> tuple[str, str]:
+    """Return the names of target and scenario, of which that of the folder is made."""
+    from ...cosim.system.scenario import load_scenario
+    from ...cosim.system.system import load_system
+    from ..studies.identification_target import default_scenario, is_fmu
+
+    if is_fmu(target):
+        return Path(target).stem, ""
+    system = load_system(target)
+    chosen = default_scenario(system, scenario)
+    return system.file.name, load_scenario(system, None if chosen is None else str(chosen)).name
 
 
 def _check_options_of_one_fmu(target: str, options: RunOptions) -> None:
@@ -182,18 +217,11 @@ def _measure(
     `given` are the options `--set` and `--start`.
     """
     from ..studies.identification import each_working_point, identify
-    from ..studies.identification_target import is_fmu
-    from .arguments import as_typed, parse_settings
+    from .arguments import as_typed
     from .console import progress_bar
     from .interrupts import Interrupts
 
-    alone = is_fmu(target)
     settings, starts = given
-    options = {
-        **options,
-        "parameters": parse_settings(settings, alone),
-        "start": parse_settings(starts, alone, "--start", "speed=8"),
-    }
     points = each_working_point(spec)
     found = []
     with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
@@ -213,12 +241,14 @@ _SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}
 """Begin and length of a phase, as shares of the time of one working point; others share the first 10 %."""
 
 
-def _write(folder: Path, found: list[Identification], figures: bool) -> list[str]:
+def _write(folder: Path, found: list[Identification], figures: bool, settings: dict[str, Any]) -> list[str]:
     """Write data and figures and return the names of the files. Raises ConfigError."""
     from ...cosim.writing import write_text
     from .console import finite
+    from .studies import with_settings
 
-    text = json.dumps(finite([each.as_data() for each in found]), indent=2, allow_nan=False)
+    data = [with_settings(each.as_data(), settings) for each in found]
+    text = json.dumps(finite(data), indent=2, allow_nan=False)
     write_text(folder / DATA, text + "\n")
     return [DATA, *(_draw(folder, found) if figures else ())]
 
@@ -294,7 +324,8 @@ def _fields(each: Identification) -> list[tuple[str, str]]:
         ("pole", f"{_interval(fit.pole, 'Hz')}; T = {number(fit.model.time_constant)} s"),
         ("gain x pole", f"{_interval(fit.product, '')}, {fit.product.percentage}"),
         *([("ESR", f"{esr:.2f} % on average in accelerations")] if esr == esr else []),
-        *(("warning", warning) for warning in each.warnings),
+        *(("switched off" if i == 0 else "", text) for i, text in enumerate(each.switched_off)),
+        *(("warning", warning) for warning in each.warnings if warning not in each.switched_off),
     ]
 
 

@@ -61,7 +61,7 @@ def run_folder(
     from ...cosim.results.run_folder import RunFolder
 
     remarks: list[str] = []
-    for folder in _candidates(wanted, suffix):
+    for folder in candidates(wanted, suffix):
         if folder != wanted and _is_taken(folder, manifest):
             continue
         try:
@@ -76,7 +76,7 @@ def run_folder(
     raise ConfigError(f"output folder {wanted}: there are too many with a number; --output names another one")
 
 
-def _candidates(wanted: Path, suffix: str) -> Iterator[Path]:
+def candidates(wanted: Path, suffix: str) -> Iterator[Path]:
     """Yield the folders that a run may have, the best first."""
     yield wanted
     base = wanted if wanted.name not in ("", "..") else wanted.resolve()

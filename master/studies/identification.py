@@ -62,6 +62,8 @@ class Identification:
     y: Array
     prediction: Prediction
     warnings: tuple[str, ...]
+    switched_off: tuple[str, ...] = ()
+    """Sentences on the events that were left out and the stimuli that were held; they are warnings too."""
 
     @property
     def gain_unit(self) -> str:
@@ -92,6 +94,7 @@ class Identification:
             "coherence": fit.coherence,
             "mean_esr": {"value": self.prediction.mean_esr, "unit": "%"},
             "warnings": list(self.warnings),
+            "switched_off": list(self.switched_off),
             "response": {
                 "frequency": response.frequency[kept].tolist(),
                 "real": response.response.real[kept].tolist(),
@@ -210,6 +213,7 @@ def _identified(run: IdentificationRun, target: str, changes: tuple[str, ...]) -
         y=y,
         prediction=run.tested(fit, u_0, y_0),
         warnings=tuple(dict.fromkeys(warnings)),
+        switched_off=changes,
     )
 
 

@@ -149,10 +149,10 @@ def test_a_suffix_says_what_was_set(options, suffix):
 def test_the_names_of_folders_beside_the_working_folder_and_of_the_root(monkeypatch, tmp_path):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
-    second = [next(outputs._candidates(Path(name), "a")) for name in (".", "..", "/")]
+    second = [next(outputs.candidates(Path(name), "a")) for name in (".", "..", "/")]
     assert second == [Path("."), Path(".."), Path("/")]
-    assert list(outputs._candidates(Path("."), "a"))[1:3] == [tmp_path / "here-a", tmp_path / "here-a-2"]
-    assert list(outputs._candidates(Path("/"), "a")) == [Path("/")]
+    assert list(outputs.candidates(Path("."), "a"))[1:3] == [tmp_path / "here-a", tmp_path / "here-a-2"]
+    assert list(outputs.candidates(Path("/"), "a")) == [Path("/")]
 
 
 def test_a_folder_of_another_command_is_refused(evcosim, tmp_path):

@@ -1,0 +1,53 @@
+"""The folder of a study (`budget`, `identify`), which is named and chosen as that of a run is.
+
+It is results/<system>-<scenario>-<verb>. A study replaces an earlier one of the same settings; where one of
+others is in the folder, the settings are added to the name, or a number.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .outputs import candidates, default_folder, output_folder, suffix_of
+
+_KEY = "settings"
+
+
+def study_folder(
+    wanted: Path | None, names: tuple[str, ...], data: str, settings: Mapping[str, Any]
+) -> tuple[Path, list[str]]:
+    """Make and lock the folder of a study, and return it with remarks on the choice.
+
+    `wanted` is the one that the user names (None: that of the `names`), `data` the name of the JSON file in
+    which a study keeps its `settings`. Raises ConfigError where the folder cannot be written, or another
+    command has it.
+    """
+    from ...cosim.errors import ConfigError
+
+    first = wanted or default_folder(*names)
+    for folder in candidates(first, suffix_of(settings["options"])):
+        kept = _settings_in(folder / data)
+        if kept is None or kept == json.loads(json.dumps(settings, default=str)):
+            moved = f"{first} has results of other settings; these are in {folder}"
+            return output_folder(folder), [moved] if folder != first else []
+    raise ConfigError(f"output folder {first}: there are too many with a number; name another one")
+
+
+def _settings_in(path: Path) -> Any:
+    """Return the settings of the study that wrote a file; None where there is none, or not of a study."""
+    from ...cosim.results.manifest import from_json
+
+    try:
+        found = from_json(path.read_bytes())
+    except (OSError, ValueError):
+        return None
+    found = found[0] if isinstance(found, list) and found else found
+    return found.get(_KEY, {}) if isinstance(found, dict) else None
+
+
+def with_settings(data: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a study found, with its settings as `study_folder` reads them."""
+    return {**data, _KEY: json.loads(json.dumps(settings, default=str))}
