@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
-from .visible import visible
+from .visible import on_one_line, visible
 
 
 class Recorded(Protocol):
@@ -48,10 +48,18 @@ class Recorded(Protocol):
 
 
 class ConfigError(ValueError):
-    """Bad input, found before any step. The message names the place, the rule and the values."""
+    """Bad input, found before any step. The message names the place, the rule and the values.
+
+    Each argument is a line of it: a line end within one, of a name in a stranger's file, is shown as `\\n`.
+    """
 
     def __str__(self) -> str:
-        return visible(super().__str__())
+        return "\n".join(on_one_line(str(line)) for line in self.args)
+
+    @property
+    def lines(self) -> list[str]:
+        """The lines of the message, for an error that says more."""
+        return str(self).split("\n")
 
 
 class RunError(RuntimeError):

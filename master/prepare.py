@@ -213,8 +213,9 @@ def _check_complete(
 ) -> None:
     """Raise ConfigError that names every variable that a swapped unit lacks."""
     if missing := lacking(system, scenario, unit, interface):
-        lines = "\n".join(f"unit '{unit}' has no variable {name}" for name in missing)
-        raise ConfigError(f"{path}: {lines}\nmap them, or declare them absent; {_advice(system, unit, path)}")
+        first, *lines = (f"unit '{unit}' has no variable {name}" for name in missing)
+        advice = f"map them, or declare them absent; {_advice(system, unit, path)}"
+        raise ConfigError(f"{path}: {first}", *lines, advice)
 
 
 def _advice(system: System, unit: str, path: str | Path) -> str:
@@ -240,12 +241,13 @@ def _advised(
             raise ConfigError(f"step_size = {step:g} s, where the files have {files:g} s: {error}") from error
         if swaps:
             unit, path = next(iter(swaps.items()))
-            raise ConfigError(f"{error}\n{_advice(system, unit, path)}") from error
+            raise ConfigError(*error.lines, _advice(system, unit, path)) from error
         for unit, path in fmus.items():
             if lacking(system, scenario, unit, interfaces[unit]):
                 raise ConfigError(
-                    f"{error}\n{_advice(system, unit, path)}; with --write it makes a swap file for an FMU "
-                    f"with other names: --swap {unit}=FILE, or in Python `swaps`"
+                    *error.lines,
+                    f"{_advice(system, unit, path)}; with --write it makes a swap file for an FMU with other "
+                    f"names: --swap {unit}=FILE, or in Python `swaps`",
                 ) from error
         raise
 

@@ -172,7 +172,7 @@ def validate(data: Any, model: type[_Model], place: str) -> _Model:
         return model.model_validate(data)
     except ValidationError as error:
         lines = sentences(error, data, model)
-        raise ConfigError("\n".join(f"{place}: {line}" for line in lines)) from error
+        raise ConfigError(*(f"{place}: {line}" for line in lines)) from error
 
 
 def names_in(folder: Path) -> list[str]:

@@ -120,11 +120,13 @@ def as_typed(
     except ConfigError as error:
         for place, typed in places.items():
             if str(error).startswith(place):
-                raise ConfigError(f"{typed}{str(error).removeprefix(place)}") from error
-        word, space, rest = str(error).partition(" ")
+                first, *others = error.lines
+                raise ConfigError(f"{typed}{first.removeprefix(place)}", *others) from error
+        first, *others = error.lines
+        word, space, rest = first.partition(" ")
         name = word.removesuffix(":")
         if space and name in _FLAGS:
-            raise ConfigError(f"{_FLAGS[name]}{word.removeprefix(name)} {rest}") from error
+            raise ConfigError(f"{_FLAGS[name]}{word.removeprefix(name)} {rest}", *others) from error
         raise
 
 

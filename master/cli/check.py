@@ -156,7 +156,9 @@ def _there_now(system: System, unit: str) -> UnitInterface:
     except ConfigError as error:
         raise ConfigError(
             f"{keys}fmu = '{entry.fmu}' cannot be read, so that the interface of this unit, which its "
-            f"place needs, is unknown:\n{error}\nput an FMU there that can be read, or a built-in one"
+            "place needs, is unknown:",
+            *error.lines,
+            "put an FMU there that can be read, or a built-in one",
         ) from error
     interface = present(interface, entry, keys)
     return interface if entry.sampled is None else told(interface, unit, entry.sampled, keys)
@@ -234,8 +236,10 @@ def _show_sampled(checked: _Checked) -> None:
 
 
 def _show_warnings(checked: _Checked) -> None:
+    from ...cosim.visible import flowing
+
     for warning in checked.warnings:
-        print(f"warning: {warning}")
+        print(f"warning: {flowing(warning)}")
     if checked.warnings:
         print()
 

@@ -101,7 +101,7 @@ def print_title(text: str, first: bool = False) -> None:
     """Print a heading, after an empty line unless it is the first thing printed."""
     if not first:
         print()
-    _print_bold(text)
+    _print_bold(on_one_line(text))
 
 
 def _wrapped(head: str, text: str, indent: int) -> str:

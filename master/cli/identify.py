@@ -283,6 +283,7 @@ def _draw(folder: Path, found: list[Identification]) -> list[str]:
 
 
 def _report(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
+    from ...cosim.visible import flowing
     from .console import print_fields, print_json, print_title
     from .failures import complain
 
@@ -291,7 +292,7 @@ def _report(found: list[Identification], folder: Path, files: list[str], as_json
     if as_json or quiet:
         for each in found:
             for warning in each.warnings:
-                complain(f"warning: at {_point(each)}: {warning}")
+                complain(f"warning: at {_point(each)}: {flowing(warning)}")
         return
     for number, each in enumerate(found):
         title = f"{each.target}: {each.input} [{each.input_unit}] to {each.output} [{each.output_unit}]"

@@ -105,6 +105,7 @@ class FinishedRun:
 
 
 def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
+    from ...cosim.visible import flowing
     from . import summary
     from .console import print_json
     from .failures import FAILED, complain
@@ -118,7 +119,7 @@ def _carry_out(order: Order, as_json: bool, quiet: bool) -> int:
     if as_json:
         print_json(summary.as_data(finished))
     for remark in finished.remarks if as_json or quiet else ():
-        complain(f"warning: {remark}")
+        complain(f"warning: {flowing(remark)}")
     if finished.error is not None:
         complain(summary.of_failure(finished))
         return exit_code(finished.error) if isinstance(finished.error, KeyboardInterrupt) else FAILED

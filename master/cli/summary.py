@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...cosim.errors import counted
 from ...cosim.results.text_table import shown_text
+from ...cosim.visible import on_one_line
 from . import interrupts
 from .console import number, print_fields, print_flowing, print_table
 
@@ -41,7 +42,7 @@ def show(finished: FinishedRun) -> None:
     if profile := finished.simulation.profile:
         print()
         _show_profile(profile)
-    print_flowing(f"\nin {finished.folder.path}: {', '.join(finished.files)}")
+    print_flowing(f"\nin {on_one_line(str(finished.folder.path))}: {', '.join(finished.files)}")
     print()
     print_fields([("next" if i == 0 else "", text) for i, text in enumerate(_next(finished))])
 
@@ -113,7 +114,8 @@ def of_failure(finished: FinishedRun) -> str:
     else:
         why = str(finished.error)
     kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"
-    return f"{why}\n{kept}; in {finished.folder.path}: {', '.join(finished.files)}"
+    folder = on_one_line(str(finished.folder.path))
+    return f"{why}\n{kept}; in {folder}: {', '.join(finished.files)}"
 
 
 def _name(manifest: dict[str, Any]) -> str:

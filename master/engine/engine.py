@@ -26,6 +26,7 @@ from ...cosim.plan.turns import TurnTimes
 from ...cosim.plan.unit_plan import Route, UnitPlan
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
+from ...cosim.visible import on_one_line
 from ..unit import Unit, floats
 from .ending import EndedWithin, Ending
 from .initialization import typed
@@ -147,7 +148,8 @@ class Turn:
                 for v, value in zip(group.variables, values, strict=True):
                     if not math.isfinite(value):
                         unit = f" {v.unit}" if v.unit else ""
-                        raise RunError(f"{self.unit.name}.{v.name} = {value}{unit}: an output must be finite")
+                        name = f"{self.unit.name}.{v.name}"
+                        raise RunError(on_one_line(f"{name} = {value}{unit}: an output must be finite"))
 
 
 class Engine:

@@ -22,6 +22,7 @@ from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.plan import Link, Plan
 from ...cosim.plan.unit_plan import UnitPlan
 from ...cosim.texts import Texts
+from ...cosim.visible import on_one_line
 from ..unit import Unit, UnitError
 
 _ITERATIONS = 200
@@ -157,7 +158,8 @@ def _pass_on(units: Mapping[str, Unit], link: Link, texts: Texts) -> float | str
         return found
     value = float(found)
     if not math.isfinite(value):
-        raise UnitError(f"{unit}.{name} = {value} in the initialization: an output must be finite")
+        shown = on_one_line(f"{unit}.{name}")
+        raise UnitError(f"{shown} = {value} in the initialization: an output must be finite")
     value = link.map(value)
     units[receiver].set(sink, typed(units[receiver].interface.variables[sink], value, texts))
     return value

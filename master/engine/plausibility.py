@@ -7,6 +7,7 @@ import numpy as np
 from ...cosim.interface import VariableInfo
 from ...cosim.plan.plan import Plan
 from ...cosim.row_store import Array, Table
+from ...cosim.visible import on_one_line
 
 _ROWS = 1 << 14  # read at a time
 _SLACK = 1e-9  # of a limit: rounding may exceed it
@@ -50,7 +51,7 @@ def implausible(extremes: tuple[Array, Array], plan: Plan) -> list[str]:
         unit, _, variable = column.name.partition(".")
         about = interfaces[unit].variables[variable]
         if low <= high and about.type in ("Real", "Integer") and about.causality in ("output", "local"):
-            found += _sentences(column.name, about, float(low), float(high))
+            found += _sentences(on_one_line(column.name), about, float(low), float(high))
     return found
 
 

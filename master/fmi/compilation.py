@@ -121,8 +121,8 @@ def _built(fmu: Fmu, folder: Path, definitions: list[str]) -> Path:
     except subprocess.TimeoutExpired as error:
         raise FmuError(f"{fmu.path}: compiling its sources took more than {_TIME:g} s") from error
     if code:
-        said = said.replace(f"{folder}{os.sep}", "")
-        raise FmuError(f"{fmu.path}: {command[0]} cannot compile its sources:\n{said.strip()[:_SHOWN]}")
+        said = said.replace(f"{folder}{os.sep}", "").strip()[:_SHOWN]
+        raise FmuError(f"{fmu.path}: {command[0]} cannot compile its sources:", *said.splitlines())
     return target
 
 

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ...cosim.interface import UnitInterface, Value, VariableInfo
 from ...cosim.plan.unit_plan import UnitPlan
+from ...cosim.visible import on_one_line
 from ..unit import NO_VALUES, UnitError
 from . import crash, folders
 from .binding import Binding
@@ -107,7 +108,8 @@ class Instance:
             component = self._instantiate(folder)
         if not component:
             reason = why_refused(self.fmu, folder / self.fmu.binary, self.log.last())
-            raise FmuError(f"{self.fmu.path}: cannot be instantiated{reason}")
+            clause, *said = reason.split("\n")
+            raise FmuError(f"{self.fmu.path}: cannot be instantiated{clause}", *said)
         self._component = ctypes.c_void_p(component)
         self._listen_to_trouble()
 
@@ -252,7 +254,7 @@ class Instance:
         self._refuse(transfer.items[place].variable, value, transfer.function)
 
     def _refuse(self, variable: VariableInfo, value: float, function: str) -> NoReturn:
-        name = variable.name
+        name = on_one_line(variable.name)
         if "Get" in function:
             raise UnitError(f"unit '{self.name}': {name} = {value} is more than a double holds (2^53)")
         kind = self.type_of(variable)
@@ -373,7 +375,7 @@ class Instance:
         self._crash_note()
         status = self.function(name)(*arguments)
         if status:
-            self._judge(f"{name} of {of}" if of else name, status)
+            self._judge(f"{name} of {on_one_line(of)}" if of else name, status)
 
     def _judge(self, what: str, status: int, also: str = "") -> None:
         if status > _WARNING or status < 0:

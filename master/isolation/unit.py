@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ...cosim.errors import ConfigError
 from ...cosim.interface import UnitInterface, Value
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
+from ...cosim.visible import on_one_line
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
 from ..machine import slots as S
@@ -95,7 +96,7 @@ class IsolatedUnit:
             self._loaded = True  # whatever the answer is, there is no other
             self._answer(self._frame())
         self._check_free()
-        self._asked = name + (f" of {arguments[0]}" if name in _OF_ONE_VARIABLE else "")
+        self._asked = name + (f" of {on_one_line(str(arguments[0]))}" if name in _OF_ONE_VARIABLE else "")
         self._request(S.CALL)
         try:
             framing.send(self._process.connection, pickle.dumps((name, arguments)), self._impatience)
@@ -155,7 +156,8 @@ class IsolatedUnit:
             raise UnitError(f"unit '{self.name}': its process sent an invalid answer to {self._asked}")
         if "error" in answer:
             of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
-            raise (FmuError if of_the_file else UnitError)(str(answer["error"]))
+            said = str(answer["error"])
+            raise FmuError(*said.split("\n")) if of_the_file else UnitError(said)
         return answer.get("value")
 
     def _ended(self, error: Exception) -> NoReturn:
@@ -268,7 +270,7 @@ class IsolatedUnit:
                 return value
             case [float() as number]:
                 return self._texts.text(self._exchange.from_child(number))
-        raise UnitError(f"unit '{self.name}': its process sent no value for {name}")
+        raise UnitError(f"unit '{self.name}': its process sent no value for {on_one_line(name)}")
 
     def set(self, name: str, value: Value) -> None:
         self._call("set", name, value)

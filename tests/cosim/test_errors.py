@@ -35,6 +35,14 @@ def test_what_was_recorded_is_reached_through_the_error() -> None:
     assert (len(error.results), error.results.names, "a.x" in error.results) == (2, ("a.x",), True)
 
 
+def test_a_name_breaks_no_line_of_a_message() -> None:
+    error = ConfigError("a.toml: no variable 'x\ny\r'", "there are: a\tb")
+    assert error.lines == [r"a.toml: no variable 'x\ny\r'", r"there are: a\tb"]
+    assert str(error) == "\n".join(error.lines)
+    assert str(ConfigError("more:", *error.lines)) == f"more:\n{error}"
+    assert str(ConfigError(f"in one: {ConfigError('x' + chr(10))}")) == r"in one: x\n"
+
+
 @pytest.mark.parametrize(("kind", "base"), [(ConfigError, ValueError), (RunError, RuntimeError)])
 def test_errors_are_those_that_python_would_raise(kind: type[Exception], base: type[Exception]) -> None:
     assert issubclass(kind, base)

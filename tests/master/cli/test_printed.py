@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import pytest
 
@@ -14,6 +15,8 @@ from evcosim.cosim.visible import visible
 from evcosim.master.cli import completion
 from evcosim.master.simulation import simulate
 from support import marks
+from support.hostile import units
+from support.hostile.case import WHOLE, Case
 
 SCENARIO = "sc\x1b[2J\u202e\nevcosim: all is well.toml"
 
@@ -162,3 +165,78 @@ def test_the_tab_key_offers_no_such_name(tmp_path: Path, monkeypatch: pytest.Mon
         args: tuple[str, ...] = ()
 
     assert completion.scenarios(Line()) == ["good"]  # type: ignore[arg-type] # what it reads of a context
+
+
+BREAK = "\n\r\tINJECTED"
+NAMED = f"y{BREAK}"
+LINES = [
+    ["info", "named.fmu"],
+    ["info", "named.fmu", "--causality", "input"],
+    ["check", "named.fmu", "--as", "scooter.vehicle"],
+    ["run", "named.fmu", "--no-plot", "-o", "one"],
+    ["run", "named.fmu", "--no-plot", "-o", "one", "--set", f"{NAMED[:3]}=1"],
+    ["run", "named.fmu", "--input", f"{NAMED}=1"],
+    ["run", "named.fmu", "--input", "u=columns.csv"],
+    ["run", "named.fmu", "--input", f"u=columns.csv:{NAMED}", "-q", "--no-plot", "-o", "two"],
+    ["run", "named.fmu", "--input", f"u=t{BREAK}.csv"],
+    ["run", "nan.fmu", "--no-plot", "-o", "three"],
+    ["run", "nan.fmu", "--no-plot", "-o", "three", "--isolation", "none", "--trust"],
+    ["run", "initialize_nan.fmu", "--no-plot", "-o", "four"],
+    ["run", "beyond.fmu", "--no-plot", "-o", "five", "-q"],
+    ["run", f"s{BREAK}.toml", "--no-plot", "-o", "six"],
+    ["run", f"none{BREAK}.toml"],
+    ["run", "bus.toml"],
+    ["run", "scooter", "-s", f"none{BREAK}.toml"],
+    ["run", "scooter", "--fmu", f"vehicle=none{BREAK}.fmu"],
+    ["run", "scooter", "--stop-time", "1.1", "--no-plot", "-o", f"out{BREAK}"],
+    ["plot", "columns.csv", "--signals", "z"],
+    ["plot", "twice.csv"],
+    ["plot", "wrong.csv"],
+    ["plot", f"none{BREAK}.csv"],
+    ["compare", "columns.csv", "other.csv"],
+    ["compare", "one", "columns.csv"],
+    ["results", "recover", f"none{BREAK}"],
+]
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of strangers' files whose names have line ends."""
+    made = tmp_path_factory.mktemp("broken")
+    name = f"name={quoteattr(NAMED)}"
+    unit = f"unit={quoteattr('m/s' + BREAK)}"
+    limit = '<Real unit="m/s" max="-5"/>'
+    for act, *changes in (
+        ("named", ('name="y"', name), ('name="gain"', f"name={quoteattr('gain' + BREAK)}")),
+        ("nan", ('name="y"', name), ('<Real unit="m/s"/>', f"<Real {unit}/>")),
+        ("initialize_nan", ('name="y"', name)),
+        ("beyond", ('name="y"', name), ('<Real unit="m/s"/>', limit)),
+    ):
+        case = Case(act, "", "", WHOLE, act=act if "nan" in act else "", changes=tuple(changes))
+        units.write(made / f"{act}.fmu", case, 2)
+    cell = f'"{NAMED}"'
+    (made / "columns.csv").write_text(f"time,{cell},a\n0,1,2\n1,2,3\n", newline="")
+    (made / "other.csv").write_text(f"time,{cell},b{BREAK[2:]}\n0,1,2\n1,2,4\n", newline="")
+    (made / "twice.csv").write_text(f"time,{cell},{cell}\n0,1,2\n", newline="")
+    (made / "wrong.csv").write_text(f'time,{cell}\n0,"1{BREAK}"\n', newline="")
+    system = '"broken"\n[units.a]\nfmu = "{}"\n'
+    (made / f"s{BREAK}.toml").write_text(f"name = {system.format('none.fmu')}", newline="")
+    bus = '[buses.can0]\ndbc = "a.dbc"\n[[connect]]\nfrom = "a.y"\nto = []\nvia = "can0.M.S"\n'
+    units.write(made / "good.fmu", Case("good", "", "", WHOLE), 2)
+    (made / "bus.toml").write_text(f"name = {system.format('good.fmu')}{bus}", newline="")
+    marks.dbc(made / "a.dbc")
+    text = (made / "a.dbc").read_text(encoding="utf-8").replace(f'"u{marks.text_of_dbc()}"', f'"u{BREAK}"')
+    (made / "a.dbc").write_text(text, encoding="utf-8", newline="")
+    return made
+
+
+@pytest.mark.parametrize("command", LINES, ids=lambda command: ascii(" ".join(command)))
+def test_a_name_takes_no_line_of_its_own(
+    broken: Path, command: list[str], monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    from evcosim.master.cli import main
+
+    monkeypatch.chdir(broken)
+    assert main(command) in (0, 1, 2)
+    lines = "\n".join(capfd.readouterr()).splitlines()
+    assert not [line for line in lines if line.strip().startswith("INJECTED")], lines
