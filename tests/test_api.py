@@ -120,9 +120,9 @@ TYPES = [
 ]
 
 
-def test_a_users_mypy_knows_the_types(tmp_path):
+def test_a_users_mypy_knows_the_types(mypy_said):
     """The links in .typing stand for an installation; .ci/run does it with that of the wheel."""
-    said = mypy(tmp_path, SCRIPT)
+    said = mypy_said["user.py"]
     assert re.findall(r'Revealed type is "(.*)"', said) == TYPES, said
     assert re.findall(r"^user.py:(\d+): error: .*idael", said, re.MULTILINE) == ["11"]
     assert said.count("error:") == 1
@@ -137,22 +137,26 @@ reveal_type(evcosim.__version__)
 """
 
 
-def test_a_users_mypy_refuses_a_misspelled_name(tmp_path):
-    said = mypy(tmp_path, MISSPELLED)
-    assert re.findall(r'^user.py:(\d+): error: Module "?evcosim"? has no attribute', said, re.M) == ["2"], (
-        said
-    )
-    assert re.findall(r'^user.py:(\d+): error: Module has no attribute "Simulatoin"', said, re.M) == ["4"]
+def test_a_users_mypy_refuses_a_misspelled_name(mypy_said):
+    said = mypy_said["misspelled.py"]
+    begin = r"^misspelled.py:(\d+): error: Module "
+    assert re.findall(begin + r'"?evcosim"? has no attribute', said, re.MULTILINE) == ["2"], said
+    assert re.findall(begin + r'has no attribute "Simulatoin"', said, re.MULTILINE) == ["4"], said
     assert said.count("error:") == 2
     assert 'Revealed type is "str"' in said or 'Revealed type is "builtins.str"' in said
 
 
-def mypy(folder: Path, script: str) -> str:
-    """Return the output of mypy for a script of a user."""
+@pytest.fixture(scope="module")
+def mypy_said(tmp_path_factory):
+    """What mypy says of each of a user's scripts, all of which it checks at once."""
     if importlib.util.find_spec("mypy") is None:
         give_up("mypy is not installed")
-    (folder / "user.py").write_text(script)
-    call = [sys.executable, "-m", "mypy", "--follow-imports=silent", f"--cache-dir={folder}", "user.py"]
+    folder, scripts = tmp_path_factory.mktemp("user"), {"user.py": SCRIPT, "misspelled.py": MISSPELLED}
+    for name, script in scripts.items():
+        (folder / name).write_text(script)
+    call = [sys.executable, "-m", "mypy", "--follow-imports=silent", f"--cache-dir={folder}", *scripts]
     environment = os.environ | {"MYPYPATH": str(ROOT / ".typing")}
     done = subprocess.run(call, capture_output=True, text=True, cwd=folder, env=environment)
-    return done.stdout + done.stderr
+    assert not done.stderr, done.stderr
+    lines = done.stdout.splitlines()
+    return {name: "\n".join(line for line in lines if line.startswith(f"{name}:")) for name in scripts}

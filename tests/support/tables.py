@@ -8,6 +8,7 @@ the keys to the table as in the file, with a name in capitals for any name: `uni
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,11 +33,17 @@ def written(page: str) -> str:
 
 def table(kind: str, path: str) -> str:
     """Return the keys at a path in a kind of file as a Markdown table, below the text of their record."""
-    schema = json_schema(MODELS[kind], kind)
+    schema = _schema(kind)
     members = _tables(schema, schema, path.split(".") if path else [])
     rows = [_row(key, [m for m in members if key in m["properties"]], members) for key in _keys(members)]
     about = [_escaped(members[0]["description"]), ""] if len(members) == 1 else []
     return "\n".join(["", *about, *markdown_table(("key", "meaning"), rows), "", ""])
+
+
+@functools.cache
+def _schema(kind: str) -> dict[str, Any]:
+    """Return the schema of a kind of file, which all tables of it are made of."""
+    return json_schema(MODELS[kind], kind)
 
 
 def paths(page: str) -> list[tuple[str, str]]:
