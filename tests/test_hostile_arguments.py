@@ -15,8 +15,8 @@ import pytest
 
 import evcosim
 from evcosim import BusVariation, ConfigError, IdentificationSpec, RunError, Simulation, Task
+from support import small_bench
 from support.forked import forked
-from support.small_bench import SYSTEM
 
 VALUES: list[Any] = [
     0,
@@ -148,7 +148,7 @@ def test_every_number_is_tried():
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each argument is tried in a child of this process")
 @pytest.mark.parametrize("name", CALLS)
 def test_a_hostile_number_is_used_or_refused(name, tmp_path, monkeypatch):
-    (tmp_path / "s.toml").write_text(SYSTEM)
+    small_bench.write(tmp_path)
     monkeypatch.chdir(tmp_path)
     # any number of workers is used, and so many processes take their time
     values = [x for x in VALUES if not (name == "budget.workers" and isinstance(x, int) and x > 1)]

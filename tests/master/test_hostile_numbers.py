@@ -17,134 +17,13 @@ from evcosim.cosim.swap.swap_file import SwapFile
 from evcosim.cosim.system.scenario import ScenarioFile, load_scenario
 from evcosim.cosim.system.system import SystemFile, load_system
 from evcosim.master.simulation import Simulation
+from support.every_key import SCENARIO, SWAP, SYSTEM
 from support.forked import forked
 from support.numeric_keys import Place, numeric_places, with_value
+from support.small_bench import DATABASE
 
 HOSTILE = [1e308, -1e308, 5e-324, math.inf, math.nan, 0, -1, 1e-10, 2**63, -(2**63) - 1, 10**400, 10**5000]
 WRONG = [True, "0.5", [1]]
-SYSTEM = """
-name = "bench"
-record = ["*"]
-[experiment]
-start_time = 0.0
-stop_time = 0.03
-step_size = 0.01
-loop_tolerance = 1e-9
-[units.ecu]
-fmu = "BoundController"
-parameters = { gain = 0.05 }
-start = { speed_bound = 30.0 }
-[units.ecu.map.inputs]
-speed_measured = { variable = "speed_measured", factor = 1.0, offset = 0.0, convert = true }
-[units.ecu.map.outputs]
-throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
-[units.ecu.map.parameters]
-gain = { variable = "gain", factor = 1.0, offset = 0.0, convert = true }
-[units.vehicle]
-fmu = "Scooter"
-period = 0.01
-[buses.can0]
-dbc = "can/ev.dbc"
-[[connect]]
-from = "vehicle.speed"
-to = ["ecu.speed_measured"]
-via = "can0.EMD_Status.EMD_VehicleSpeed"
-initial = 0.0
-[[connect]]
-from = "ecu.throttle"
-to = ["vehicle.throttle"]
-via = "can0.VCU_Request.VCU_ThrottleRequest"
-[[figure.panels]]
-signals = [{ name = "vehicle.speed", weight = 1.0 }]
-unit = "km/h"
-limits = [0.0, 30.0]
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-threshold_unit = "km/h"
-after = 0.0
-per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
-[[metrics]]
-name = "equal"
-signal = "ecu.state"
-reduce = "share_equal"
-value = 1
-per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
-[budget]
-metric = "above"
-limit = 1.0
-"""
-SCENARIO = """
-[experiment]
-stop_time = 0.03
-step_size = 0.01
-[parameters.ecu]
-gain = 0.05
-[start.ecu]
-speed_bound = 20.0
-[[stimulus]]
-to = "ecu.throttle_request"
-constant = 1.0
-[[stimulus]]
-to = "vehicle.road_grade"
-table = [[0.0, 0.0], [0.02, 0.1]]
-[[stimulus]]
-to = "ecu.speed_bound"
-sine = { amplitude = 1.0, period = 1.0, mean = 20.0, phase = 0.0, delay = 0.0 }
-[[stimulus]]
-to = "ecu.acceleration_bound"
-ramp = { slope = 1.0, start = 0.0, end = 2.0, delay = 0.0 }
-[[event]]
-action = "override"
-time = 0.01
-variable = "ecu.throttle_request"
-value = 1.0
-[[figure.panels]]
-signals = [{ name = "vehicle.speed", weight = 1.0 }]
-unit = "km/h"
-limits = [0.0, 30.0]
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-after = 0.0
-per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
-[[metrics]]
-name = "equal"
-signal = "ecu.state"
-reduce = "share_equal"
-value = 1
-per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
-[identification]
-input = "ecu.throttle_request"
-output = "vehicle.speed"
-amplitude = 1.0
-at = [1.0]
-at_input = [1.0]
-sweep = [0.1, 0.6]
-duration = 100.0
-repeats = 1
-band = [0.1, 0.5]
-"""
-SWAP = """
-fmu = "Scooter"
-period = 0.01
-[parameters]
-mass = 200.0
-[start]
-brake_force = 0.0
-[map.inputs]
-throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
-[map.outputs]
-speed = { variable = "speed", factor = 1.0, offset = 0.0, convert = true }
-[map.parameters]
-mass = { variable = "mass", factor = 1.0, offset = 0.0, convert = true }
-"""
-"""Documents with a table for every numeric key; a key that is not in them is added to its table."""
-
 KINDS: dict[str, tuple[type[BaseModel], str]] = {
     "system": (SystemFile, SYSTEM),
     "scenario": (ScenarioFile, SCENARIO),
@@ -179,6 +58,7 @@ def _limited(document: Any, place: Any) -> Any:
 
 def written(folder: Path, kind: str, document: Any) -> dict[str, Path]:
     """Write the three files, one of them with this document, and return their paths."""
+    (folder / "bench.dbc").write_text(DATABASE)
     paths = {}
     for name, (_, text) in KINDS.items():
         paths[name] = folder / f"{name}.toml"

@@ -11,6 +11,7 @@ from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures import thinning
 from evcosim.cosim.figures.comparison import draw_comparison
 from evcosim.cosim.figures.draw import draw, save
+from evcosim.cosim.figures.saving import write
 from evcosim.cosim.figures.system_diagram import draw_diagram
 from evcosim.cosim.results import results as results_module
 from evcosim.cosim.results.results import Results, ResultVariable
@@ -144,6 +145,7 @@ def test_signs_of_formulas_and_what_steers_are_drawn_as_they_are(tmp_path: Path,
         assert any(shown in each.replace("\n", " ") for each in texts)
         assert all(visible(each) == each for each in texts)
         assert not any(each.get_parse_math() for each in figure.findobj(Text) if "$" in each.get_text())
-        save(figure, tmp_path)
-    picture = (tmp_path / "figure.svg").read_text(encoding="utf-8")
-    assert visible(picture) == picture
+        write(figure, tmp_path / "figure.svg")
+        picture = (tmp_path / "figure.svg").read_text(encoding="utf-8")
+        assert visible(picture) == picture
+    write(figures[0], tmp_path / "figure.png")  # the texts of all four are drawn by the same code

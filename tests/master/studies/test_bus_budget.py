@@ -122,7 +122,7 @@ def test_same_outcome_however_many_workers(line, measured):
 def test_a_metric_without_a_value_is_broken(line):
     path = line / "settled.toml"
     path.write_text(SYSTEM.replace('metric = "arrived"', 'metric = "settled"'))
-    found = budget(path, stop_time=0.1, trust=True)
+    found = budget(path, workers=1, stop_time=0.1, trust=True)
     assert found.summary(found.series[0]) == "broken as it is"
     assert found.rows()[0][2:] == ("-", "broken: it is beyond the threshold at the end")
 
@@ -177,14 +177,14 @@ def test_command(evcosim, line, measured, tmp_path):
 
 
 def test_command_as_json_and_where_it_writes(evcosim, line, measured, tmp_path):
-    data = evcosim("budget", line / "line.toml", "--json", "--workers", "2").json
+    data = evcosim("budget", line / "line.toml", "--json", "--workers", "1").json
     assert data["series"] == as_data(measured[0])["series"]
     assert data["folder"] == "results/line-budget"
     assert {p.name for p in (tmp_path / data["folder"]).iterdir()} == set(data["files"])
 
 
 def test_settings_count(evcosim, line):
-    data = evcosim("budget", line / "line.toml", "--json", "--set", "picky.fails=5", "-o", "out").json
+    data = evcosim("budget", line / "line.toml", "--json", "--set", "picky.fails=5", "--workers", "1").json
     assert [each["first_broken"] for each in data["series"]] == ["+2 steps (20 ms)", None, "x 4"]
 
 

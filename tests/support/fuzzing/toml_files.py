@@ -9,6 +9,7 @@ import tomllib
 from typing import Any
 
 from evcosim.cosim.system.toml import DATA
+from support.every_key import SCENARIO
 from support.fuzzing.changes import DEEP, NUMBERS, TEXTS, Input, encoded, mutated
 
 SHORT = ["--stop-time", "0.05", "-q", "-o", "out"]
@@ -29,49 +30,21 @@ brake_force = { variable = "brake_force", factor = 1.0, offset = 0.0, convert = 
 [map.outputs]
 speed = "speed"
 """
-_EVERY = """
+_EVERY = f"""
 leave_out = ["rider", "planner", "battery"]
-[experiment]
-stop_time = 0.05
-step_size = 0.01
-[parameters.ecu]
-gain = 0.05
-[start.ecu]
-speed_bound = 20.0
-[[stimulus]]
-to = "ecu.throttle_request"
-table = [[0.0, 0.0], [0.02, 10.0]]
-[[stimulus]]
-to = "ecu.speed_bound"
-sine = { amplitude = 1.0, period = 1.0, mean = 20.0, phase = 0.0, delay = 0.0 }
-[[stimulus]]
-to = "ecu.acceleration_bound"
-ramp = { slope = 1.0, start = 0.0, end = 2.0, delay = 0.0 }
+{SCENARIO}
 [[stimulus]]
 to = "vehicle.brake_force"
 constant = 0.0
 [[event]]
-action = "override"
-time = 0.01
-variable = "ecu.throttle_request"
-value = 1.0
-[[event]]
 action = "set"
 time = 0.02
-variable = "vehicle.mass"
-value = 190.0
+variable = "vehicle.available_power"
+value = 9000.0
 [[figure.panels]]
 label = "Speed"
 unit = "km/h"
-limits = [0.0, 30.0]
-signals = [{ name = "vehicle.speed", label = "true", style = "solid", weight = 2.0 }]
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-threshold_unit = "km/h"
-after = 0.0
+signals = [{{ name = "vehicle.speed", label = "true", style = "solid", weight = 2.0 }}]
 """
 _STRANGE: tuple[Any, ...] = (
     math.inf,

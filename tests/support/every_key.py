@@ -1,0 +1,130 @@
+"""Files with a table for every numeric key: a system, a scenario of it, and a swap file for its vehicle.
+
+A key that is not in them can be added to its table. The scenario runs in the built-in scooter too.
+"""
+
+from __future__ import annotations
+
+SYSTEM = """
+name = "bench"
+record = ["*"]
+[experiment]
+start_time = 0.0
+stop_time = 0.03
+step_size = 0.01
+loop_tolerance = 1e-9
+[units.ecu]
+fmu = "BoundController"
+parameters = { gain = 0.05 }
+start = { speed_bound = 30.0 }
+[units.ecu.map.inputs]
+speed_measured = { variable = "speed_measured", factor = 1.0, offset = 0.0, convert = true }
+[units.ecu.map.outputs]
+throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
+[units.ecu.map.parameters]
+gain = { variable = "gain", factor = 1.0, offset = 0.0, convert = true }
+[units.vehicle]
+fmu = "Scooter"
+period = 0.01
+[buses.can0]
+dbc = "bench.dbc"
+[[connect]]
+from = "vehicle.speed"
+to = ["ecu.speed_measured"]
+via = "can0.EMD_Status.EMD_VehicleSpeed"
+initial = 0.0
+[[connect]]
+from = "ecu.throttle"
+to = ["vehicle.throttle"]
+via = "can0.VCU_Request.VCU_ThrottleRequest"
+[[figure.panels]]
+signals = [{ name = "vehicle.speed", weight = 1.0 }]
+unit = "km/h"
+limits = [0.0, 30.0]
+[[metrics]]
+name = "above"
+signal = "vehicle.speed"
+reduce = "share_above"
+threshold = 1.0
+threshold_unit = "km/h"
+after = 0.0
+per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
+[[metrics]]
+name = "equal"
+signal = "ecu.state"
+reduce = "share_equal"
+value = 1
+per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
+[budget]
+metric = "above"
+limit = 1.0
+"""
+"""Its database is `small_bench.DATABASE`."""
+
+SCENARIO = """
+[experiment]
+stop_time = 0.03
+step_size = 0.01
+[parameters.ecu]
+gain = 0.05
+[start.ecu]
+speed_bound = 20.0
+[[stimulus]]
+to = "ecu.throttle_request"
+constant = 1.0
+[[stimulus]]
+to = "vehicle.road_grade"
+table = [[0.0, 0.0], [0.02, 0.1]]
+[[stimulus]]
+to = "ecu.speed_bound"
+sine = { amplitude = 1.0, period = 1.0, mean = 20.0, phase = 0.0, delay = 0.0 }
+[[stimulus]]
+to = "ecu.acceleration_bound"
+ramp = { slope = 1.0, start = 0.0, end = 2.0, delay = 0.0 }
+[[event]]
+action = "override"
+time = 0.01
+variable = "ecu.throttle_request"
+value = 1.0
+[[figure.panels]]
+signals = [{ name = "vehicle.speed", weight = 1.0 }]
+unit = "km/h"
+limits = [0.0, 30.0]
+[[metrics]]
+name = "above"
+signal = "vehicle.speed"
+reduce = "share_above"
+threshold = 1.0
+after = 0.0
+per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
+[[metrics]]
+name = "equal"
+signal = "ecu.state"
+reduce = "share_equal"
+value = 1
+per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
+[identification]
+input = "ecu.throttle_request"
+output = "vehicle.speed"
+amplitude = 1.0
+at = [1.0]
+at_input = [1.0]
+sweep = [0.1, 0.6]
+duration = 100.0
+repeats = 1
+band = [0.1, 0.5]
+"""
+SWAP = """
+fmu = "Scooter"
+period = 0.01
+[parameters]
+mass = 200.0
+[start]
+brake_force = 0.0
+[map.inputs]
+throttle = { variable = "throttle", factor = 1.0, offset = 0.0, convert = true }
+[map.outputs]
+speed = { variable = "speed", factor = 1.0, offset = 0.0, convert = true }
+[map.parameters]
+mass = { variable = "mass", factor = 1.0, offset = 0.0, convert = true }
+"""
