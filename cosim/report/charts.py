@@ -14,6 +14,7 @@ from ..errors import ConfigError
 from ..figures.axes import TimeAxis
 from ..figures.check import check
 from ..figures.default_figure import MAX_PANELS, default_spec
+from ..figures.end import until
 from ..results.results import Results
 from ..system.figure_spec import FigureSpec
 from ..visible import flowing
@@ -42,6 +43,10 @@ def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Ev
     drawn = list(dict.fromkeys(signal.name for panel in panels for signal in panel.signals))
     found = recorded(results, drawn, page)
     signals = any_signals(results, found)
+    end = until(results, spec.until if spec else None).span[1]
+    said = [found.said, *([flowing(spec.note)] if spec and spec.note else [])]
+    if end < results.span[1]:
+        said.append(f"The figure ends at {end:g} s; 'all' shows the run to its end.")
     return element(
         TimeAxis.of(results),
         page,
@@ -49,7 +54,8 @@ def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Ev
         signals=signals,
         states=states_data(results, spec.shade if spec else None, found.items),
         events=events,
-        said=[found.said, *([flowing(spec.note)] if spec and spec.note else [])],
+        said=said,
+        end=end,
     )
 
 
@@ -69,10 +75,15 @@ def element(
     states: Mapping[str, Any] | None = None,
     events: Sequence[Event] = (),
     said: Sequence[str] = (),
+    end: float | None = None,
 ) -> str:
-    """Return panels over a time axis as HTML; `said` are the lines of text below them."""
+    """Return panels over a time axis as HTML; `said` are the lines of text below them.
+
+    They show the time up to `end` [s] at first (None: all of it).
+    """
+    ends = {"begin": axis.begin, "end": axis.end, "shown": axis.end if end is None else axis.scale * end}
     data = {
-        "time": {"scale": axis.scale, "unit": axis.unit, "begin": axis.begin, "end": axis.end},
+        "time": {"scale": axis.scale, "unit": axis.unit, **ends},
         **page.as_data(),
         "panels": panels,
         "signals": signals,

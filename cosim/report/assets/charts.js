@@ -215,9 +215,9 @@
     constructor(root, data) {
       Object.assign(this, { root, data, panels: [], grids: new Map(), columns: new Map() });
       this.key = `charts ${++sections}`;
-      const { begin, end } = data.time;
+      const { begin, end, shown } = data.time;
       this.whole = begin < end ? [begin, end] : [begin - 0.5, end + 0.5];
-      this.view = this.whole;
+      this.view = begin < shown ? [begin, shown] : this.whole;
     }
 
     async start() {
@@ -278,7 +278,7 @@
       this.panels.push(panel);
       this.stack.append(panel.root);
       panel.draw();
-      panel.show(this.time ?? this.data.time.end);
+      panel.show(this.time ?? this.view[1]);
       return panel;
     }
 
@@ -297,6 +297,7 @@
       for (const { plot } of this.panels) {
         if (plot && (plot.scales.x.min !== low || plot.scales.x.max !== high)) plot.setScale("x", { min: low, max: high });
       }
+      this.rest();
     }
 
     /** Zoom to `size` times the view, moved by `way` of its length, within the run. */
@@ -314,9 +315,9 @@
       this.show(plot.data[0][plot.cursor.idx]);
     }
 
-    /** Show the values at the end. */
+    /** Show the values at the end of what is in view. */
     rest() {
-      this.show(this.data.time.end);
+      this.show(Math.min(this.view[1], this.data.time.end));
     }
 
     show(time) {

@@ -87,7 +87,9 @@ def test_values_under_the_cursor_are_those_of_the_row(opened):
         )
     page.mouse("mouseMoved", 5, 5)
     page.settle()
-    assert values(page)[2] == f"{RUN['ecu.torque'][-1]:.6g} N·m"  # at rest: the end
+    assert values(page)[2] == f"{RUN['ecu.torque'][-1]:.6g} N·m"  # at rest: the end of what is in view
+    page.run(f"{CHARTS}.zoom(1, 2.5); {CHARTS}.rest()")
+    assert values(page)[2] == "2 N·m"
 
 
 def test_a_drag_zooms_all_panels_and_all_shows_the_run_again(opened):
