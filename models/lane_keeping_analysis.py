@@ -101,6 +101,11 @@ def riccati_residual(p: Parameters) -> float:
     return float(np.abs(a.T @ x + x @ a - x @ b @ k + q).max() / np.abs(q).max())  # (L5)
 
 
+def smallest_eigenvalue(p: Parameters) -> float:
+    """Return that of P: above 0 where it is positive definite."""
+    return float(np.linalg.eigvalsh(riccati_matrix(p))[0])
+
+
 def least_cost(p: Parameters, step: float) -> float:
     """Return 1/2 x_0' P x_0 for a displacement of `step` [m] from the reference."""
     return 0.5 * step**2 * float(riccati_matrix(p)[3, 3])  # (L6)

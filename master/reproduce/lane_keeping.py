@@ -113,10 +113,12 @@ def _models() -> dict[str, Found]:
     light = analysis.Parameters(mass=printed.row("lane_keeping", "other mass").number)
     apart = max(float(np.abs(light.a - _printed("A")).max()), float(np.abs(light.b - _printed("B")).max()))
     literal = _P.speed + (_P.speed + a[0][2]), a[2][0]  # (12) as it is printed
+    smallest = analysis.smallest_eigenvalue(_P)
     return equations | {
         "a13": _contradiction(literal[0], _printed("A")[0, 2], f"; {a[0][2]:.4f} with the minus"),
         "a33": _contradiction(literal[1], _printed("A")[2, 2], f"; {a[2][2]:.4f} by (8)"),
         "other mass": holds(f"{apart:.2f} with 1280 kg", apart > _HALF_A_DIGIT),
+        "definite": holds(f"{smallest:.2g}", smallest > 0.0, "above 0"),
         "riccati": at_most(analysis.riccati_residual(_P), 1e-9, digits=2),
         "cost": _cost(),
     }

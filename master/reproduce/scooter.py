@@ -78,6 +78,7 @@ def _page(found: dict[str, Any]) -> Page:
             **_supervisor(found),
             **_figure_8(found),
             **_figure_9(found),
+            **_acceleration(found),
         },
         own=_own(found, identified),
         pictures=_pictures(found, identified),
@@ -209,6 +210,18 @@ def _figure_9(found: dict[str, Any]) -> Findings:
         "a_b falls": at_most(rising, 1e-9, "m/s²", digits=2),
         "fig9": [
             at_most(_late_excess(found[f"fig9 {name}"]), 0.55, "km/h", digits=3, of=of)
+            for name, of in _VARIANTS.items()
+        ],
+    }
+
+
+def _acceleration(found: dict[str, Any]) -> Findings:
+    """Return what the observer and speed control do to the acceleration, in Fig. 8."""
+    raw, ours = (numbers.time_above_bound(found[f"fig8 {name}"]) for name in ("raw", "bus"))
+    return {
+        "filter lags": holds(f"{raw:.2f} s and {ours:.2f} s", raw > 1.5 * ours, "half as long again"),
+        "in VCS": [
+            at_most(numbers.settled_acceleration(found[f"fig8 {name}"]), 0.05, "m/s²", digits=2, of=of)
             for name, of in _VARIANTS.items()
         ],
     }

@@ -72,6 +72,12 @@ def settled_error(results: Results) -> float:
     return float(np.abs(over_bound(results)[settled]).max())
 
 
+def settled_acceleration(results: Results) -> float:
+    """Return the mean |acceleration| [m/s2] in velocity after 20 s."""
+    settled = (results.time > 20.0) & (results["ecu.state"] == 2)
+    return float(np.abs(results["vehicle.acceleration"][settled]).mean())
+
+
 def ripple(results: Results) -> float:
     """Return the rms of dg_e/dt [%/s] while a bound acts, without samples in which the state changes."""
     state, rate = results["ecu.state"], np.diff(results["ecu.throttle"]) / 0.01

@@ -53,6 +53,10 @@ def test_speed_over_the_bound(run):
     assert numbers.settled_error(run) == pytest.approx(0.3, rel=1e-4)
 
 
+def test_the_settled_acceleration_is_that_in_velocity(run):
+    assert numbers.settled_acceleration(run) == 1.0
+
+
 def test_ripple_leaves_the_switches_out(run):
     assert numbers.ripple(run) == pytest.approx(0.1 / np.sqrt(2.0), rel=0.05)
 
