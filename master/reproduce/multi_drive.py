@@ -10,6 +10,7 @@ from ...models import multi_drive_analysis as analysis
 from ...models.wheel_speed_controller import WheelSpeedController
 from ..simulation import simulate
 from ..studies.parallel import Task
+from . import multi_drive_cases as cases
 from . import multi_drive_numbers as numbers
 from .multi_drive_numbers import DENSITY, FINE_STEPS, largest, launch, maneuver, of_print
 from .multi_drive_pictures import Effect, pictures
@@ -38,6 +39,7 @@ def _runs() -> tuple[Task[Any], ...]:
         _run("machine 3 ms", {}, ideal=True),
         *(_run(f"ideal {ms} ms", _lag(ms) | _IDEAL, ideal=True) for ms in (1, 3, 6)),
         *(Task(f"coupling {kappa}", _with_coupling, (kappa,)) for kappa in _COUPLINGS),
+        *cases.tasks(),
     )
 
 
@@ -98,6 +100,7 @@ def _page(found: dict[str, Any]) -> Page:
             **numbers.torques(found),
             **numbers.comparison(found),
             **numbers.contradictions(found),
+            **cases.findings(found),
             "launch torque": near(
                 float(found["launch mimo"]["left_drive.motor_torque"].max()),
                 of_print("launch torque"),
@@ -114,6 +117,9 @@ def _page(found: dict[str, Any]) -> Page:
             " --set controller.integral_gain=600",
             "evcosim run multi_drive --set left_drive.ideal=true --set right_drive.ideal=true",
             "evcosim run multi_drive --set vehicle.air_density=1.164",
+            "evcosim run multi_drive -s slope",
+            "evcosim run multi_drive -s right_curve",
+            "evcosim run multi_drive -s battery",
             "evcosim run multi_drive -s launch",
         ),
     )
@@ -132,6 +138,7 @@ def _own(found: dict[str, Any]) -> Findings:
         "torque of rolling at 60 km/h": near(float(results["vehicle.rolling_torque"][0]), 137.9, 0.05, "N·m"),
         "torque of a slope of 10 %": near(float(results["vehicle.slope_torque"].max()), 1372.0, 0.5, "N·m"),
         **_controllers(found),
+        **cases.own(found),
         **_launches(found),
         **_drives(found),
     }

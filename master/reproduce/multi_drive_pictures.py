@@ -13,7 +13,7 @@ from ...cosim.results.results import Results, ResultVariable
 from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from ...models.induction_motor_drive import InductionMotorDrive
-from . import multi_drive_figures
+from . import multi_drive_cases, multi_drive_figures
 from .page import Picture
 
 _CONTROLLERS = {"mimo": "MIMO-PID", "pid": "PIDs", "stronger": "PIDs, gains x 1.5"}
@@ -36,6 +36,7 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
     launches = _beside({name: found[f"launch {name}"] for name in ("mimo", "pid")})
     return (
         *multi_drive_figures.pictures(found),
+        *multi_drive_cases.pictures(found),
         Picture(
             "resistance",
             "Beyond the paper: torques of slope, rolling and air; 93.2 N·m need air of 1.164 kg/m³",

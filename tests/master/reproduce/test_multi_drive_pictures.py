@@ -24,6 +24,9 @@ def test_phase_currents_are_three_sines_of_the_effective_value(multi_drive_runs)
 def test_the_pictures_are_those_of_the_paper_and_those_beyond(multi_drive_page, tmp_path):
     stems = [picture.stem for picture in multi_drive_page.pictures]
     assert stems[8:] == [
+        "battery",
+        "slips",
+        "cases",
         "resistance",
         "currents",
         "phases",
@@ -33,7 +36,7 @@ def test_the_pictures_are_those_of_the_paper_and_those_beyond(multi_drive_page, 
         "coupling",
         "machine",
     ]
-    beyond = [picture.caption for picture in multi_drive_page.pictures[8:] if picture.stem != "launch"]
+    beyond = [picture.caption for picture in multi_drive_page.pictures[11:] if picture.stem != "launch"]
     assert all(caption.startswith("Beyond the paper") for caption in beyond)
     written = {path.name for path in write_page(multi_drive_page, tmp_path)}
     assert {"multi_drive.md", "multi_drive.html"} <= written
