@@ -74,6 +74,10 @@ class RunError(RuntimeError):
         return visible(super().__str__())
 
 
+class ShortageError(RunError):
+    """This machine has no room, file, process or memory left; neither the input nor a unit is to blame."""
+
+
 def nearest(word: str, words: Iterable[str]) -> str:
     """Return ` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
     close = difflib.get_close_matches(word, list(words), n=1, cutoff=0.6)

@@ -24,9 +24,12 @@ _children: dict[int, Callable[[], None]] = {}  # by process id, what kills it
 
 
 def temporary_folder() -> Path:
-    """Make a folder of this user alone, where the system has temporary files; `remove_folder` ends it."""
+    """Make a folder of this user alone, where the system has temporary files; `remove_folder` ends it.
+
+    Raises OSError where there is no room, or no folder that can be written.
+    """
     while True:
-        folder = Path(tempfile.gettempdir()) / f"evcosim-{secrets.token_hex(6)}"
+        folder = Path(temporary_files()) / f"evcosim-{secrets.token_hex(6)}"
         _folders.add(folder)
         try:
             folder.mkdir(mode=0o700)
@@ -36,6 +39,15 @@ def temporary_folder() -> Path:
         except BaseException:
             _folders.discard(folder)
             raise
+
+
+def temporary_files() -> str:
+    """Return the folder of temporary files. Raises OSError where there is none that can be written."""
+    try:
+        return tempfile.gettempdir()
+    except FileNotFoundError:
+        os.close(os.open(os.devnull, os.O_RDONLY))  # raises the reason where no file can be opened at all
+        raise
 
 
 def remove_folder(folder: Path) -> None:

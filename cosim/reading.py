@@ -43,6 +43,6 @@ def content(path: Path, about: str = "") -> bytes:
         raise ConfigError(f"{path}: {about}has {size} bytes; at most {LARGEST} are read")
     try:
         with path.open("rb") as file:
-            return file.read(LARGEST)
+            return file.read(min(size + 1, LARGEST))  # as much as it asks for, Python takes at once
     except OSError as error:
         raise ConfigError(f"{path}: {about}cannot be read: {error.strerror or error}") from error

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+from . import shortage
 from .errors import ConfigError
 from .file_names import check_name, flaw_of_name
 from .leftovers import partial
@@ -94,7 +95,7 @@ def reason(path: Path, error: OSError) -> str:
     for folder in path.parents:
         if folder.exists() and not folder.is_dir():
             return f"{folder} is a file, not a folder"
-    return error.strerror or str(error)
+    return shortage.reason(error)
 
 
 def write_text(path: Path, text: str) -> None:

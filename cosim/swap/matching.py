@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from ..errors import ConfigError
 from ..interface import UnitInterface, VariableInfo
+from ..shortage import SCIPY, require_memory
 from ..system.system import MapEntry, UnitEntry
 from ..units.conversion import conversion
 from ..units.definition import defined
@@ -155,6 +156,8 @@ def _assigned(
     if not names or not left:
         return same
     import numpy as np
+
+    require_memory(SCIPY, "scipy")
     from scipy.optimize import linear_sum_assignment  # 0.2 s, and a report alone needs it
 
     table = np.array([[scores[name][j] for j in left] for name in names])

@@ -28,6 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from . import interrupts
 
         interrupts.install()  # before anything that takes time
+        _calculate_in_one_thread()
         from . import early_exit
 
         early_exit.install()
@@ -37,6 +38,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
             early_exit.leave()
             interrupts.leave()
     return _main(arguments)
+
+
+def _calculate_in_one_thread() -> None:
+    """Let libraries of linear algebra start no threads, unless the user says otherwise.
+
+    Here they have nothing to share out, each thread takes 40 MB of addresses, and one that cannot be started
+    (`ulimit -u`) ends the process as Ctrl-C does. The processes of isolated units do without, too.
+    """
+    import os
+
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def _main(arguments: Sequence[str] | None) -> int:

@@ -15,10 +15,12 @@ import os
 import sys
 from typing import Any
 
+from ...cosim.shortage import memory_left, no_memory
 from ..fmi import crash
 from . import interrupts
 from .failures import FAILED
 
+_LITTLE = 100e6  # bytes of memory
 _ADVICE = "run again with --isolation process, and the run says which step it was"
 
 
@@ -55,6 +57,8 @@ class _Guard:
         unit = last_unit()
         who = f"unit {unit}" if unit else "an FMU"
         error = f"{who} ended the process of evcosim: it called exit(); {_ADVICE}"
+        if not unit and memory_left() < _LITTLE:
+            error = f"a library ended the process of evcosim, as some do without memory: {no_memory()}"
         interrupts.end_failed(error, FAILED)
 
 

@@ -15,6 +15,8 @@ from . import interrupts, outputs
 from .typed_paths import check_given
 
 _SCREEN = 20  # lines of a message at most
+_NO_MEMORY = "failed to map segment from shared object"  # the loader's message for a library
+_NO_THREAD = "can't start new thread"  # Python's message, whose error has no class of its own
 
 FAILED, WRONG_USE, BROKEN_PIPE = 1, 2, 141
 
@@ -94,6 +96,7 @@ def complain(message: str, whole: bool = False) -> None:
 
 def _judged(error: Exception) -> tuple[int, str]:
     """Return exit code and message of an error."""
+    from ...cosim import shortage
     from ...cosim.errors import ConfigError, RunError
 
     if hasattr(error, "format_message"):  # a usage error: of click, or of typer's own copy of click
@@ -104,7 +107,11 @@ def _judged(error: Exception) -> tuple[int, str]:
         return FAILED, str(error)
     if isinstance(error, OSError) and error.strerror:
         place = f"{error.filename}: " if error.filename else ""
-        return FAILED, f"{place}{error.strerror}"
+        return FAILED, f"{place}{shortage.reason(error)}"
+    if isinstance(error, MemoryError) or _NO_MEMORY in str(error):
+        return FAILED, shortage.no_memory()
+    if isinstance(error, RuntimeError) and str(error) == _NO_THREAD:
+        return FAILED, shortage.no_thread()
     said = f": {error}" if str(error) else ""
     return FAILED, f"unexpected error: {type(error).__name__}{said}\n--debug shows where it happened"
 

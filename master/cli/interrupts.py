@@ -79,8 +79,10 @@ def install() -> None:
     if os.name == "posix":  # Windows has no wake-up by a pipe: there the handler alone does it
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
-        signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-        threading.Thread(target=_watch, args=(reader,), name="evcosim signals", daemon=True).start()
+        thread = threading.Thread(target=_watch, args=(reader,), name="evcosim signals", daemon=True)
+        with contextlib.suppress(RuntimeError):  # no thread can be started: the handler alone does it
+            thread.start()
+            signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
 
 
 def leave() -> None:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from .console import Show
     from .interrupts import Interrupts
 
+_FIGURE = 100e6  # bytes of memory that drawing takes
+
 
 @takes_run_options()
 def run(
@@ -226,9 +228,13 @@ def _write(
 
 
 def _draw(finished: FinishedRun, wanted: Wanted) -> None:
-    """Write the figure and the page of a run. Raises ConfigError."""
+    """Write the figure and the page of a run, if there is memory for it. Raises ConfigError."""
+    from ...cosim.shortage import too_little_memory
     from .outputs import figure_of, write_figure, write_report
 
+    if (wanted.figure or wanted.report) and (said := too_little_memory(_FIGURE, "drawing")):
+        finished.remarks.append(f"no figure and no page: {said}")
+        return
     results, folder = finished.results, finished.folder.path
     if wanted.figure or wanted.report:
         results.figure = figure_of(results)  # which both draw

@@ -11,6 +11,7 @@ import threading
 import time
 
 from ...cosim.errors import RunError
+from ...cosim.shortage import no_thread
 from .engine import Engine
 
 LOOK = 0.3  # s
@@ -20,7 +21,7 @@ FIRST = 0.8  # s: the first rows are saved that long after the begin of the run
 class RowKeeper:
     """A thread that saves an engine's rows until `stop`. It begins with the object.
 
-    `notice` says why rows cannot be saved; "" while they can.
+    `notice` says why rows cannot be saved while the run goes on; "" while they can.
     """
 
     notice = ""
@@ -30,13 +31,19 @@ class RowKeeper:
         self._begin = time.monotonic()
         self._chunk, self._done = -1, 0  # the chunk that was under way at the last look, and its rows then
         self._over = threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="evcosim rows", daemon=True)
-        self._thread.start()
+        self._thread: threading.Thread | None = None
+        thread = threading.Thread(target=self._watch, name="evcosim rows", daemon=True)
+        try:
+            thread.start()
+            self._thread = thread
+        except RuntimeError:  # the run needs no thread, and writes its rows at the end
+            self.notice = f"rows are not saved while it runs: {no_thread()}"
 
     def stop(self) -> None:
         """End the thread."""
         self._over.set()
-        self._thread.join()
+        if self._thread is not None:
+            self._thread.join()
 
     def save_all(self) -> int:
         """Save the rows up to now, those of a chunk under way too, and return their number. Raises RunError.

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import get_args
 
 from ...cosim.errors import ConfigError, nearest
+from ...cosim.shortage import too_little_memory
 from ...cosim.system.system import EngineName
 from .engine import Engine
 from .python_engine import PythonEngine
+
+_NUMBA = 450e6  # bytes of address space for numba and its libraries, which do not fail without them but hang
 
 
 def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
@@ -20,6 +23,8 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
         raise ConfigError(f"there is no engine '{wanted}'{nearest(str(wanted), known)}: {', '.join(known)}")
     if wanted == "python":
         return PythonEngine, ""
+    if said := too_little_memory(_NUMBA, "the compiled engine"):
+        return PythonEngine, f"{said}: engine python"
     try:
         from .compiled.engine import CompiledEngine
     except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries

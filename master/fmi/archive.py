@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import IO
 
 from ...cosim import leftovers
-from ...cosim.errors import ConfigError
+from ...cosim.errors import ConfigError, ShortageError
+from ...cosim.shortage import is_shortage, of_temporary_files
 
 _VARIABLE = "EVCOSIM_FMU_LIMITS"
 _BLOCK = 1 << 20
@@ -191,10 +192,14 @@ def read_entry(path: Path, name: str) -> bytes:
 def extract(path: Path) -> Path:
     """Extract an archive into a new temporary folder, which the caller removes.
 
-    Raises FmuError naming the entry; then no folder is left.
+    Raises FmuError naming the entry, ShortageError where the disk is full or a limit reached; then no folder
+    is left.
     """
     entries = entries_of(path)
-    folder = leftovers.temporary_folder()
+    try:
+        folder = leftovers.temporary_folder()
+    except OSError as error:
+        raise ShortageError(f"{path}: cannot be extracted: {of_temporary_files(error)}") from error
     left, place = archive_limits().size, ""
     try:
         with zipfile.ZipFile(path) as archive:
@@ -211,6 +216,9 @@ def extract(path: Path) -> Path:
         leftovers.remove_folder(folder)
         if isinstance(error, FmuError) or not isinstance(error, Exception):
             raise
+        if is_shortage(error):
+            said = of_temporary_files(error)
+            raise ShortageError(f"{path}: {place}cannot be extracted: {said}") from error
         reason = getattr(error, "strerror", None) or error
         raise FmuError(f"{path}: {place}cannot be extracted: {reason}") from error
     return folder

@@ -10,6 +10,7 @@ import dataclasses
 import threading
 from pathlib import Path
 
+from ...cosim.errors import ShortageError
 from ...cosim.leftovers import remove_folder
 from .fmu import Fmu, FmuError, is_true
 
@@ -27,7 +28,8 @@ _lock = threading.Lock()
 def take(fmu: Fmu, unit: str) -> Path:
     """Return the folder of an FMU for one more unit.
 
-    Raises FmuError where it cannot be extracted, or can be instantiated once in a process and is.
+    Raises FmuError where it cannot be extracted, or can be instantiated once in a process and is;
+    ShortageError naming the unit where there is no room for it.
     """
     with _lock:
         there = _folders.get(fmu.digest)
@@ -37,10 +39,17 @@ def take(fmu: Fmu, unit: str) -> Path:
                 f"(canBeInstantiatedOnlyOncePerProcess), and unit '{there.units[0]}' is it already: unit "
                 f"'{unit}' needs isolation = \"process\""
             )
-        folder = there or _Folder(fmu.extract())
+        folder = there or _Folder(_extracted(fmu, unit))
         _folders[fmu.digest] = folder
         folder.units.append(unit)
         return folder.path
+
+
+def _extracted(fmu: Fmu, unit: str) -> Path:
+    try:
+        return fmu.extract()
+    except ShortageError as error:
+        raise ShortageError(f"unit '{unit}': {error}") from error
 
 
 def give_back(fmu: Fmu, unit: str) -> None:

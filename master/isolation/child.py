@@ -16,6 +16,7 @@ import resource
 import signal
 import socket
 import sys
+import tempfile
 import threading
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,7 @@ def main() -> None:
     connection, memory, life = map(int, sys.argv[1:4])
     for descriptor in (connection, memory, life):
         os.set_inheritable(descriptor, False)  # processes of the FMU do not keep them open
+    tempfile.tempdir = os.environ["TMPDIR"]  # where it is full, too: the others are not removed at the end
     _end_with_master(life)
     _adopt()
     _limit(resource.RLIMIT_CORE, 0.0)
@@ -207,7 +209,11 @@ class Server:
 
 def _failure(error: Exception) -> bytes:
     kind = type(error).__name__
-    said = str(error) if kind in ("FmuError", "UnitError", "ConfigError") else f"{kind}: {error}"
+    said = (
+        str(error)
+        if kind in ("FmuError", "UnitError", "ConfigError", "ShortageError")
+        else f"{kind}: {error}"
+    )
     return json.dumps({"error": said[: framing.LONGEST // 8], "kind": kind}).encode()
 
 

@@ -40,24 +40,26 @@ class ProcessLimits:
 class Process:
     """A child that was started, and loads the FMU of `loading` (arguments of `child.Server.do_load`) at once.
 
-    `connection` is its socket; a call of it raises TimeoutError when a quarter of a second has passed.
+    `connection` is its socket; a call of it raises TimeoutError when a quarter of a second has passed. Raises
+    OSError where the system has no room, file or process for it.
     """
 
     def __init__(self, loading: tuple[Any, ...], memory: int, limits: ProcessLimits) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._folder = leftovers.temporary_folder()
-        self._output = tempfile.TemporaryFile(prefix="evcosim-")  # noqa: SIM115 - closed by `close`
-        self.connection, theirs = socket.socketpair()
-        end, life = os.pipe()
-        self._life = os.fdopen(life, "wb", 0)
-        self.connection.settimeout(_LOOK)
-        try:
-            with theirs, os.fdopen(end, "rb", 0):
-                (self._folder / framing.LOADING).write_bytes(pickle.dumps(loading))
-                self._start((theirs.fileno(), memory, end), limits)
-        except BaseException:
-            self.close()
-            raise
+        with contextlib.ExitStack() as held, contextlib.ExitStack() as given:
+            held.callback(self.kill)
+            self._folder = held.enter_context(leftovers.temporary())
+            self._output = held.enter_context(tempfile.TemporaryFile(prefix="evcosim-"))
+            self.connection, theirs = socket.socketpair()
+            held.enter_context(self.connection)
+            given.enter_context(theirs)
+            end, life = os.pipe()
+            held.enter_context(os.fdopen(life, "wb", 0))
+            given.enter_context(os.fdopen(end, "rb", 0))
+            self.connection.settimeout(_LOOK)
+            (self._folder / framing.LOADING).write_bytes(pickle.dumps(loading))
+            self._start((theirs.fileno(), memory, end), limits)
+            self._held = held.pop_all()
 
     def _start(self, descriptors: tuple[int, ...], limits: ProcessLimits) -> None:
         self._process = subprocess.Popen(
@@ -118,9 +120,7 @@ class Process:
         """Kill it and release all that belongs to it."""
         self.kill()
         self._process = None
-        for each in (self.connection, self._life, self._output):
-            each.close()
-        leftovers.remove_folder(self._folder)
+        self._held.close()
 
 
 def _kill(process: int, alive: bool = True) -> None:

@@ -30,7 +30,7 @@ _VALUES = -(-(_WARNED_AT + KINDS * _RECORD) // 16) * 16
 
 
 def create(count: int) -> int:
-    """Return the descriptor of a new memory for `count` values; the caller closes it."""
+    """Return the descriptor of a new memory for `count` values; the caller closes it. Raises OSError."""
     size = 8 * (_VALUES + count)
     import fcntl  # Windows has none, and needs none
 
@@ -39,8 +39,14 @@ def create(count: int) -> int:
             file.truncate(size)
             return os.dup(file.fileno())
     descriptor = os.memfd_create("evcosim", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-    os.ftruncate(descriptor, size)
-    fcntl.fcntl(descriptor, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL)
+    try:
+        os.ftruncate(descriptor, size)
+        fcntl.fcntl(
+            descriptor, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_SEAL
+        )
+    except OSError:
+        os.close(descriptor)
+        raise
     return descriptor
 
 

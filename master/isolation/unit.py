@@ -14,9 +14,10 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.errors import ConfigError
+from ...cosim.errors import ConfigError, ShortageError
 from ...cosim.interface import UnitInterface, Value
 from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
+from ...cosim.shortage import of_temporary_files
 from ...cosim.visible import on_one_line
 from ..fmi.fmu import Fmu, FmuError, check_runnable
 from ..fmi.log import UnitLog
@@ -36,7 +37,8 @@ _OF_ONE_VARIABLE = ("get", "set")
 class IsolatedUnit:
     """A `unit.Unit` in a process of its own, which loads while the caller goes on; `bind` waits for it.
 
-    Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer.
+    Raises FmuError when the FMU cannot be run here, UnitError when its process ends or does not answer,
+    ShortageError when this machine has no room, file or process for it.
     """
 
     apart = True
@@ -60,14 +62,11 @@ class IsolatedUnit:
         self.hand: Hand | None = None
         self._deadline = 0.0
         there = dataclasses.replace(fmu, path=fmu.path.resolve())  # its working folder is another one
-        descriptor = shared.create(2 * len(interface.variables))
         try:
-            self._shared = shared.Shared(descriptor)
-            self._slots = self._shared.slots
-            self._slots[S.SPIN], self._turn[L.LOOKING] = handover.spin_time(), LOOK_TIME
-            self._process = Process((there, name, interface, tolerance), descriptor, limits)
-        finally:
-            os.close(descriptor)
+            self._begin((there, name, interface, tolerance))
+        except OSError as error:
+            said = of_temporary_files(error)
+            raise ShortageError(f"unit '{name}': its process cannot be started: {said}") from error
         self._side = handover.Side(
             self._process.connection,
             self._slots,
@@ -75,6 +74,17 @@ class IsolatedUnit:
             (S.ANSWER, S.CHILD_SLEEPS),
             self._slots[S.SPIN],
         )
+
+    def _begin(self, loading: tuple[Fmu, str, UnitInterface, float | None]) -> None:
+        """Make the memory that both share, and start the process. Raises OSError."""
+        descriptor = shared.create(2 * len(self.interface.variables))
+        try:
+            self._shared = shared.Shared(descriptor)
+            self._slots = self._shared.slots
+            self._slots[S.SPIN], self._turn[L.LOOKING] = handover.spin_time(), LOOK_TIME
+            self._process = Process(loading, descriptor, self._limits)
+        finally:
+            os.close(descriptor)
 
     @property
     def warnings(self) -> int:
@@ -155,9 +165,13 @@ class IsolatedUnit:
         if not isinstance(answer, dict):
             raise UnitError(f"unit '{self.name}': its process sent an invalid answer to {self._asked}")
         if "error" in answer:
-            of_the_file = answer.get("kind") in ("FmuError", "ConfigError")
             said = str(answer["error"])
-            raise FmuError(*said.split("\n")) if of_the_file else UnitError(said)
+            match answer.get("kind"):
+                case "FmuError" | "ConfigError":
+                    raise FmuError(*said.split("\n"))
+                case "ShortageError":
+                    raise ShortageError(said)
+            raise UnitError(said)
         return answer.get("value")
 
     def _ended(self, error: Exception) -> NoReturn:

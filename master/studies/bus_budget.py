@@ -11,7 +11,7 @@ from typing import Unpack
 
 from ...cosim.analysis.bus_budget import Budget, Point, series
 from ...cosim.can.bus_settings import BusVariation
-from ...cosim.errors import ConfigError, nearest
+from ...cosim.errors import ConfigError, ShortageError, nearest
 from ...cosim.results.metrics import Metric, evaluate
 from ...cosim.system.metric_spec import MetricSpec
 from ...cosim.system.run_options import RunOptions
@@ -20,7 +20,9 @@ from ...cosim.system.selection import metric_specs
 from ...cosim.system.system import BudgetEntry, System
 from ..prepare import Prepared, prepare
 from ..simulation import simulate
-from .parallel import Outcome, Task, TaskProgress, run_all
+from .parallel import Outcome, Task, TaskError, TaskProgress, run_all
+
+_OF_THE_MACHINE = (ShortageError.__name__, "MemoryError", "OSError", "ImportError")  # a failure's kinds
 
 
 def budget(
@@ -36,7 +38,8 @@ def budget(
     The arguments are those of `simulate`, except for `bus` and `ideal`, which a budget sets itself, and
     `record`, since it keeps no results;
     `workers` and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
-    Raises ConfigError before any run; a run that fails is a broken point.
+    Raises ConfigError before any run; a run that fails is a broken point, but TaskError where this machine
+    lacks memory or room.
     """
     for name in ("bus", "ideal"):
         if options.get(name):
@@ -80,7 +83,12 @@ def measure(
 
 
 def _judged(point: Point, outcome: Outcome[Metric]) -> Point:
-    """Return the point with the value of its run, or marked as failed with the reason."""
+    """Return the point with the value of its run, or marked as failed with the reason.
+
+    Raises TaskError for a run that this machine had no memory or room for: it says nothing of the buses.
+    """
+    if outcome.failure is not None and outcome.failure.kind in _OF_THE_MACHINE:
+        raise TaskError(outcome.name, outcome.failure)
     if outcome.failure is not None:
         return dataclasses.replace(point, reason=outcome.failure.reason, failed=True)
     metric = outcome.result()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 import tempfile
@@ -11,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim import leftovers
+from support.forked import forked
+from support.needs import need_linux
 
 
 @pytest.fixture(autouse=True)
@@ -20,6 +23,19 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for name in ("_folders", "_files", "_children"):
         monkeypatch.setattr(leftovers, name, type(getattr(leftovers, name))())
     yield tmp_path
+
+
+def test_without_a_file_that_can_be_opened_that_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    need_linux()
+
+    def refused(most: int) -> str:
+        tempfile.tempdir = None  # so that it is looked for
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+        with pytest.raises(OSError) as caught:
+            leftovers.temporary_folder()
+        return str(caught.value.strerror)
+
+    assert forked(lambda: refused(0)).value == "Too many open files"
 
 
 def test_a_folder_lasts_as_long_as_its_block(scratch: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -10,12 +11,27 @@ import pytest
 from evcosim.cosim import reading
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.visible import visible
+from support.forked import forked
+from support.needs import need_linux
 
 
 def test_a_file_is_read_whole(tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes(b"\0text\r\n" * 1000)
     assert reading.content(path) == b"\0text\r\n" * 1000
+
+
+def test_a_small_file_takes_little_memory(tmp_path: Path) -> None:
+    need_linux()
+    path = tmp_path / "file"
+    path.write_bytes(b"text")
+
+    def within() -> bytes:
+        used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + 10_000_000, resource.RLIM_INFINITY))
+        return reading.content(path)
+
+    assert forked(within).value == b"text"
 
 
 def test_what_is_no_file_is_refused_naming_it(tmp_path: Path) -> None:

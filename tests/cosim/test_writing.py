@@ -55,7 +55,9 @@ def test_a_failure_leaves_no_trace(failure: BaseException, tmp_path: Path) -> No
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["a.csv"]
     if expected is ConfigError:
-        assert str(raised.value) == f"{path}: cannot be written: No space left on device"
+        assert (
+            str(raised.value) == f"{path}: cannot be written: No space left on device: make room on the disk"
+        )
 
 
 def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:

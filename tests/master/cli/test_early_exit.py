@@ -64,6 +64,20 @@ def test_every_exit_is_caught_but_that_at_the_end(call):
     assert (run.returncode, run.stderr) == (3 if "3" in call else 0, "")
 
 
+def test_a_library_that_gives_up_without_memory_is_no_fmu():
+    need_linux()
+    code = (
+        "import ctypes, resource; from evcosim.master.cli import early_exit; early_exit.install()\n"
+        "used = int(open('/proc/self/statm').read().split()[0]) * resource.getpagesize()\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (used + 50_000_000,) * 2); ctypes.CDLL(None).exit(0)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.returncode == 1
+    assert run.stderr.startswith(
+        "evcosim: a library ended the process of evcosim, as some do without memory: no memory is left: "
+    )
+
+
 def test_a_copy_of_the_process_may_exit():
     need_linux()
     code = (

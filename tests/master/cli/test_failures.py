@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shlex
 import shutil
 import subprocess
@@ -228,6 +229,29 @@ def test_unexpected_exception_is_one_line_and_a_hint(evcosim, monkeypatch):
     assert answer.code == 1
     assert answer.err.splitlines()[0] == "evcosim: unexpected error: ZeroDivisionError: by zero"
     assert "--debug" in answer.err
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (MemoryError(), "no memory is left"),
+        (ImportError("a.so: failed to map segment from shared object"), "no memory is left"),
+        (RuntimeError("can't start new thread"), "no further thread can be started"),
+        (OSError(errno.ENOSPC, "No space left on device"), "No space left on device: make room on the disk"),
+        (
+            OSError(errno.EMFILE, "Too many open files", "/a"),
+            "/a: Too many open files: the limit of open files",
+        ),
+    ],
+)
+def test_what_the_machine_lacks_is_said_and_no_unexpected_error(evcosim, monkeypatch, error, words):
+    def lacking():
+        raise error
+
+    monkeypatch.setattr("evcosim.cosim.system.system.system_names", lacking)
+    answer = evcosim("list")
+    assert answer.code == 1
+    assert answer.err.startswith(f"evcosim: {words}")
 
 
 @pytest.mark.parametrize("where", ["before", "after", "environment"])

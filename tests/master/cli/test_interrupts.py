@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import random
 import signal
+import subprocess
 import sys
 import time
 
@@ -135,3 +136,17 @@ def test_the_words_and_the_codes_of_signals():
     assert interrupts.exit_code(interrupts.Interrupted(signal.SIGTERM)) == 143
     assert interrupts.words(signal.SIGINT) == "interrupted"
     assert interrupts.words(signal.SIGHUP) == "ended by SIGHUP"
+
+
+def test_where_no_thread_can_be_started_a_signal_still_ends_the_command():
+    code = (
+        "import os, signal, threading, time\n"
+        'def none(thread): raise RuntimeError("can\'t start new thread")\n'
+        "threading.Thread.start = none\n"
+        "from evcosim.master.cli import interrupts\n"
+        "interrupts.install(); os.kill(os.getpid(), signal.SIGTERM); time.sleep(10)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert (run.returncode, run.stderr) == (143, "evcosim: ended by SIGTERM\n")

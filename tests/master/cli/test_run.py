@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import resource
+import subprocess
+import sys
 
 import pytest
 
 from evcosim.cosim.results.results import Results
 from support.answers import refused
 from support.c_fmu import mixed_fmu, typed_fmu
+from support.needs import need_linux
 
 
 def test_run_says_and_writes_what_happened(evcosim, tmp_path):
@@ -47,6 +51,34 @@ def test_run_as_json(evcosim):
 def test_run_quietly(evcosim):
     answer = evcosim("run", "scooter", "--stop-time", "1.1", "--no-plot", "--quiet")
     assert (answer.code, answer.out, answer.err) == (0, "", "")
+
+
+def test_a_figure_for_which_there_is_no_memory_is_left_out(evcosim, monkeypatch, tmp_path):
+    monkeypatch.setattr("evcosim.cosim.shortage.memory_left", lambda: 220e6)
+    monkeypatch.setattr("evcosim.master.cli.run._FIGURE", 230e6)
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "--quiet", "--output", str(tmp_path / "out"))
+    assert answer.code == 0
+    assert "warning: no figure and no page: drawing needs 230 MB of memory, and 220 MB are left" in answer.err
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["results.csv", "run.json"]
+
+
+@pytest.mark.parametrize("most", [300_000, 450_000, 600_000])
+def test_a_command_with_little_memory_runs_or_says_so(most, tmp_path):
+    need_linux()
+    limit = most * 1024
+    run = subprocess.run(
+        [sys.executable, "-m", "evcosim", "run", "scooter", "--stop-time", "1", "-q", "-o", tmp_path / "out"],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip # the arguments together
+    assert "unexpected" not in run.stderr and "Traceback" not in run.stderr
+    said = f"the limit of memory is {most} KiB (`ulimit -v`"
+    if run.returncode:
+        assert run.returncode == 1
+        assert run.stderr.startswith("evcosim: a run needs 200 MB of memory, and ") and said in run.stderr
+    else:
+        assert len(Results.read(tmp_path / "out")) == 101
+        assert said in run.stderr or not run.stderr
 
 
 def test_same_run_same_bytes_and_settings_count(evcosim, tmp_path):

@@ -127,3 +127,19 @@ def test_a_disk_that_refuses_is_a_notice(tmp_path: Path, monkeypatch: Any) -> No
     keeper._thread.join()
     assert "rows are not saved while it runs: what the run records cannot be kept in" in keeper.notice
     assert len(engine.store) == 2
+
+
+def test_without_a_thread_the_run_goes_on_with_a_notice(tmp_path: Path, monkeypatch: Any) -> None:
+    def none(thread: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    path = tmp_path / "rows"
+    engine = Engine(path)
+    with monkeypatch.context() as patched:
+        patched.setattr(threading.Thread, "start", none)
+        keeper = kept(engine, patched)
+    assert keeper.notice.startswith("rows are not saved while it runs: no further thread can be started")
+    engine.store.append(rows(1.0, 2.0))
+    assert keeper.save_all() == 2  # as at a signal
+    assert on_disk(path) == [1.0, 2.0]
+    keeper.stop()

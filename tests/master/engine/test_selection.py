@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from evcosim.cosim.errors import ConfigError
+from evcosim.cosim import shortage
+from evcosim.cosim.errors import ConfigError, ShortageError
 from evcosim.master.engine.selection import engine_class
 from evcosim.master.simulation import Simulation
 
@@ -41,6 +42,18 @@ def test_a_numba_whose_libraries_find_no_memory_is_as_none(monkeypatch):
     monkeypatch.setattr(sys, "meta_path", [NoMemory(), *sys.meta_path])
     found, notice = engine_class()
     assert found.name == "python" and "Could not find/load shared object file" in notice
+
+
+def test_too_little_memory_for_numba_is_as_none(monkeypatch):
+    monkeypatch.setattr(shortage, "memory_left", lambda: 300e6)
+    found, notice = engine_class()
+    assert found.name == "python"
+    assert notice.startswith("the compiled engine needs 450 MB of memory, and 300 MB are left")
+    with Simulation("scooter", stop_time=1.0) as simulation:
+        assert notice in simulation.warnings
+    monkeypatch.setattr(shortage, "memory_left", lambda: 100e6)
+    with pytest.raises(ShortageError, match=r"^a run needs 200 MB of memory, and 100 MB are left"):
+        Simulation("scooter")
 
 
 def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):

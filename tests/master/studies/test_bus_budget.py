@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import resource
 
 import pytest
 
@@ -15,7 +16,10 @@ from evcosim.cosim.system.selection import metric_specs
 from evcosim.cosim.system.system import load_system, system_names
 from evcosim.fmus.build import build_model
 from evcosim.master.studies.bus_budget import budget
+from evcosim.master.studies.parallel import TaskError
 from support import bus_models
+from support.forked import forked
+from support.needs import need_linux
 
 SYSTEM = """name = "line"
 [experiment]
@@ -113,6 +117,21 @@ def test_a_failed_run_and_a_dead_process_are_failed_points(measured):
     assert [(done, total) for done, total, _ in told] == [
         (i, 11) for i in range(1, 12)
     ]  # the nominal one once
+
+
+def test_a_run_for_which_the_machine_has_no_room_is_no_broken_point(line, monkeypatch, tmp_path):
+    need_linux()
+
+    def measure() -> str:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+        with pytest.raises(TaskError) as caught:
+            budget(line / "line.toml", workers=1, trust=True)
+        return str(caught.value)
+
+    found = forked(measure, limit=60.0)
+    assert not found.crash, found.crash
+    assert found.value.startswith("bus delay +0 steps: unit 'clock': ")
+    assert "cannot be extracted: File too large: the limit of a file's size is 1 KiB" in found.value
 
 
 def test_same_outcome_however_many_workers(line, measured):

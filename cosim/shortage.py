@@ -1,0 +1,124 @@
+"""Shortages of this process, and the words for them: room on a disk, files, processes, memory.
+
+The system says "Resource temporarily unavailable" and names no limit; these words do, with what to do.
+"""
+
+from __future__ import annotations
+
+import errno
+import math
+import os
+from typing import TypeGuard
+
+SCIPY = 200e6
+"""Bytes of address space that scipy and its libraries take."""
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+_NO_FOLDER = (*_NO_ROOM, errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENOTDIR)
+_LIMITS = {  # the limited thing, its name in `resource`, what sets it, and the unit that this counts
+    errno.EMFILE: ("open files", "RLIMIT_NOFILE", "`ulimit -n`", 1, ""),
+    errno.EAGAIN: ("processes and threads of a user", "RLIMIT_NPROC", "`ulimit -u`", 1, ""),
+    errno.ENOMEM: ("memory", "RLIMIT_AS", "`ulimit -v`, in a unit's process memory_limit", 1024, " KiB"),
+    errno.EFBIG: (
+        "a file's size",
+        "RLIMIT_FSIZE",
+        "`ulimit -f`, in a unit's process file_limit",
+        1024,
+        " KiB",
+    ),
+}
+
+
+def is_shortage(error: BaseException) -> TypeGuard[OSError]:
+    """Return True for an error of the system behind which a full disk or one of the limits stands."""
+    return isinstance(error, OSError) and (error.errno in _NO_ROOM or error.errno in _LIMITS)
+
+
+def reason(error: OSError) -> str:
+    """Return why the system refused something, with the limit behind it and what changes that."""
+    said = error.strerror or str(error)
+    if error.errno in _NO_ROOM:
+        return f"{said}: make room on the disk"
+    return said + _limited(error.errno)
+
+
+def of_temporary_files(error: OSError) -> str:
+    """Return why a temporary file or folder was refused: the folder of all of them, and what to do."""
+    if error.errno not in _NO_FOLDER:
+        return reason(error)
+    import tempfile  # slow to import, and a command imports this module before all
+
+    said = error.strerror or str(error)
+    try:
+        where = f"{tempfile.gettempdir()}: "
+    except OSError:  # there is none, as the error says
+        where = ""
+    if error.errno in _NO_ROOM:
+        return f"{where}{said}: make room there, or let TMPDIR name another folder"
+    return f"{where}{said}: let TMPDIR name a folder that can be written"
+
+
+def no_thread() -> str:
+    """Return why no thread can be started: Python names no reason."""
+    limits = _limited(errno.EAGAIN) + _limited(errno.ENOMEM).replace(": ", ", or ", 1)
+    return f"no further thread can be started{limits}"
+
+
+def no_memory() -> str:
+    """Return why there is no memory."""
+    return f"no memory is left{_limited(errno.ENOMEM)}"
+
+
+def _limited(number: int | None) -> str:
+    """Return ": the limit of ..." for the number of an error behind which a limit of this process stands."""
+    if number not in _LIMITS:
+        return ""
+    what, name, setting, size, unit = _LIMITS[number]
+    most = _limit(name)
+    if math.isinf(most):
+        return ""
+    return f": the limit of {what} is {most / size:.0f}{unit} ({setting})"
+
+
+def _limit(name: str) -> float:
+    """Return a limit of this process; infinity without one, and on Windows, which has none."""
+    try:
+        import resource
+    except ImportError:
+        return math.inf
+    soft, _ = resource.getrlimit(getattr(resource, name))
+    return math.inf if soft == resource.RLIM_INFINITY else float(soft)
+
+
+def memory_left() -> float:
+    """Return the bytes of address space that this process may still take; infinity without a limit."""
+    most = _limit("RLIMIT_AS")
+    if math.isinf(most):
+        return most
+    try:
+        with open("/proc/self/statm") as file:
+            return most - int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:  # a system without /proc
+        return most
+
+
+def too_little_memory(least: float, what: str) -> str:
+    """Return a sentence where fewer bytes than `least` are left for `what`; "" where there are as many.
+
+    Libraries of linear algebra do not fail with too little memory: they try again without an end.
+    """
+    left = memory_left()
+    if left >= least:
+        return ""
+    return (
+        f"{what} needs {least / 1e6:.0f} MB of memory, and {max(0.0, left) / 1e6:.0f} MB are left"
+        f"{_limited(errno.ENOMEM)}"
+    )
+
+
+def require_memory(least: float, what: str) -> None:
+    """Raise ShortageError where fewer bytes than `least` are left for `what`."""
+    from .errors import ShortageError  # as above
+
+    if said := too_little_memory(least, what):
+        raise ShortageError(said)
