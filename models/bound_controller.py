@@ -6,6 +6,7 @@ IEEE CDC-ECC 2011, section IV. Speeds are in km/h, accelerations in m/s2, thrott
     x' = -x/T + (mu/T) g_e + G1 (v_m - v_e) + G2 eta,  eta' = v_m - v_e,  v_e = x     observer    (5)
     s^2 + (G1 + 1/T) s + G2 = s^2 + 2 zeta w_o s + w_o^2                              gives G1 and G2
     a_e[k] = (v_e[k] - v_e[k-1])/(3.6 T_s)                                            acceleration
+    v_m = 3.6 (w_f r_f + w_r r_r)/2, to whole q, or that of the drive                 measured      (C0)
     v_ref = v_e(t_0) + 3.6 * integral of a_b dt from t_0 in ACCELERATION, else v_ref = v_e        (8)
     R_v, R_a = K_p (1 + 1/(s T_i)),  K_p = w_c T/mu                                          (9)-(10)
 
@@ -15,6 +16,10 @@ the controller and 0 elsewhere, and r = v_ref or v_b:
 
     e = s (r - v_e),  g_f = s (r - r(t_0))/mu,  u = I + K_p e + g_f                              (C1)
     I' = (K_p/T_i) e + (g_e - u)/T_t                                always                       (C2)
+
+The measured speed v_m comes from the motor drive, which rounds it to 1 km/h, or is formed here of the speeds
+of both wheels, (C0), to the same q = 1 km/h; q = 0 does not round. The rider's throttle g_d comes by wire or
+over the bus. These are the paper's measured signals; it does not say which unit forms v_m of them.
 
 The supervisor decides once a sample; g_a and g_v are the candidates u of R_a and R_v, g_d is the rider's
 throttle, clipped to 0..100 %:
@@ -33,12 +38,12 @@ and bumpless switching that the paper draws in its Fig. 7 ("Derivations" in docs
 `use_observer = false` is the paper's comparison: v_m in place of v_e, and as a_e its difference through a
 first-order low-pass.
 
-published: mu = 0.46, the pole 0.03 Hz, 100 Hz, a bandwidth of 0.3 Hz of the speed loop, the
+published: q = 1 km/h, mu = 0.46, the pole 0.03 Hz, 100 Hz, a bandwidth of 0.3 Hz of the speed loop, the
 clipping of g_e to 0..100 %.
 inferred: mu is in km/h per %; T = 1/(2 pi 0.03 Hz); the bandwidth is the crossover of R_v, w_c = 2 pi 0.3
 rad/s.
-chosen: w_o = 1.2 rad/s, zeta = 1, w_c = 1.5 rad/s of R_a ("slightly lower" in the paper), T_i = T, T_t = 10
-ms, no dwell time, a low-pass of 0.5 s.
+chosen: v_m of the drive and g_d by wire, r_f = r_r = 0.2 m, w_o = 1.2 rad/s, zeta = 1, w_c = 1.5 rad/s of R_a
+("slightly lower" in the paper), T_i = T, T_t = 10 ms, no dwell time, a low-pass of 0.5 s.
 
 At the edges: at the start the observer is in equilibrium at (v_m, g_e), so that v_e = v_m, and the state is
 DRIVER, with its dwell time over. At a constant v the error |v_e - v| ends within 0.5 km/h (the paper's (6)
@@ -54,13 +59,14 @@ from __future__ import annotations
 
 from enum import IntEnum
 from functools import cached_property, lru_cache
-from math import cos, cosh, exp, pi, sin, sinh, sqrt
+from math import cos, cosh, exp, floor, pi, sin, sinh, sqrt
 from typing import NamedTuple
 
 from .base import Model, record, var
 from .constants import KMH, SAME_TIME
 
 TIME_CONSTANT = 1.0 / (2.0 * pi * 0.03)  # s: that of the published pole at 0.03 Hz
+_SPEEDS = ("speed_measured", "front_wheel_speed", "rear_wheel_speed")  # inputs that v_m may come from
 SAME_THROTTLE = 1e-9  # %, see the supervisor above
 
 
@@ -72,6 +78,20 @@ class ControllerState(IntEnum):
     VELOCITY = 2
 
 
+class SpeedSource(IntEnum):
+    """The measurement that is taken as v_m."""
+
+    DRIVE = 0
+    WHEELS = 1
+
+
+class ThrottleSource(IntEnum):
+    """The way by which the rider's throttle comes."""
+
+    WIRE = 0
+    BUS = 1
+
+
 DRIVER, ACCELERATION, VELOCITY = ControllerState
 
 
@@ -79,7 +99,13 @@ class BoundController(Model):
     """The rider's throttle in, the applied throttle out: lower where a bound would be exceeded."""
 
     sampled = True
-    initial_inputs = ("throttle_request", "speed_measured")
+    initial_inputs = (
+        "throttle_request",
+        "throttle_position",
+        "speed_measured",
+        "front_wheel_speed",
+        "rear_wheel_speed",
+    )
 
     @record
     class Parameters:
@@ -98,6 +124,13 @@ class BoundController(Model):
         dwell_time: float = var(0.0, "s", "Shortest stay in the state driver", min=0.0)
         filter_time: float = var(0.5, "s", "Low-pass of the acceleration without observer", min=1e-3)
         enabled: bool = var(True, "", "Whether the bounds act; if not, the rider's throttle is applied")
+        speed_source: SpeedSource = var(SpeedSource.DRIVE, "", "Where the measured speed comes from")
+        throttle_source: ThrottleSource = var(ThrottleSource.WIRE, "", "How the rider's throttle comes")
+        front_wheel_radius: float = var(0.2, "m", "Rolling radius of the front wheel (r_f)", min=0.01)
+        rear_wheel_radius: float = var(0.2, "m", "Rolling radius of the rear wheel (r_r)", min=0.01)
+        speed_resolution: float = var(
+            1.0, "km/h", "Step of the speed that is formed of the wheels (q); 0: none", min=0.0
+        )
         use_observer: bool = var(True, "", "Whether the observer gives the speed; if not, the measurement")
 
         @cached_property
@@ -123,6 +156,9 @@ class BoundController(Model):
         speed_measured: float = var(0.0, "km/h", "Measured speed (v_m)", nominal=10.0)
         speed_bound: float = var(30.0, "km/h", "Speed bound (v_b)", nominal=10.0)
         acceleration_bound: float = var(1.0, "m/s2", "Acceleration bound (a_b)")
+        throttle_position: float = var(0.0, "%", "Throttle of the rider (g_d), as the bus carries it")
+        front_wheel_speed: float = var(0.0, "rad/s", "Speed of the front wheel (w_f)", nominal=50.0)
+        rear_wheel_speed: float = var(0.0, "rad/s", "Speed of the rear wheel (w_r)", nominal=50.0)
 
     @record
     class State:
@@ -145,25 +181,28 @@ class BoundController(Model):
         """The applied throttle and what explains it."""
 
         throttle: float = var(
-            0.0, "%", "Applied throttle (g_e)", min=0.0, max=100.0, initially=("throttle_request",)
+            0.0,
+            "%",
+            "Applied throttle (g_e)",
+            min=0.0,
+            max=100.0,
+            initially=("throttle_request", "throttle_position"),
         )
         state: ControllerState = var(DRIVER, "", "Who commands the throttle", initially=())
-        speed_estimate: float = var(
-            0.0, "km/h", "Estimated speed (v_e)", nominal=10.0, initially=("speed_measured",)
-        )
+        speed_estimate: float = var(0.0, "km/h", "Estimated speed (v_e)", nominal=10.0, initially=_SPEEDS)
         acceleration_estimate: float = var(0.0, "m/s2", "Estimated acceleration (a_e)", initially=())
         speed_reference: float = var(
             0.0,
             "km/h",
             "What the active controller tracks: v_ref, the speed bound, or in driver the estimate",
             nominal=10.0,
-            initially=("speed_measured",),
+            initially=_SPEEDS,
         )
 
     @staticmethod
     def initial(p: BoundController.Parameters, u: BoundController.Inputs) -> BoundController.State:
         """Return DRIVER, with the observer in equilibrium at the measured speed and the rider's throttle."""
-        g, v = _clip(u.throttle_request), u.speed_measured
+        g, v = _request(p, u), _measured(p, u)
         return BoundController.State(v, _offset(p, v, g), g, g, v, 0.0, DRIVER, g, v, v, 0.0)
 
     @staticmethod
@@ -171,8 +210,9 @@ class BoundController(Model):
         p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
     ) -> BoundController.State:
         """Estimate, decide and apply at t_k, then predict the observer at t_k + dt [s]."""
-        g_d, v_b, a_b = _clip(u.throttle_request), u.speed_bound, u.acceleration_bound
-        v_e, a_e = _estimate(p, x, u, dt)
+        v_m = _measured(p, u)
+        g_d, v_b, a_b = _request(p, u), u.speed_bound, u.acceleration_bound
+        v_e, a_e = _estimate(p, x, v_m, dt)
         active = x.state
         entry = x.entry_reference
         i_a, i_v = x.acceleration_integral, x.speed_integral
@@ -206,7 +246,7 @@ class BoundController(Model):
         follow = min(1.0, dt / p.tracking_time)
         i_a += dt * p.acceleration_gain / p.integral_time * e_a + follow * (g_e - g_a)  # (C2)
         i_v += dt * p.speed_gain / p.integral_time * e_v + follow * (g_e - g_v)  # (C2)
-        speed, offset = _predict(p, x, u.speed_measured, g_e, dt)
+        speed, offset = _predict(p, x, v_m, g_e, dt)
         dwell = max(0.0, x.dwell_left - dt)
         if following == DRIVER and active != DRIVER:
             dwell = p.dwell_time
@@ -226,14 +266,28 @@ def _clip(throttle: float) -> float:
     return min(100.0, max(0.0, throttle))
 
 
+def _request(p: BoundController.Parameters, u: BoundController.Inputs) -> float:
+    """Return g_d [%]."""
+    return _clip(u.throttle_request if p.throttle_source == ThrottleSource.WIRE else u.throttle_position)
+
+
+def _measured(p: BoundController.Parameters, u: BoundController.Inputs) -> float:
+    """Return v_m [km/h]."""
+    if p.speed_source == SpeedSource.DRIVE:
+        return u.speed_measured
+    rolled = u.front_wheel_speed * p.front_wheel_radius + u.rear_wheel_speed * p.rear_wheel_radius
+    v, q = KMH * rolled / 2.0, p.speed_resolution  # (C0)
+    return q * floor(v / q + 0.5) if q > 0.0 else v
+
+
 def _estimate(
-    p: BoundController.Parameters, x: BoundController.State, u: BoundController.Inputs, dt: float
+    p: BoundController.Parameters, x: BoundController.State, v_m: float, dt: float
 ) -> tuple[float, float]:
     """Return v_e [km/h] and a_e [m/s2] of this sample."""
     if p.use_observer:
         v_e = x.observer_speed
         return v_e, (v_e - x.speed_estimate) / (KMH * dt)
-    v_e = u.speed_measured
+    v_e = v_m
     difference = (v_e - x.speed_estimate) / (KMH * dt)
     passed = 1.0 - exp(-dt / p.filter_time)
     return v_e, x.acceleration_estimate + passed * (difference - x.acceleration_estimate)

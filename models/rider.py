@@ -1,4 +1,4 @@
-"""Rider: follows a speed reference with throttle and brake, and counts what it could not follow.
+"""Rider: follows a speed reference with throttle and brake, or turns the grip as told; counts what is missed.
 
 Source: chosen. The paper (Dardanelli et al., IEEE CDC-ECC 2011) has a human rider. Speeds are in km/h.
 
@@ -9,11 +9,13 @@ Source: chosen. The paper (Dardanelli et al., IEEE CDC-ECC 2011) has a human rid
     v_r = 0 and v < v_s:  stopped. Throttle 0, brake F_s, I = 0, until v_r > 0                    (R5)
     d_r' = v_r/3.6                                              distance of the reference [m]     (R6)
     d_m' = max(0, e - b)/3.6,  t_m' = 1 where e > b             distance [m] and time [s] missed  (R7)
+    throttle = min(max(g, 0), 100), no brake                    where `follows` is false          (R8)
 
 K_v is the throttle that a speed needs in steady state. (R4) leaves a band without either pedal, so that
 throttle and brake do not alternate. (R2) stops the integral in saturation, so that a reference out of reach
 leaves nothing to unwind. e > b means slower than the cycle's tolerance allows. (R7) counts only what is
-missed; a vehicle that is too fast misses nothing.
+missed; a vehicle that is too fast misses nothing. (R8) is a rider who turns the grip to the given position g
+[%] whatever the speed.
 
 published: nothing.
 chosen: K_p = 20 % per km/h, T_i = 4 s, K_v = 0.8 % per km/h, u_c = 5 %, K_b = 8.5 N per % (braking then
@@ -50,6 +52,7 @@ class Rider(Model):
         maximum_brake_force: float = var(1500.0, "N", "Strongest braking (F_max)", min=0.0)
         standstill_speed: float = var(0.5, "km/h", "Speed below which the rider stops (v_s)", min=0.0)
         standstill_brake_force: float = var(600.0, "N", "Brake while stopped (F_s)", min=0.0)
+        follows: bool = var(True, "", "Whether the speed is followed; if not, the grip's position is given")
         tolerance: float = var(3.2, "km/h", "Speed error that counts as followed (b)", min=0.0)
 
     @record
@@ -58,6 +61,7 @@ class Rider(Model):
 
         speed_reference: float = var(0.0, "km/h", "Speed to follow (v_r)", nominal=10.0)
         speed: float = var(0.0, "km/h", "Speed of the vehicle (v)", nominal=10.0)
+        grip: float = var(0.0, "%", "Position of the grip (g) where no speed is followed", nominal=10.0)
 
     @record
     class State:
@@ -98,7 +102,9 @@ class Rider(Model):
         """Press a pedal at t_k, and count what `dt` [s] of this speed misses."""
         v_r = max(0.0, u.speed_reference)
         e = v_r - u.speed
-        if v_r <= 0.0 and u.speed < p.standstill_speed:  # (R5)
+        if not p.follows:
+            integral, throttle, brake = 0.0, min(100.0, max(0.0, u.grip)), 0.0  # (R8)
+        elif v_r <= 0.0 and u.speed < p.standstill_speed:  # (R5)
             integral, throttle, brake = 0.0, 0.0, p.standstill_brake_force
         else:
             integral, throttle, brake = _pedals(p, x.integral, v_r, e, dt)

@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from evcosim.models.base import violations
-from evcosim.models.bound_controller import BoundController, ControllerState
+from evcosim.models.bound_controller import BoundController, ControllerState, SpeedSource, ThrottleSource
 
 DT = 0.01
 P = BoundController.Parameters()
@@ -257,3 +257,39 @@ def test_the_last_bit_of_an_integral_does_not_keep_the_driver() -> None:
         State(), observer_speed=31.0, speed_estimate=31.0, speed_integral=above, acceleration_integral=above
     )
     assert BoundController.step(P, x, Inputs(70.0, 31.0), DT).state == VELOCITY
+
+
+# -- where speed and throttle come from ----------------------------------------------------------------------
+
+WHEELS = dataclasses.replace(P, speed_source=SpeedSource.WHEELS, throttle_source=ThrottleSource.BUS)
+
+
+@given(st.floats(0.0, 70.0), st.floats(0.1, 0.4), st.floats(0.1, 0.4), st.floats(0.0, 100.0))
+def test_wheels_and_bus_give_what_drive_and_wire_give(v: float, r_f: float, r_r: float, g: float) -> None:
+    """Rolling wheels of any radii at v, formed and rounded here, against v rounded by the drive."""
+    p = dataclasses.replace(WHEELS, front_wheel_radius=r_f, rear_wheel_radius=r_r)
+    w_f, w_r = v / 3.6 / r_f, v / 3.6 / r_r
+    formed = Inputs(77.0, 99.0, throttle_position=g, front_wheel_speed=w_f, rear_wheel_speed=w_r)
+    given = Inputs(g, math.floor(v + 0.5))
+    assume(abs(v % 1.0 - 0.5) > 1e-9)
+    x, y = BoundController.initial(p, formed), BoundController.initial(P, given)
+    assert x == y
+    assert sample(x, [formed] * 3, p) == sample(y, [given] * 3)
+
+
+def test_the_speed_of_the_wheels_is_their_mean_and_may_be_left_as_it_is() -> None:
+    fine = dataclasses.replace(WHEELS, speed_resolution=0.0, rear_wheel_radius=0.3)
+    u = Inputs(front_wheel_speed=40.0, rear_wheel_speed=30.0)
+    assert BoundController.initial(fine, u).speed_estimate == pytest.approx(3.6 * (8.0 + 9.0) / 2.0)
+    half = dataclasses.replace(fine, speed_resolution=0.5)
+    assert BoundController.initial(half, u).speed_estimate == 30.5
+
+
+def test_by_default_the_wheels_and_the_bus_are_not_heard() -> None:
+    quiet, loud = (
+        Inputs(20.0, 30.0),
+        Inputs(20.0, 30.0, throttle_position=80.0, front_wheel_speed=10.0, rear_wheel_speed=99.0),
+    )
+    x = BoundController.initial(P, quiet)
+    assert BoundController.initial(P, loud) == x
+    assert sample(x, [loud]) == sample(x, [quiet])

@@ -129,3 +129,15 @@ def test_a_saturated_pedal_still_lets_the_integral_come_back() -> None:
 def test_inside_the_tolerance_nothing_is_missed(v: float, below: float) -> None:
     x = Rider.step(P, Rider.State(), Rider.Inputs(v + below, v), DT)
     assert (x.distance_missed, x.time_missed) == (0.0, 0.0)
+
+
+@given(st.floats(-50.0, 150.0), st.floats(0.0, 60.0), st.floats(0.0, 60.0))
+def test_a_rider_who_does_not_follow_turns_the_grip_and_brakes_not(
+    grip: float, reference: float, speed: float
+) -> None:
+    p, u = Rider.Parameters(follows=False), Rider.Inputs(reference, speed, grip)
+    x = Rider.step(p, Rider.initial(p, u), u, DT)
+    assert (x.throttle, x.brake_force, x.integral) == (min(100.0, max(0.0, grip)), 0.0, 0.0)
+    follower = Rider.step(P, Rider.initial(P, u), u, DT)
+    assert (x.distance_missed, x.speed_error) == (follower.distance_missed, follower.speed_error)
+    assert Rider.step(P, Rider.initial(P, u), Rider.Inputs(reference, speed), DT) == follower

@@ -177,3 +177,40 @@ def test_a_weak_battery_limits_the_drive_to_its_largest_power():
     apart = on_a_battery(1.0, parameters=weak, isolation="process")
     assert apart.data.tobytes() == results.data.tobytes()
     assert apart.manifest["warnings"] == results.manifest["warnings"]
+
+
+@pytest.fixture(scope="module")
+def by_wheels():
+    """Fig. 8 with the speed formed of both wheels in the ECU, and the rider's throttle over the bus."""
+    return simulate("scooter", "fig8_wheels")
+
+
+def test_the_speed_of_the_wheels_is_the_one_that_the_drive_sends(by_wheels):
+    """But where the wheels' own resolution, 0.01 rad/s each, moves a step of 1 km/h by a sample."""
+    front, rear = by_wheels["ecu.front_wheel_speed"], by_wheels["ecu.rear_wheel_speed"]
+    assert np.abs(front / 0.01 - np.round(front / 0.01)).max() < 1e-6
+    formed = np.floor(KMH * (front + rear) * 0.2 / 2.0 + 0.5)
+    other = np.flatnonzero(formed[:-1] != by_wheels["ecu.speed_measured"][:-1])
+    assert len(other) < 0.05 * len(formed)  # most of them while the speed rests at an edge, 30.5 km/h
+    fraction = by_wheels["vehicle.speed"][other] * KMH % 1.0
+    assert np.abs(fraction - 0.5).max() < 0.005 * KMH * 0.2 + 1e-9
+    assert np.array_equal(by_wheels["ecu.throttle_position"], by_wheels["rider.grip"].round(1))
+
+
+def test_with_the_speed_of_the_wheels_fig8_is_the_same(by_wheels):
+    drive = simulate("scooter", "fig8")
+    assert switches(by_wheels)[1] == switches(drive)[1]
+    assert time_in_states(by_wheels) == pytest.approx(time_in_states(drive), abs=0.02)
+    assert over_bound(by_wheels).max() == pytest.approx(over_bound(drive).max(), abs=0.05)
+    assert settled_error(by_wheels) <= 0.55
+    assert by_wheels.manifest["saturations"] == {}
+
+
+def test_what_is_not_rounded_needs_no_observer():
+    """Wheels of 0.01 rad/s and no step of 1 km/h: without the observer the throttle is calm too."""
+    raw, observed = (
+        simulate("scooter", "fig8_wheels", parameters={"ecu.speed_resolution": 0.0, "ecu.use_observer": on})
+        for on in (False, True)
+    )
+    assert ripple(raw) / ripple(observed) < 4.0
+    assert settled_error(raw) <= 0.3

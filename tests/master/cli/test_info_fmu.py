@@ -26,9 +26,10 @@ def test_info_selects_variables(evcosim):
     inputs = evcosim("info", "BoundController", "--causality", "input", "--json").json["variables"]
     assert {v["causality"] for v in inputs} == {"input"}
     found = evcosim("info", "BoundController", "--causality", "input", "--search", "SPEED", "--json").json
-    assert [v["name"] for v in found["variables"]] == ["speed_measured", "speed_bound"]
-    assert "1 of 21 variables" in evcosim("info", "BoundController", "--search", "speed_m").out
-    assert "0 of 21 variables" in evcosim("info", "BoundController", "--search", "nothing like it").out
+    speeds = ["speed_measured", "speed_bound", "front_wheel_speed", "rear_wheel_speed"]
+    assert [v["name"] for v in found["variables"]] == speeds
+    assert "1 of 29 variables" in evcosim("info", "BoundController", "--search", "speed_m").out
+    assert "0 of 29 variables" in evcosim("info", "BoundController", "--search", "nothing like it").out
 
 
 DESCRIPTIONS = {

@@ -65,6 +65,11 @@ def test_what_is_left_out_is_told_as_by_a_run(evcosim, mapped: Path) -> None:
         f"{left_out}vehicle.power -> battery.power; a receiver keeps its start value",
         f"{left_out}metric 'distance'",
         f"{left_out}metric 'energy per distance'",
+        *(
+            f"left out, since the FMU has no vehicle.{wheel}_wheel_speed: vehicle.{wheel}_wheel_speed -> "
+            f"ecu.{wheel}_wheel_speed; a receiver keeps its start value"
+            for wheel in ("front", "rear")
+        ),
         "left out, since the FMU has no vehicle.available_power: battery.available_power -> "
         "vehicle.available_power",
     ]
