@@ -1,7 +1,8 @@
 """Bicycle: the linear single-track model of a four-wheel-steered vehicle at a constant speed.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4 (2-DOF bicycle model). State
-x = (y' [m/s], theta [rad], w_z [rad/s], beta [m]), input u = (delta_f, delta_r) [rad]:
+Source: a paper on optimal lane keeping control of a 4WS electric vehicle (title and authors are not known),
+section 4 (2-DOF bicycle model). State x = (y' [m/s], theta [rad], w_z [rad/s], beta [m]), input u =
+(delta_f, delta_r) [rad]:
 
     x' = A x + B u                                                                               (B1)
     y''    = a11 y' + a13 w_z + b11 delta_f + b12 delta_r       lateral velocity y'

@@ -1,7 +1,7 @@
 """Lane keeping analysis: poles, controllability, cost, delay and step response of the lane keeping loop.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", sections 4 and 5. A, B are those of
-`bicycle`, K, S those of `lane_keeping_controller`.
+Source: a paper on optimal lane keeping control of a 4WS electric vehicle (title and authors are not known),
+sections 4 and 5. A, B are those of `bicycle`, K, S those of `lane_keeping_controller`.
 
     det(s I - (A - B K)) = 0                               poles s of the closed loop [1/s]      (L1)
     [B, A B, A^2 B, A^3 B]                                 controllability matrix                (L2)

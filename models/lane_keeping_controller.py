@@ -1,7 +1,8 @@
 """LaneKeepingController: linear-quadratic lane keeping of a four-wheel-steered vehicle.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", section 5. For the vehicle x' = A x + B u of
-`bicycle`, x = (y', theta, w_z, beta), u = (delta_f, delta_r) [rad], and the reference r = (r_1, r_2):
+Source: a paper on optimal lane keeping control of a 4WS electric vehicle (title and authors are not known),
+section 5. For the vehicle x' = A x + B u of `bicycle`, x = (y', theta, w_z, beta), u = (delta_f, delta_r)
+[rad], and the reference r = (r_1, r_2):
 
     u = -K x + S r                                                                                   (C1)
     K = R^-1 B' P,   A' P + P A - P B R^-1 B' P + Q = 0         minimizes integral x'Q x + u'R u dt  (C2)

@@ -1,6 +1,7 @@
 """Lane keeping limits: what outputs let one observe, and what a steering asks of the tires.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4, whose outputs are y' and theta.
+Source: a paper on optimal lane keeping control of a 4WS electric vehicle (title and authors are not known),
+section 4, whose outputs are y' and theta.
 
     [C; C A; C A^2; C A^3]                                 observability matrix of y = C x       (L1)
     F_f = 2 C_f (delta_f - (y' + l_1 w_z)/v_x)             side force of the front axle [N]      (L2)

@@ -1,6 +1,7 @@
 """LateralVehicle: the lateral motion of a four-wheel-steered vehicle at a constant speed.
 
-Source: "Optimal lane keeping control of a 4WS electric vehicle", section 4.
+Source: a paper on optimal lane keeping control of a 4WS electric vehicle (title and authors are not known),
+section 4.
 
     x' = A x + B u + E d,   x = (y', theta, w_z, beta) [m/s, rad, rad/s, m],   u = (delta_f, delta_r)     (B1)
     d = (F, M) [N, N.m],   E d = (F/m, 0, M/J_z, 0)               disturbances: side force, yaw moment  (V1)

@@ -1,5 +1,5 @@
 model Bicycle "Lateral motion of a car whose front and rear wheels are steered, at constant speed"
-  // "Optimal lane keeping control of a 4WS electric vehicle", section 4, written with the forces of the axles.
+  // A paper on optimal lane keeping control of a 4WS electric vehicle, section 4, written with the forces of the axles.
   // The axes are those of ISO 8855: y to the left, so that y counts against the paper's displacement beta.
   parameter Real m(unit="kg", min=1.0) = 1380.0 "Mass";
   parameter Real J_z(unit="kg.m2", min=1.0) = 2200.0 "Moment of inertia about the vertical axis";

@@ -47,6 +47,8 @@ pre span { display: inline-block; text-indent: 0; max-width: 100%; overflow-wrap
     position: relative; }
   td::before { content: attr(data-head); position: absolute; left: .4rem; color: #666; }
   .printed td, .ours td { padding-left: 5.2rem; }
+  figure { margin: 2rem 0; overflow-x: auto; } figure img { max-width: none; width: 44rem; }
+  figcaption { position: sticky; left: 0; }
   td:empty { display: none; }
 }
 """
