@@ -87,11 +87,13 @@ def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> list[str]:
 
 
 def _show(found: Budget, folder: Path, files: list[str]) -> None:
-    from .console import print_fields, print_table
+    from .console import print_fields, print_paragraph, print_table
 
     scenario = f" {found.scenario}" if found.scenario else ""
-    print(f"{found.system}{scenario}, {found.rule} (* as it is)\n")
+    print_paragraph(f"{found.system}{scenario}, {found.rule} (* as it is)")
+    print()
     print_table(("variation", "point", "value", "verdict"), found.rows(), right=("value",))
     print()
     print_fields([(each.name, found.summary(each)) for each in found.series])
-    print(f"\nin {folder}: {', '.join(files)}")
+    print()
+    print_paragraph(f"in {folder}: {', '.join(files)}")

@@ -228,18 +228,21 @@ def _show_matches(place: str, matches: Sequence[Match]) -> None:
 
 def _show_sampled(checked: _Checked) -> None:
     """Print which outputs are taken as sampled, since those of the place are."""
+    from .console import print_paragraph
+
     if checked.sampled:
-        print(
+        print_paragraph(
             f"taken as sampled, as in {checked.place}: {', '.join(checked.sampled)}; they hold from the time "
-            "of the inputs on, and `sampled = false` in a swap file says otherwise\n"
+            "of the inputs on, and `sampled = false` in a swap file says otherwise"
         )
+        print()
 
 
 def _show_warnings(checked: _Checked) -> None:
-    from ...cosim.visible import flowing
+    from .console import print_paragraph
 
     for warning in checked.warnings:
-        print(f"warning: {flowing(warning)}")
+        print_paragraph(f"warning: {warning}")
     if checked.warnings:
         print()
 
@@ -278,6 +281,7 @@ def _conclude(
     remaining += [counted(len(problems), "problem")] if problems else []
     system, _, unit = checked.place.rpartition(".")
     print(", ".join(f"{n} {verdict}" for verdict, n in counts.items()))
+    # not wrapped: the commands can be copied
     conclusion = " and ".join(remaining) or "it fits"
     if write is not None:
         left_open = open_names(checked.matches, likeness)

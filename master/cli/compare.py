@@ -31,7 +31,7 @@ def compare(
     """Compare two results; exit code 1 when they differ."""
     from ...cosim.results import compare as comparing
     from ...cosim.results.results import Results
-    from .console import print_json, print_table
+    from .console import print_json, print_paragraph, print_table
     from .plot import chosen, is_page
 
     first, second = Results.read(a), Results.read(b)
@@ -57,5 +57,5 @@ def compare(
     if rows:
         print_table(headers, rows, right=headers[2:6])
         print()
-    print(found.summary())
+    print_paragraph(found.summary())
     return 0 if found.equal else 1

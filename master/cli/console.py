@@ -16,11 +16,11 @@ from typing import Any
 import typer
 
 from ...cosim.visible import flowing, on_one_line, raw_stream, visible, visible_json, visible_stream
-from .wrapping import wrapped
+from .wrapping import is_narrow, wrapped, wrapped_below
 
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
 _NARROW = 24  # a text is not wrapped to fewer columns
-_GAP, _BELOW = "  ", "    "
+_GAP = "  "
 _REFRESH = 0.1  # s
 
 Show = Callable[[float], None]
@@ -46,36 +46,31 @@ def finite(data: Any) -> Any:
 def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[str] = ()) -> None:
     """Print rows below headers; the columns named in `right` are right-aligned, empty ones are left out.
 
-    The last column is wrapped; if the terminal is too narrow for it, it stands below the others. No text is
-    cut off: a line may be longer than the terminal is wide. `cosim.writing` has the tables of pages.
+    Where the terminal is too narrow, each cell is wrapped inside its column. No text is cut off.
+    `cosim.writing` has the tables of pages.
     """
-    rows = [[on_one_line(text) for text in row[:-1]] + [flowing(row[-1])] for row in rows]
-    shown = [i for i in range(len(headers)) if any(row[i] for row in rows)]
-    *fixed, last = shown or [len(headers) - 1]
-    widths = {i: max(len(text) for text in (headers[i], *(row[i] for row in rows))) for i in shown}
-    left = sum(widths[i] + len(_GAP) for i in fixed)
-    below = fixed and left + min(_NARROW, widths[last]) > _width()
-
-    def line(cells: Sequence[str]) -> str:
-        return _GAP.join(
-            cells[i].rjust(widths[i]) if headers[i] in right else cells[i].ljust(widths[i]) for i in fixed
-        )
-
-    for cells in (headers, *rows):
-        show = _print_bold if cells is headers else print
-        if below:
-            show(line(cells).rstrip())
-            if cells[last]:
-                show(_wrapped(_BELOW, cells[last], len(_BELOW)))
-        else:
-            show(_wrapped(line(cells) + _GAP if fixed else "", cells[last], left))
+    texts = [[on_one_line(text) for text in row[:-1]] + [flowing(row[-1])] for row in rows]
+    shown = [i for i in range(len(headers)) if any(row[i] for row in texts)] or [len(headers) - 1]
+    table = [[row[i] for i in shown] for row in (headers, *texts)]
+    lay = wrapped_below if is_narrow(table, _width(), _NARROW) else wrapped
+    _print_rows(lay(table, _width(), right))
 
 
 def print_wrapped(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print rows below headers, each cell wrapped inside its column where the terminal is too narrow."""
-    head, *lines = wrapped(headers, [[flowing(text) for text in row] for row in rows], _width())
-    _print_bold(head)
-    print("\n".join(lines))
+    """Print rows of texts below headers, each cell wrapped inside its column in a narrow terminal.
+
+    Rows of which one is wrapped stand apart, with an empty line between them.
+    """
+    lines = wrapped([list(headers), *([flowing(text) for text in row] for row in rows)], _width())
+    apart = any(len(some) > 1 for some in lines)
+    _print_rows([lines[0], *([[""] * apart + some for some in lines[1:]])])
+
+
+def _print_rows(rows: Sequence[Sequence[str]]) -> None:
+    """Print the lines of each row of a table, the first of them in bold."""
+    for i, lines in enumerate(rows):
+        for line in lines:
+            (print if i else _print_bold)(line)
 
 
 def print_paragraph(text: str) -> None:
@@ -92,16 +87,18 @@ def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
         print(_wrapped(head, value, len(head)))
 
 
-def print_flowing(text: str) -> None:
-    """Print a sentence, wrapped; an empty line before it stays."""
-    print("\n" * (len(text) - len(text.lstrip("\n"))) + _wrapped("", flowing(text.strip("\n")), 0))
+def print_next(commands: Sequence[str]) -> None:
+    """Print commands that go on from here, after an empty line; not wrapped, so that they can be copied."""
+    print()
+    for i, command in enumerate(commands):
+        print(f"{'' if i else 'next':4}{_GAP}{on_one_line(command)}")
 
 
 def print_title(text: str, first: bool = False) -> None:
     """Print a heading, after an empty line unless it is the first thing printed."""
     if not first:
         print()
-    _print_bold(on_one_line(text))
+    _print_bold(_wrapped("", on_one_line(text), 0))
 
 
 def _wrapped(head: str, text: str, indent: int) -> str:

@@ -284,7 +284,7 @@ def _draw(folder: Path, found: list[Identification]) -> list[str]:
 
 def _report(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
     from ...cosim.visible import flowing
-    from .console import print_fields, print_json, print_title
+    from .console import print_fields, print_json, print_paragraph, print_title
     from .failures import complain
 
     if as_json:
@@ -300,7 +300,8 @@ def _report(found: list[Identification], folder: Path, files: list[str], as_json
         print_fields(_fields(each))
     if len(found) > 1:
         _print_points(found)
-    print(f"\nin {folder}: {', '.join(files)}")
+    print()
+    print_paragraph(f"in {folder}: {', '.join(files)}")
 
 
 def _fields(each: Identification) -> list[tuple[str, str]]:

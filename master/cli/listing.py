@@ -36,7 +36,7 @@ def _systems() -> list[dict[str, Any]]:
 
 
 def _print(systems: list[dict[str, Any]], fmus: dict[str, str]) -> None:
-    from .console import print_fields, print_title
+    from .console import print_fields, print_paragraph, print_title
 
     for i, system in enumerate(systems):
         print_title(f"System {system['name']}: {system['title']}", first=i == 0)
@@ -47,4 +47,7 @@ def _print(systems: list[dict[str, Any]], fmus: dict[str, str]) -> None:
         print_fields(marked, indent=2)
     print_title("FMUs")
     print_fields(list(fmus.items()), indent=2)
-    print("\n'evcosim run SYSTEM --scenario NAME' runs one (* the default), 'evcosim info NAME' shows more.")
+    print()
+    print_paragraph(
+        "'evcosim run SYSTEM --scenario NAME' runs one (* the default), 'evcosim info NAME' shows more."
+    )

@@ -27,13 +27,12 @@ def new(
 ) -> None:
     """Make a folder with a system of your own: models, a DBC, a scenario, and a README."""
     from ..new_system import new_system
-    from .console import print_fields, print_flowing
+    from .console import print_next, print_paragraph
 
     files = new_system(name, base)
-    print_flowing(f"made {name}: {', '.join(files)}")
-    print()
+    print_paragraph(f"made {name}: {', '.join(files)}")
     system = shlex.quote(str(name / f"{name.resolve().name}.toml"))
     models = [str(name / file) for file in files if file.startswith("models/") and file.endswith(".py")]
     commands = [f"evcosim run {system}", f"evcosim info {system}"]
     commands += [f"evcosim build {shlex.quote(models[-1])}"] if models else []
-    print_fields([("next" if i == 0 else "", text) for i, text in enumerate(commands)])
+    print_next(commands)

@@ -9,7 +9,7 @@ from ...cosim.errors import counted
 from ...cosim.results.text_table import shown_text
 from ...cosim.visible import on_one_line
 from . import interrupts
-from .console import number, print_fields, print_flowing, print_table
+from .console import number, print_fields, print_next, print_paragraph, print_table
 
 if TYPE_CHECKING:
     from ...cosim.interface import Value
@@ -42,9 +42,9 @@ def show(finished: FinishedRun) -> None:
     if profile := finished.simulation.profile:
         print()
         _show_profile(profile)
-    print_flowing(f"\nin {on_one_line(str(finished.folder.path))}: {', '.join(finished.files)}")
     print()
-    print_fields([("next" if i == 0 else "", text) for i, text in enumerate(_next(finished))])
+    print_paragraph(f"in {on_one_line(str(finished.folder.path))}: {', '.join(finished.files)}")
+    print_next(_next(finished))
 
 
 def _isolated(units: dict[str, Any]) -> str:

@@ -3,45 +3,102 @@
 from __future__ import annotations
 
 import itertools
-import textwrap
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Sequence
 
-GAP = "  "
+GAP, _INDENT = "  ", "    "
 _LEAST = 8  # columns of a cell, however narrow the terminal is
+_NAMES = re.compile(r"(?<=[./:])(?=[^\W\d_])")  # as in bus.message.signal and folder/file
+_WORDS = re.compile(r"(?<=[./:_])(?=[^\W\d_])")  # as in rolling_coefficient
 
 
-def wrapped(headers: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[str]:
-    """Return the lines of a table with its headers, no longer than `width` where that leaves 8 a column.
+Table = Sequence[Sequence[str]]
+"""Rows of cells, the first of them the headers; each has as many."""
 
-    Cells are wrapped between words; a word longer than its column is wrapped too, and nothing is left out.
-    Rows of which one is wrapped are apart by an empty line.
+
+def wrapped(table: Table, width: int, right: Collection[str] = ()) -> list[list[str]]:
+    """Return the lines of each row of a table, no longer than `width` where 8 a column fit.
+
+    Cells are wrapped between words; a word longer than its column is wrapped too, after a `.`, `/`, `_` or
+    `:` if it has any, and nothing is left out. Columns whose headers are in `right` are right-aligned.
     """
-    table = [list(headers), *(list(row) for row in rows)]
-    widths = column_widths(table, width - len(GAP) * (len(headers) - 1))
-    lines = [_row_lines(row, widths) for row in table]
-    between = [""] if any(len(some) > 1 for some in lines) else []
-    return [*lines[0], *itertools.chain.from_iterable([*between, *some] for some in lines[1:])]
+    widths = column_widths(table, width - len(GAP) * (len(table[0]) - 1))
+    return [_row_lines(row, widths, [name in right for name in table[0]]) for row in table]
 
 
-def column_widths(table: Sequence[Sequence[str]], available: int) -> list[int]:
-    """Return the widths of columns: what the longest cell needs, the widest ones cut to what is available."""
-    wanted = [max(map(len, column)) for column in zip(*table, strict=True)]
-    widths = list(wanted)
-    while sum(widths) > available and max(widths) > _LEAST:
-        widest = max(widths)
-        below = max([w for w in widths if w < widest], default=_LEAST)
-        many = widths.count(widest)
-        cut = min(widest - max(below, _LEAST), -(-(sum(widths) - available) // many))
-        widths = [w - cut if w == widest else w for w in widths]
+def wrapped_below(table: Table, width: int, right: Collection[str] = ()) -> list[list[str]]:
+    """Return the same with the cells of the last column below the others, over the whole width."""
+    above = wrapped([row[:-1] for row in table], width, right)
+    below = [cell_lines(row[-1], max(width - len(_INDENT), _LEAST)) for row in table]
+    return [
+        [*lines, *(_INDENT + line for line in more if line)] for lines, more in zip(above, below, strict=True)
+    ]
+
+
+def is_narrow(table: Table, width: int, least: int) -> bool:
+    """Return True where a terminal is too narrow: a text in the last column has less than `least` columns."""
+    if len(table[0]) < 2:
+        return False
+    gaps = len(GAP) * (len(table[0]) - 1)
+    widths = column_widths(table, width - gaps)
+    return widths[-1] < least < max(len(row[-1]) for row in table) or sum(widths) + gaps > width
+
+
+def column_widths(table: Table, available: int) -> list[int]:
+    """Return the widths of columns: what the longest cell needs, the widest ones cut to what is available.
+
+    Words stay whole if that is enough, else the parts of names do, else the words in them.
+    """
+    columns = list(zip(*table, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    for cut in (None, _NAMES, _WORDS):
+        parts = [[part for cell in column for part in _parts(cell, cut)] for column in columns]
+        widths = _cut(widths, available, [max(map(len, column), default=0) for column in parts])
+    return _cut(widths, available, [_LEAST] * len(columns))
+
+
+def _parts(text: str, cut: re.Pattern[str] | None) -> list[str]:
+    words = text.split()
+    return words if cut is None else [part for word in words for part in cut.split(word)]
+
+
+def _cut(widths: list[int], available: int, least: Sequence[int]) -> list[int]:
+    """Return the widths, the widest of those above their least cut until all fit, if they can."""
+    widths = list(widths)
+    while sum(widths) > available:
+        free = [i for i, w in enumerate(widths) if w > least[i]]
+        if not free:
+            break
+        widths[max(free, key=lambda i: widths[i])] -= 1
     return widths
 
 
-def _row_lines(row: Sequence[str], widths: Sequence[int]) -> list[str]:
-    cells = [
-        textwrap.wrap(cell, width, break_on_hyphens=False) or [""]
-        for cell, width in zip(row, widths, strict=True)
-    ]
+def _row_lines(row: Sequence[str], widths: Sequence[int], on_right: Sequence[bool]) -> list[str]:
+    cells = [cell_lines(cell, width) for cell, width in zip(row, widths, strict=True)]
     return [
-        GAP.join(part.ljust(width) for part, width in zip(parts, widths, strict=True)).rstrip()
+        GAP.join(
+            part.rjust(width) if right else part.ljust(width)
+            for part, width, right in zip(parts, widths, on_right, strict=True)
+        ).rstrip()
         for parts in itertools.zip_longest(*cells, fillvalue="")
     ]
+
+
+def cell_lines(text: str, width: int) -> list[str]:
+    """Return the lines of a cell, none longer than `width`; [""] for an empty one."""
+    lines, line = [], ""
+    for word in text.split():
+        cuts = (None, _NAMES, _WORDS)
+        fitting = (parts for cut in cuts if max(map(len, parts := _parts(word, cut))) <= width)
+        parts = next(fitting, _parts(word, _WORDS))
+        for i, part in enumerate(parts):
+            glue = " " if line and i == 0 else ""
+            if len(line) + len(glue) + len(part) <= width:
+                line += glue + part
+                continue
+            lines += [line] if line else []
+            while len(part) > width:
+                lines.append(part[:width])
+                part = part[width:]
+            line = part
+    return [*lines, line] if line or not lines else lines

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.master.cli.wrapping import column_widths, wrapped
+from evcosim.master.cli.wrapping import cell_lines, column_widths, is_narrow, wrapped, wrapped_below
 
 HEAD = ("place", "what", "obtained")
 ROWS = [
@@ -17,26 +17,45 @@ WORDS = st.lists(st.text("abc_.", min_size=1, max_size=30), max_size=8).map(" ".
 
 
 def test_a_table_that_fits_has_a_line_a_row():
-    assert wrapped(("a", "b"), [("1", "two"), ("three", "4")], 80) == ["a      b", "1      two", "three  4"]
+    table = [("a", "b"), ("1", "two"), ("three", "4")]
+    assert wrapped(table, 80) == [["a      b"], ["1      two"], ["three  4"]]
+    assert wrapped(table, 80, ["b"]) == [["a        b"], ["1      two"], ["three    4"]]
+    assert not is_narrow(table, 80, 24)
 
 
 def test_each_cell_is_wrapped_in_its_column():
-    assert wrapped(HEAD, ROWS, 46) == [
-        "place    what               obtained",
-        "",
-        "(4)      gain from          linearized: 0.46;",
-        "         throttle to speed  identified:",
-        "                            0.4555",
-        "",
-        "Table I  stopping distance  TwoMotorVehicle.r",
-        "                            olling_coefficien",
-        "                            t = 0.01",
+    assert wrapped([HEAD, *ROWS], 44) == [
+        ["place  what      obtained"],
+        [
+            "(4)    gain      linearized: 0.46;",
+            "       from      identified: 0.4555",
+            "       throttle",
+            "       to speed",
+        ],
+        ["Table  stopping  TwoMotorVehicle.", "I      distance  rolling_coefficient = 0.01"],
     ]
+
+
+def test_the_last_column_stands_below_where_it_would_be_too_narrow():
+    table = [("name", "about"), ("speed", "how fast the vehicle is"), ("mass", "")]
+    assert is_narrow(table, 25, 20) and not is_narrow(table, 30, 20)
+    assert wrapped_below(table, 20) == [
+        ["name", "    about"],
+        ["speed", "    how fast the", "    vehicle is"],
+        ["mass"],
+    ]
+
+
+def test_a_word_is_cut_where_its_parts_do_not_fit():
+    assert cell_lines("a.bc/def_ghij in 0.01", 8) == ["a.bc/", "def_ghij", "in 0.01"]
+    assert cell_lines("a.bc/def_ghij in 0.01", 4) == ["a.", "bc/", "def_", "ghij", "in", "0.01"]
+    assert cell_lines("abcdefg h", 4) == ["abcd", "efg", "h"]
+    assert cell_lines("", 4) == cell_lines(" ", 4) == [""]
 
 
 @given(st.lists(st.tuples(WORDS, WORDS, WORDS), max_size=5), st.integers(30, 120))
 def test_nothing_is_lost_and_no_line_is_too_long(rows, width):
-    lines = wrapped(HEAD, rows, width)
+    lines = [line for some in wrapped([HEAD, *rows], width) for line in some]
     assert all(len(line) <= width for line in lines)
     assert all(line == line.rstrip() for line in lines)
     said = sorted("".join("".join(lines).split()))
@@ -44,7 +63,7 @@ def test_nothing_is_lost_and_no_line_is_too_long(rows, width):
 
 
 @pytest.mark.parametrize(
-    ("available", "widths"), [(100, [3, 10, 30]), (30, [3, 10, 17]), (20, [3, 8, 8]), (5, [3, 8, 8])]
+    ("available", "widths"), [(100, [3, 10, 30]), (30, [3, 10, 17]), (20, [3, 8, 9]), (5, [3, 8, 8])]
 )
 def test_the_widest_columns_are_cut(available, widths):
     assert column_widths([["abc", "x" * 10, "y" * 30]], available) == widths
