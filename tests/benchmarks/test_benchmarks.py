@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import coldstart, memory, slaves, worker
+from benchmarks import coldstart, memory, scaling, slaves, worker
 from benchmarks.asking import Figure, ask, measured
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -130,11 +130,13 @@ def test_what_a_master_leaves_in_the_temporary_folder_is_deleted(
 
 
 @pytest.mark.parametrize("wrong", ["cofmupi=python", "cofmupy", "cofmupy="])
-def test_a_python_is_given_to_a_master(wrong: str) -> None:
-    command = [sys.executable, "-m", "benchmarks", "--python", wrong]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert f"'{wrong}': MASTER=PATH, with one of the masters direct, evcosim" in done.stderr
+def test_a_python_is_given_to_a_master(
+    wrong: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "--python", wrong])
+    with pytest.raises(SystemExit, match="2"):
+        ring.main()
+    assert f"'{wrong}': MASTER=PATH, with one of the masters direct, evcosim" in capsys.readouterr().err
 
 
 def test_a_ratio_is_to_this_project() -> None:
@@ -152,14 +154,11 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
         put(page, "y", "")
 
 
-def test_help_says_what_is_measured() -> None:
-    for module in (
-        "benchmarks",
-        "benchmarks.scaling",
-        "benchmarks.slaves",
-        "benchmarks.coldstart",
-        "benchmarks.memory",
-    ):
-        command = [sys.executable, "-m", module, "--help"]
-        said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-        assert "--write" in said
+@pytest.mark.parametrize("module", [ring, scaling, slaves, coldstart, memory])
+def test_help_says_what_is_measured(
+    module: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["benchmarks", "--help"])
+    with pytest.raises(SystemExit, match="0"):
+        module.main()
+    assert "--write" in capsys.readouterr().out

@@ -25,14 +25,14 @@ stop_time = 1.0
 algorithm = "{algorithm}"
 [units.first]
 fmu = "watch.fmu"
-isolation = "{isolation}"
+isolation = "{others}"
 [units.asking]
 fmu = "asking.fmu"
 isolation = "{isolation}"
 {more}
 [units.last]
 fmu = "watch.fmu"
-isolation = "{isolation}"
+isolation = "{others}"
 [[connect]]
 from = "first.y"
 to = ["asking.u"]
@@ -52,6 +52,7 @@ def system(folder: Path, fmi: int = 2, flags: tuple[str, ...] = ("-DENDS=0.05",)
     watch_fmu(folder / "watch.fmu", 2)
     watch_fmu(folder / "asking.fmu", fmi, flags=flags)
     values = {"algorithm": "gauss_seidel", "isolation": "none", "more": ""} | changes
+    values["others"] = values["isolation"] if fmi == 2 else "none"  # in FMI 3 the one that asks is apart
     (folder / "ends.toml").write_text(SYSTEM.format(**values))
     return folder / "ends.toml"
 

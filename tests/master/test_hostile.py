@@ -57,21 +57,21 @@ def case_named(name: str) -> Case:
 
 
 @pytest.mark.parametrize(
-    ("name", "code", "rows", "said"),
+    ("name", "engine", "code", "rows", "said"),
     [
-        ("segfault", 1, 5, "unit 'bad': its process was killed by SIGSEGV"),
-        ("exit0", 1, 5, "ended by itself with exit code 0: the FMU called exit()"),
-        ("hang", 1, 5, "did not answer for 0.5 s (step_timeout) and was ended"),
-        ("nan", 1, 5, "bad.y = nan m/s: an output must be finite"),
-        ("bomb", 2, None, "bad.fmu: entry 'resources/zeros' unpacks to"),
-        ("huge", 0, WHOLE, "bad.y reached 1e+69 m/s"),
+        ("segfault", "compiled", 1, 5, "unit 'bad': its process was killed by SIGSEGV"),
+        ("exit0", "python", 1, 5, "ended by itself with exit code 0: the FMU called exit()"),
+        ("hang", "python", 1, 5, "did not answer for 0.5 s (step_timeout) and was ended"),
+        ("nan", "python", 1, 5, "bad.y = nan m/s: an output must be finite"),
+        ("bomb", "python", 2, None, "bad.fmu: entry 'resources/zeros' unpacks to"),
+        ("huge", "python", 0, WHOLE, "bad.y reached 1e+69 m/s"),
     ],
 )
 def test_the_installed_command_survives(
-    tmp_path: Path, name: str, code: int, rows: int | None, said: str
+    tmp_path: Path, name: str, engine: str, code: int, rows: int | None, said: str
 ) -> None:
     need_linux()
-    done = runs.run_command(tmp_path, case_named(name), 2)
+    done = runs.run_command(tmp_path, case_named(name), 2, engine)
     assert done.returncode == code, done.stderr
     assert said in done.stdout + done.stderr
     assert "Traceback" not in done.stderr

@@ -12,18 +12,23 @@ from evcosim.cosim.system.scenario import scenario_names
 from evcosim.cosim.system.system import load_system, system_names
 from evcosim.master.builtin import builtin_names
 from evcosim.master.cli import completion
+from evcosim.master.cli.app import command
 
 
 @pytest.fixture
-def offered(process, monkeypatch):
-    """The names that the bash script gets for a line whose last word is incomplete."""
+def offered(capsys, monkeypatch, tmp_path):
+    """The names that the bash script gets for a line whose last word is incomplete.
+
+    In this process; the last test here asks as the script does.
+    """
+    monkeypatch.chdir(tmp_path)
 
     def run(line):
         words = line.split(" ")
-        monkeypatch.setenv("_EVCOSIM_COMPLETE", "complete_bash")
         monkeypatch.setenv("COMP_WORDS", line)
         monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
-        out, err = process().communicate()
+        assert completion.completed(command(), "complete_bash") == 0
+        out, err = capsys.readouterr()
         assert err == ""
         return out.split()
 

@@ -300,8 +300,8 @@ def test_reader_that_goes_away_is_no_error(process):
 @pytest.mark.parametrize(
     ("arguments", "begins", "complains"),
     [
-        ("run scooter --stop-time 1.1 --no-plot -q", "", ""),
-        ("run scooter --stop-time 0.1 --no-plot --isolation process", "run ", ""),
+        ("run Battery --stop-time 0.1 --step-size 0.01 --no-plot -q --engine python", "", ""),
+        ("run Battery --stop-time 0.1 --step-size 0.01 --no-plot --isolation process", "run ", ""),
         ("list", "System ", ""),
         ("run scoter", "", "evcosim: unknown system"),
     ],

@@ -60,7 +60,7 @@ def test_second_ctrl_c_ends_a_unit_that_is_stuck(process, system, tmp_path):
 
 
 def test_no_bar_in_a_pipe(process):
-    run = process("run", "scooter", "--stop-time", "2", "--no-plot", "-o", "out")
+    run = process("run", "scooter", "--engine", "python", "--stop-time", "2", "--no-plot", "-o", "out")
     out, err = run.communicate(timeout=60)
     assert (run.returncode, err) == (0, "")
     assert "times real time" in out
@@ -87,7 +87,7 @@ def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name, process, tmp_
     number = signal.Signals[name]
     before = signal.signal(number, signal.SIG_IGN)
     try:
-        run = process("run", "scooter", "-o", "out", "--no-plot")
+        run = process("run", "scooter", "--engine", "python", "-o", "out", "--no-plot")
     finally:
         signal.signal(number, before)
     while not (tmp_path / "out" / "run.json").exists():

@@ -146,7 +146,9 @@ def test_an_error_in_python_is_as_visible(folder: Path) -> None:
 )
 def test_a_crash_and_an_exit_name_the_unit_visibly(process, tmp_path: Path, act: str, said: str) -> None:
     path = marks.system(tmp_path, act, "b\x1b\u202e.fmu")
-    started = process("run", path, "--isolation", "none", "--no-plot", "-o", tmp_path / "out")
+    started = process(
+        *("run", path, "--isolation", "none", "--engine", "python", "--no-plot", "-o", tmp_path / "out")
+    )
     _, printed = started.communicate(timeout=60)
     assert said in printed
     assert "b\\x1b\\u202e.fmu" in printed

@@ -87,11 +87,11 @@ def run(folder: Path, case: Case, fmi: int) -> Outcome:
     return Outcome(rows, said, error, time.monotonic() - begin, tuple(left), results)
 
 
-def run_command(folder: Path, case: Case, fmi: int) -> subprocess.CompletedProcess[str]:
-    """Run a case with the installed command; its results are in `out`."""
+def run_command(folder: Path, case: Case, fmi: int, engine: str) -> subprocess.CompletedProcess[str]:
+    """Run a case with the installed command by an engine; its results are in `out`."""
     path = write_system(folder, case, fmi)
     command = [str(Path(sys.executable).with_name("evcosim")), "run", str(path), "--no-plot", "--trust"]
-    command += ["--output", str(folder / "out")]
+    command += ["--engine", engine, "--output", str(folder / "out")]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
 
