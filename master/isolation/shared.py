@@ -14,6 +14,8 @@ import dataclasses
 import mmap
 import os
 import tempfile
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -135,6 +137,31 @@ def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
     return dataclasses.replace(plan, groups=tuple(groups), routes=(), texts=Texts()), place
 
 
-def shown(group: SlotGroup) -> int:
+Copy = tuple[int, int, int]
+"""Values that are copied: their first slots in the run's memory and in the shared one, and their number."""
+
+
+class Copies(NamedTuple):
+    """The values that a turn copies: `inputs` before it, after it those that feed `through` and `outputs`."""
+
+    inputs: list[Copy]
+    through: list[Copy]
+    outputs: list[Copy]
+
+
+def copies(ours: Sequence[SlotGroup], theirs: Sequence[SlotGroup], texts: bool) -> Copies:
+    """Return the copies of a unit's groups, which stand in the run's memory and in the shared one.
+
+    They are those of numbers, or with `texts` those of the numbers of texts.
+    """
+    pairs = [(o, t) for o, t in zip(ours, theirs, strict=True) if (o.type == "String") == texts]
+    return Copies(
+        inputs=[(o.slot, t.slot, len(o.variables)) for o, t in pairs if o.kind == "input"],
+        through=[(o.slot, t.slot, o.feedthrough) for o, t in pairs if o.feedthrough],
+        outputs=[(_shown(o), _shown(t), len(o.variables)) for o, t in pairs if o.kind != "input"],
+    )
+
+
+def _shown(group: SlotGroup) -> int:
     """Return the first slot into which a unit writes the outputs of a group after its step."""
     return group.latest if group.kind == "continuous" else group.slot

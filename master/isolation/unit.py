@@ -8,7 +8,7 @@ import json
 import os
 import pickle
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...cosim.errors import ConfigError, ShortageError
 from ...cosim.interface import UnitInterface, Value
-from ...cosim.plan.unit_plan import FmuSteps, SlotGroup, UnitPlan
+from ...cosim.plan.unit_plan import FmuSteps, UnitPlan
 from ...cosim.shortage import of_temporary_files
 from ...cosim.visible import on_one_line
 from ..fmi.fmu import Fmu, FmuError, check_runnable
@@ -198,59 +198,35 @@ class IsolatedUnit:
         """Keep the pairs of slices, of the run's memory and of the shared one, that a turn copies at once."""
         theirs, _ = shared.private(plan)
         ours, view = floats(self._shared.values), floats(memory)
-        pairs = list(zip(plan.groups, theirs.groups, strict=True))
-        self._inputs = [
-            (ours, slice(t.slot, t.slot + len(b.variables)), view[b.slot : b.slot + len(b.variables)])
-            for b, t in pairs
-            if b.kind == "input" and b.type != "String"
-        ]
-        self._outputs = [
-            (view, slice(place, place + len(b.variables)), ours[own : own + len(b.variables)])
-            for b, t in pairs
-            if b.kind != "input" and b.type != "String"
-            for place, own in [(shared.shown(b), shared.shown(t))]
-        ]
-        self._through = [
-            (view, slice(b.slot, b.slot + b.feedthrough), ours[t.slot : t.slot + b.feedthrough])
-            for b, t in pairs
-            if b.feedthrough and b.type != "String"
-        ]
+        numbers = shared.copies(plan.groups, theirs.groups, texts=False)
+        texts = shared.copies(plan.groups, theirs.groups, texts=True)
+        self._inputs = [(ours, slice(t, t + n), view[h : h + n]) for h, t, n in numbers.inputs]
+        self._through, self._outputs = (
+            [(view, slice(h, h + n), ours[t : t + n]) for h, t, n in copied]
+            for copied in (numbers.through, numbers.outputs)
+        )
         self._texts = plan.texts
         self._exchange = TextExchange(self.name, plan.texts, self._call)
-        of_texts = [(b, t) for b, t in pairs if b.type == "String"]
-        self._texts_in, self._texts_out, self._texts_through = (
-            [
-                (ours_at + i, theirs_at + i)
-                for b, t in of_texts
-                for ours_at, theirs_at, count in places(b, t)
-                for i in range(count)
-            ]
-            for places in (_of_inputs, _of_outputs, _of_through)
+        self._texts_in, self._texts_through, self._texts_out = (
+            [(h + i, t + i) for h, t, n in copied for i in range(n)] for copied in texts
         )
         self._memory, self._values = view, ours
         if POSSIBLE and self._slots[S.SPIN]:
-            self.hand = self._hand(memory, pairs)
+            self.hand = self._hand(memory, numbers)
         self._call("bind", theirs)
 
-    def _hand(self, memory: NDArray[np.float64], pairs: Sequence[tuple[SlotGroup, SlotGroup]]) -> Hand:
-        """Return what machine code needs to hand over a turn: for each pair, the run's slots and ours."""
-        pairs = [(b, t) for b, t in pairs if b.type != "String"]
+    def _hand(self, memory: NDArray[np.float64], numbers: shared.Copies) -> Hand:
+        """Return what machine code needs to hand over a turn."""
         run, own = memory.ctypes.data, self._shared.values.ctypes.data
-
-        def span(here: int, there: int, count: int, back: bool = True) -> Span:
-            ends = (own + 8 * there, run + 8 * here)
-            return (*(ends if back else ends[::-1]), count)
-
-        inputs = [span(b.slot, t.slot, len(b.variables), False) for b, t in pairs if b.kind == "input"]
-        through = [span(b.slot, t.slot, b.feedthrough) for b, t in pairs if b.feedthrough]
-        outputs = [
-            span(shared.shown(b), shared.shown(t), len(b.variables)) for b, t in pairs if b.kind != "input"
+        back: list[Span] = [
+            (own + 8 * there, run + 8 * here, count)
+            for here, there, count in (*numbers.through, *numbers.outputs)
         ]
         row = {L.SLOTS: self._shared.address, L.SOCKET: self._process.connection.fileno()}
         return Hand(
             row=row | {L.TURN: self._own.ctypes.data},
-            inputs=inputs,
-            outputs=[*through, *outputs],
+            inputs=[(run + 8 * here, own + 8 * there, count) for here, there, count in numbers.inputs],
+            outputs=back,
             texts_in=self._send_texts if self._texts_in else None,
             texts_out=self._receive_texts if self._texts_out else None,
         )
@@ -367,22 +343,3 @@ class IsolatedUnit:
                 with contextlib.suppress(UnitError, ConfigError):  # what fails now changes no result
                     self._call("free")
             self._process.close()
-
-
-_Places = Iterator[tuple[int, int, int]]
-"""Slots of the run's memory, those of the shared one, and how many there are of both."""
-
-
-def _of_inputs(ours: SlotGroup, theirs: SlotGroup) -> _Places:
-    if ours.kind == "input":
-        yield ours.slot, theirs.slot, len(ours.variables)
-
-
-def _of_outputs(ours: SlotGroup, theirs: SlotGroup) -> _Places:
-    if ours.kind != "input":
-        yield shared.shown(ours), shared.shown(theirs), len(ours.variables)
-
-
-def _of_through(ours: SlotGroup, theirs: SlotGroup) -> _Places:
-    if ours.feedthrough:
-        yield ours.slot, theirs.slot, ours.feedthrough

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 from collections.abc import Iterator
@@ -116,6 +117,15 @@ def test_a_unit_of_its_own_has_its_groups_side_by_side() -> None:
     assert sorted(taken) == list(range(size)) and size == 3 + 2 + 2 * 4 + 1
 
 
-def test_outputs_stand_in_their_latest_slots_where_they_have_some() -> None:
-    discrete, continuous = plan_of(("sampled", 2), ("continuous", 4)).groups
-    assert (shared.shown(discrete), shared.shown(continuous)) == (discrete.slot, continuous.latest)
+def test_copies_lead_from_each_variable_to_itself_after_its_step() -> None:
+    plan = plan_of(("input", 3), ("sampled", 2), ("continuous", 4), ("input", 1))
+    one, two, three, four = plan.groups
+    three = dataclasses.replace(three, feedthrough=2)
+    plan = dataclasses.replace(plan, groups=(one, two, three, dataclasses.replace(four, type="String")))
+    theirs = shared.private(plan)[0].groups
+    found = shared.copies(plan.groups, theirs, texts=False)
+    assert found.inputs == [(one.slot, theirs[0].slot, 3)]
+    # before the step a continuous output stands where it is valid, after it where it is the latest
+    assert found.through == [(three.slot, theirs[2].slot, 2)]
+    assert found.outputs == [(two.slot, theirs[1].slot, 2), (three.latest, theirs[2].latest, 4)]
+    assert shared.copies(plan.groups, theirs, texts=True) == ([(four.slot, theirs[3].slot, 1)], [], [])
