@@ -20,8 +20,14 @@ def text(name: str) -> str:
 
 @functools.cache
 def styles() -> str:
-    """Return the style sheets of a page, as an element of its head."""
-    return f"<style>{text('uPlot.min.css')}\n{text('page.css')}</style>"
+    """Return the style sheets of panels, as an element of the head of any page that has some."""
+    return f"<style>{text('uPlot.min.css')}\n{text('charts.css')}</style>"
+
+
+@functools.cache
+def page_styles() -> str:
+    """Return the style sheet of a page of ours beside that of its panels."""
+    return f"<style>{text('page.css')}</style>"
 
 
 @functools.cache

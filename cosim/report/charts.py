@@ -26,8 +26,10 @@ Event = tuple[float, str]
 """The time [s] of an event, and the text of its mark."""
 
 
-def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Event] = ()) -> str:
-    """Return the panels of a figure as HTML, and a search for all other signals.
+def charts(
+    results: Results, spec: FigureSpec | None = None, events: Sequence[Event] = (), *, search: bool = True
+) -> str:
+    """Return the panels of a figure as HTML, with a search for all other signals, or those of it alone.
 
     Without a spec the figure is that of `default_spec(results)`. Raises ConfigError for a spec that names a
     variable that is not there or measures something else.
@@ -41,6 +43,8 @@ def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Ev
     page = Columns()
     panels = spec.panels if spec else []
     drawn = list(dict.fromkeys(signal.name for panel in panels for signal in panel.signals))
+    if spec is not None and not search:
+        results = results.part(slice(None), list(dict.fromkeys([*drawn, *_others(spec)])))
     found = recorded(results, drawn, page)
     signals = any_signals(results, found)
     end = until(results, spec.until if spec else None).span[1]
@@ -51,12 +55,17 @@ def charts(results: Results, spec: FigureSpec | None = None, events: Sequence[Ev
         TimeAxis.of(results),
         page,
         panels=figure_panels(results, spec, found) if spec else signals[:MAX_PANELS],
-        signals=signals,
+        signals=signals if search else [],
         states=states_data(results, spec.shade if spec else None, found.items),
         events=events,
         said=said,
         end=end,
     )
+
+
+def _others(spec: FigureSpec) -> list[str]:
+    """Return the variables that a figure needs beside those of its lines."""
+    return [name for name in (spec.shade, spec.until.signal if spec.until else None) if name]
 
 
 def _default(results: Results) -> FigureSpec | None:

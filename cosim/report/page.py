@@ -8,7 +8,7 @@ from ..results.results import Results
 from ..system.figure_spec import FigureSpec
 from ..writing import write_text
 from . import facts
-from .assets import policy, scripts, styles
+from .assets import page_styles, policy, scripts, styles
 from .charts import charts
 from .markup import escaped
 
@@ -50,7 +50,8 @@ def page(title: str, *body: str) -> str:
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         f"{policy()}<title>{escaped(title)}</title>"
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">{styles()}</head><body>\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"{styles()}{page_styles()}</head><body>\n"
         + "\n".join(part for part in body if part)
         + f"\n{scripts()}</body></html>\n"
     )

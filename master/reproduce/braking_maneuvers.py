@@ -36,10 +36,11 @@ def pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
             )
             for number, (name, text) in enumerate(_CAPTIONS.items(), 4)
         ),
-        Picture(
+        Picture.over_time(
             "ride",
             "Beyond the paper: loads, pitch and springs in Fig. 4, of the plant that has suspensions",
-            figures.draw(found["known_speed, detailed"], _RIDE),
+            found["known_speed, detailed"],
+            _RIDE,
         ),
     )
 

@@ -34,12 +34,10 @@ def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
         for name, text in (("crosswind", "crosswind of 15 m/s, 1 to 3 s"), ("blowout", "blow-out at 1 s"))
     }
     return (
-        Picture("fig7", "Fig. 7: desired lane and response of the vehicle", figures.draw(ideal, _LANE)),
-        Picture("fig8", "Fig. 8: front steering angle", figures.draw(ideal, _angle("front"))),
-        Picture("fig9", "Fig. 9: rear steering angle", figures.draw(ideal, _angle("rear"))),
-        Picture(
-            "states", "Beyond the paper: lateral velocity, heading, yaw rate", figures.draw(ideal, _STATES)
-        ),
+        Picture.over_time("fig7", "Fig. 7: desired lane and response of the vehicle", ideal, _LANE),
+        Picture.over_time("fig8", "Fig. 8: front steering angle", ideal, _angle("front")),
+        Picture.over_time("fig9", "Fig. 9: rear steering angle", ideal, _angle("rear")),
+        Picture.over_time("states", "Beyond the paper: lateral velocity, heading, yaw rate", ideal, _STATES),
         Picture(
             "steering",
             "Beyond the paper: the step with two and with four steered wheels",

@@ -92,12 +92,11 @@ def own(found: Mapping[str, Any]) -> Findings:
 def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
     """Return the pictures of these runs."""
     return (
-        Picture(
+        Picture.over_time(
             "battery",
             "Fig. 2: its batteries and inverters in the maneuver; their numbers are chosen",
-            figures.draw(
-                found["battery"], found["battery"].figure, title="Two-motor car: battery and inverters"
-            ),
+            found["battery"],
+            found["battery"].figure.model_copy(update={"title": "Two-motor car: battery and inverters"}),
         ),
         Picture(
             "slips",

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim.figures import draw as figures
 from ...cosim.results.results import Results, ResultVariable
 from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
@@ -36,12 +35,16 @@ def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
     """Return the pictures of the runs "pid" and "mimo", each of two figures of the paper."""
     both = _joined(found["pid"].time, {name: _columns(found[name]) for name in ("pid", "mimo")})
     return tuple(
-        Picture(f"fig{i}-{i + 1}", f"Figs. {i} and {i + 1}: {text}", _draw(both, i, text, unit, signals))
+        Picture.over_time(
+            f"fig{i}-{i + 1}", f"Figs. {i} and {i + 1}: {text}", both, _spec(both, i, text, unit, signals)
+        )
         for i, text, unit, signals in _QUANTITIES
     )
 
 
-def _draw(both: Results, number: int, text: str, unit: str, signals: tuple[tuple[str, str], ...]) -> Any:
+def _spec(
+    both: Results, number: int, text: str, unit: str, signals: tuple[tuple[str, str], ...]
+) -> FigureSpec:
     names = [f"{name}/{signal}" for name in ("pid", "mimo") for signal, _ in signals]
     maps = [between(both.units[name], unit) for name in names]
     ends = [
@@ -58,7 +61,7 @@ def _draw(both: Results, number: int, text: str, unit: str, signals: tuple[tuple
         )
         for name, label in (("pid", f"Fig. {number}: PIDs"), ("mimo", f"Fig. {number + 1}: MIMO"))
     ]
-    return figures.draw(both, FigureSpec(title=f"Two-motor car: {text}", panels=panels))
+    return FigureSpec(title=f"Two-motor car: {text}", panels=panels)
 
 
 def _columns(results: Results) -> dict[str, tuple[Array, str]]:

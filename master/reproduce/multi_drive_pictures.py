@@ -37,33 +37,36 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
     return (
         *multi_drive_figures.pictures(found),
         *multi_drive_cases.pictures(found),
-        Picture(
+        Picture.over_time(
             "resistance",
             "Beyond the paper: torques of slope, rolling and air; 93.2 N·m need air of 1.164 kg/m³",
-            figures.draw(_resistances(found["mimo"]), _RESISTANCE),
+            _resistances(found["mimo"]),
+            _RESISTANCE,
         ),
-        Picture(
+        Picture.over_time(
             "currents",
             "Beyond the paper: currents and power of the motors",
-            figures.draw(found["mimo"], _CURRENTS),
+            found["mimo"],
+            _CURRENTS,
         ),
-        Picture(
+        Picture.over_time(
             "phases",
             "Beyond the paper: phase currents where the slope begins, from those in the frame of the flux",
-            figures.draw(phase_currents(found["mimo"], *_SLOPE), _PHASES),
+            phase_currents(found["mimo"], *_SLOPE),
+            _PHASES,
         ),
-        Picture(
-            "launch", "For Table 3: rise and overshoot from a standstill", figures.draw(launches, _LAUNCH)
-        ),
-        Picture(
+        Picture.over_time("launch", "For Table 3: rise and overshoot from a standstill", launches, _LAUNCH),
+        Picture.over_time(
             "baseline",
             "Beyond the paper: PIDs with gains x 1.5 do on the slope what the MIMO-PID does",
-            figures.draw(both, _BASELINE),
+            both,
+            _BASELINE,
         ),
-        Picture(
+        Picture.over_time(
             "jump",
             "Beyond the paper: when the steering jumps, the coupling asks less of the wheels' difference",
-            figures.draw(_between(both, *_JUMP), _DIFFERENCE),
+            _between(both, *_JUMP),
+            _DIFFERENCE,
         ),
         Picture(
             "coupling",
@@ -71,10 +74,11 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
             "for equal errors, which is more than the loop carries at 100 Hz",
             _coupling_figure(coupled),
         ),
-        Picture(
+        Picture.over_time(
             "machine",
             "Beyond the paper: what the dq machine changes, and what the bandwidth of the drive does",
-            figures.draw(_machine_differences(found), _MACHINE),
+            _machine_differences(found),
+            _MACHINE,
         ),
     )
 

@@ -12,11 +12,15 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ...cosim.report.charts import charts
 from ..studies.parallel import Task
 from . import parameters, printed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ...cosim.results.results import Results
+    from ...cosim.system.figure_spec import FigureSpec
 
 MISSED, OWN = "missed", "own"
 
@@ -58,11 +62,21 @@ class Row:
 
 @dataclasses.dataclass(frozen=True)
 class Picture:
-    """A figure of the paper, redrawn, or one beyond it: `stem` names its files."""
+    """A figure of the paper, redrawn, or one beyond it: `stem` names its files.
+
+    `panels` are the same curves in HTML, to zoom into; "" where there is nothing over time.
+    """
 
     stem: str
     caption: str
     figure: Figure
+    panels: str = ""
+
+    @classmethod
+    def over_time(cls, stem: str, caption: str, results: Results, spec: FigureSpec | None = None) -> Picture:
+        """Return the picture of results over time, by a spec or their own one, with its panels."""
+        spec = spec or results.figure
+        return cls(stem, caption, results.plot(spec=spec), charts(results, spec, search=False))
 
 
 @dataclasses.dataclass(frozen=True)

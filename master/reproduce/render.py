@@ -10,9 +10,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...cosim.figures import draw as figures
+from ...cosim.report.assets import policy, styles
+from ...cosim.report.assets import scripts as panel_scripts
 from ...cosim.visible import visible
 from ...cosim.writing import markdown_table, write_text
-from .page import MISSED, Page, Row
+from .page import MISSED, Page, Picture, Row
 from .printed import VERDICTS, about_verdicts, counted, sentence
 
 _HEAD = ("place", "what", "printed", "obtained", "to reach", "verdict", "reason")
@@ -140,11 +142,7 @@ def _summary(page: Page) -> str:
 
 def _html(page: Page, images: dict[str, Path]) -> str:
     e = html.escape
-    pictures = "\n".join(
-        f'<figure id="{e(p.stem)}"><img alt="{e(p.caption)}" src="data:image/png;base64,'
-        f'{base64.b64encode(images[p.stem].read_bytes()).decode()}"><figcaption>{e(p.caption)}</figcaption></figure>'
-        for p in page.pictures
-    )
+    pictures = "\n".join(_figure(page, p, images[p.stem]) for p in page.pictures)
     own = f"<h2>{_OWN}</h2>\n<p>{e(_ABOUT_OWN)}</p>\n{_table(_OWN_HEAD, page.own)}" if page.own else ""
     return _document(
         page.title,
@@ -157,6 +155,20 @@ def _html(page: Page, images: dict[str, Path]) -> str:
 {pictures}
 {own}""",
     )
+
+
+def _figure(page: Page, picture: Picture, image: Path) -> str:
+    """Return a picture with its caption: its panels, to zoom into, or else the image itself."""
+    caption = html.escape(picture.caption)
+    if picture.panels:
+        link = f'<a href="figures/{page.name}-{picture.stem}.png">as a picture</a>'
+        shown, caption = picture.panels, f"{caption} ({link})"
+    else:
+        data = base64.b64encode(image.read_bytes()).decode()
+        shown = f'<img alt="{caption}" src="data:image/png;base64,{data}">'
+    caption = f"<figcaption>{caption}</figcaption>"
+    inside = f"{caption}{shown}" if picture.panels else f"{shown}{caption}"  # a picture is seen at a glance
+    return f'<figure id="{html.escape(picture.stem)}">{inside}</figure>'
 
 
 def _commands(commands: Sequence[str]) -> str:
@@ -213,9 +225,12 @@ def _framed(head: Sequence[str], body: str, kind: str = "") -> str:
 
 
 def _document(title: str, body: str) -> str:
+    """Return a page; one with panels has what they need, and like them nothing from the network."""
+    has_panels = 'class="charts"' in body
+    head, scripts = (policy() + styles(), panel_scripts()) if has_panels else ("", "")
     return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>
+<html lang="en"><head><meta charset="utf-8">{head}<title>{html.escape(title)}</title>
 <meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head><body>
 {body}
-</body></html>
+{scripts}</body></html>
 """

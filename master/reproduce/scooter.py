@@ -288,9 +288,9 @@ def _pictures(found: dict[str, Any], identified: ScooterIdentification) -> tuple
     redrawn = [Picture(stem, captions[stem], figure) for stem, figure in identified.figures().items()]
     return (
         *redrawn,
-        Picture("fig8", "Fig. 8: fixed bounds, 30 km/h and 1 m/s²", found["fig8 bus"].plot()),
-        Picture(
-            "fig9", "Fig. 9: bounds that depend on estimated speed and on time", found["fig9 bus"].plot()
+        Picture.over_time("fig8", "Fig. 8: fixed bounds, 30 km/h and 1 m/s²", found["fig8 bus"]),
+        Picture.over_time(
+            "fig9", "Fig. 9: bounds that depend on estimated speed and on time", found["fig9 bus"]
         ),
         Picture(
             "raw",

@@ -1,4 +1,4 @@
-// The interactive panels of a page: each <section class="charts"> holds its numbers as JSON, and becomes panels
+// The interactive panels of a page: each section of class "charts" holds its numbers as JSON, and becomes panels
 // over time whose zoom and cursor are linked. uPlot draws; every text from a file goes in as text, never as HTML.
 "use strict";
 

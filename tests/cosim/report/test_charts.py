@@ -47,6 +47,15 @@ def test_a_figure_that_ends_before_its_run():
     assert "The figure ends at 1.5 s" in part
 
 
+def test_the_figure_alone_has_its_own_columns_and_no_search():
+    spec = FigureSpec(
+        shade="ecu.state", panels=[PanelSpec(unit="m/s", signals=[SignalSpec(name="car.speed")])]
+    )
+    (data,) = data_in(charts(small_run(), spec, search=False))
+    assert (len(data["columns"]), data["signals"], data["states"]["name"]) == (2, [], "ecu.state")
+    assert data["panels"] == data_in(charts(small_run(), spec))[0]["panels"]
+
+
 def test_no_row_one_row_and_texts_alone():
     assert "No row was recorded" in charts(small_run(0))
     (data,) = data_in(charts(small_run(1)))

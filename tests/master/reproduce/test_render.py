@@ -7,6 +7,8 @@ import pytest
 from evcosim.master.reproduce.page import Page, Row
 from evcosim.master.reproduce.printed import sentence
 from evcosim.master.reproduce.render import missed, write_index, write_page
+from support.browser import browser
+from support.pages import data_in
 
 
 def test_a_page_is_markdown_html_and_pictures(written):
@@ -16,13 +18,30 @@ def test_a_page_is_markdown_html_and_pictures(written):
         assert f"**{row.verdict}**" in markdown
         assert row.what in markdown
     assert sentence(row.verdict for row in page.rows) in markdown
-    assert html.count("data:image/png;base64,") == len(page.pictures)
+    images = [picture for picture in page.pictures if not picture.panels]
+    assert html.count("data:image/png;base64,") == len(images) < len(page.pictures)
+    assert html.count('<section class="charts">') == len(page.pictures) - len(images)
     assert 'src="figures' not in html  # self-contained
     for picture in page.pictures:
         for suffix in (".png", ".svg"):
             assert (folder / "figures" / f"lane_keeping-{picture.stem}{suffix}").stat().st_size > 1000
     assert "[lane_keeping](lane_keeping.md)" in (folder / "README.md").read_text()
     assert '<a href="lane_keeping.html">' in (folder / "index.html").read_text()
+
+
+def test_the_panels_of_a_page_work_in_a_browser(written):
+    """The page forbids itself every script but ours, so that a changed byte of them would show nothing."""
+    page, folder = written
+    with browser() as found:
+        found.open(folder / "lane_keeping.html", 390)
+        charts = "[...document.querySelectorAll('section.charts')].map(s => s.charts.panels.length)"
+        assert found.run(charts) == [
+            len(data["panels"]) for data in data_in("".join(p.panels for p in page.pictures))
+        ]
+        assert found.said == []
+        assert found.run("document.documentElement.scrollWidth") <= 390
+        asked = [address for address in found.asked if not address.startswith("data:")]
+        assert asked == [(folder / "lane_keeping.html").as_uri()]
 
 
 ROWS = (
