@@ -236,8 +236,8 @@ def _advised(
         return resolve(system, scenario, interfaces, options)
     except ConfigError as error:
         step = options.get("step_size")
-        if step is not None and f"communication step {float(step)} s" in str(error):
-            files = step_size_of(system, scenario, {})
+        files = step_size_of(system, scenario, {})  # of an FMU by itself it is the option's
+        if step not in (None, files) and f"communication step {float(step)} s" in str(error):
             raise ConfigError(f"step_size = {step:g} s, where the files have {files:g} s: {error}") from error
         if swaps:
             unit, path = next(iter(swaps.items()))

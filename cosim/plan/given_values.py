@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..errors import ConfigError, nearest
+from ..errors import ConfigError, nearest, short
 from ..interface import UnitInterface, Value
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
@@ -66,7 +66,11 @@ def by_kind(
         if unit not in interfaces:
             raise ConfigError(f"{place}: there is no unit '{unit}'{nearest(unit, interfaces)}")
         if variable in started.get(unit, {}):
-            raise ConfigError(f"{place}: it is given among the parameters too: give it once")
+            before = started[unit][variable][1]
+            raise ConfigError(
+                f"{place}: {short(value)} is for {name}, which is given among the parameters already: "
+                f"{short(before)}"
+            )
         _check_is_none(unit, variable, interfaces[unit], place)
         _check_undriven(name, place, network)
         started.setdefault(unit, {})[variable] = (place, value)

@@ -61,7 +61,7 @@ def after_stop(
             for place, (begin, _) in _stimuli(scenario, drives)
             if begin >= clock.stop
         ),
-        *(_message(each, inputs, clock, stop) for each in messages if each.first + each.delay >= clock.steps),
+        *(said for each in messages if (said := _message(each, inputs, clock, stop))),
     ]
 
 
@@ -71,9 +71,11 @@ def _turn(step: int, every: int) -> int:
 
 
 def _message(message: MessagePlan, inputs: Mapping[str, InputPlan], clock: Clock, stop: str) -> str:
-    """Return the sentence on a message that never arrives."""
+    """Return the sentence on a message that never arrives; "" for one that does, or that nobody receives."""
     ends = {mailbox for _, mailbox in message.arrivals} or {m for r in message.routes for m, _ in r.sinks}
     receivers = [name for name, plan in inputs.items() if plan.mailbox in ends]
+    if not receivers or message.first + message.delay < clock.steps:
+        return ""
     at = _seconds(point(message.first + message.delay, clock.start, clock.step))
     keep = "keeps its first value" if len(receivers) == 1 else "keep their first values"
     return (

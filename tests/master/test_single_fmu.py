@@ -218,3 +218,8 @@ def test_a_column_that_says_another_unit_is_told_with_what_can_be_done(tmp_path,
         "p.csv: column 'power [kW]': its values are taken in [W], the unit of fmu.power; `unit = \"kW\"` in "
         "a stimulus of a system converts them"
     )
+
+
+def test_a_step_of_the_caller_is_no_step_of_files():
+    with pytest.raises(ConfigError, match=r"^stop_time = 1\.0 s is not a multiple of .* step 0\.3 s"):
+        simulate("Battery", step_size=0.3, stop_time=1.0)

@@ -41,5 +41,5 @@ def test_a_wrong_start_value_is_named(start: dict[str, object], said: str) -> No
 
 def test_a_value_is_given_once() -> None:
     both = {"start": {"car.grade": 1.0}, "parameters": {"car.grade": 2.0}}
-    with pytest.raises(ConfigError, match=r"^start car\.grade: it is given among the parameters too"):
+    with pytest.raises(ConfigError, match=r"^start car\.grade: 1\.0 is for .* already: 2\.0$"):
         plan([], options=both)

@@ -123,6 +123,14 @@ def test_a_message_that_never_arrives_is_told(tmp_path, start_delay, delay):
         assert (5.0 in column(engine, "b.u")) == arrives
 
 
+def test_a_message_that_nobody_receives_is_not_waited_for():
+    sent = {"from": "car.speed", "to": [], "via": "can0.EMD_Status.EMD_VehicleSpeed"}
+    short = {"stop_time": 0.1, "step_size": 0.01}
+    for to, count in ([], 0), (["ecu.speed"], 1):
+        buses = {"can0": {"dbc": "can/ev.dbc", "delay": 0.5}}
+        assert len(plan([sent | {"to": to}], experiment=short, buses=buses).unreached) == count
+
+
 def test_nothing_is_told_of_what_acts():
     scenario = {
         "event": [event(0.0), event(9.9)],
