@@ -66,7 +66,7 @@ def _slips(number: int, text: str, runs: dict[str, Results]) -> Any:
         for panel, (label, results) in zip(axes[:, 0], shown.items(), strict=True):
             true, estimated = slips[label][:2], slips[label][2:]
             for (wheel, i), values in zip(_LINES, true, strict=True):
-                panel.plot(results.time, values, label=wheel, **figures.look(i))
+                panel.plot(results.time, values, label=wheel, **figures.look(i) | {"linewidth": 3.0})
             for (wheel, i), values in zip(_LINES, estimated, strict=True):
                 panel.plot(
                     results.time, values, label=f"{wheel}, by (16)", drawstyle="steps-post",

@@ -242,8 +242,12 @@ def _derivative(found: Mapping[str, Any]) -> Found:
     stuck = 100.0 * float(np.mean(np.abs(wild["controller.left_torque"]) >= TORQUE_LIMIT - 0.1))
     dips = [maneuver(wild).dip, *(found[f"derivative {step:g} s"] for step in FINE_STEPS)]
     plain = maneuver(found["pid"]).dip
+    lag = InductionMotorDrive.Parameters().time_constant
+    gain = of_print("derivative gain")
+    growth = [analysis.derivative_growth(_CAR, gain, lag, step) for step in (0.01, *FINE_STEPS)]
     return holds(
         f"dip {dips[0]:.1f} km/h, torque at a limit in {stuck:.0f} % of the samples; dip {dips[1]:.1f} and "
         f"{dips[2]:.1f} km/h at 1 and 10 kHz",
         min(dips) > 3.0 * plain,
+        reason="behind the drive's lag an error grows by {:.0f}, {:.0f} and {:.0f} a sample".format(*growth),
     )
