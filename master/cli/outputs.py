@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -145,7 +146,8 @@ def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
 def write_results(folder: RunFolder, results: Results) -> list[str]:
     """Write results.csv and run.json, and texts beside them, and return their names.
 
-    If they cannot be written they go to a temporary folder, and RunError names it.
+    If they cannot be written they go to a temporary folder, and RunError names it, or says where the rows are
+    that were saved in the run.
     """
     from ...cosim.errors import ConfigError, RunError
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
@@ -154,11 +156,32 @@ def write_results(folder: RunFolder, results: Results) -> list[str]:
     try:
         folder.finish(results)
     except ConfigError as error:
-        rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
-        results.write(rescue)
-        raise RunError(f"{error}\nthe results are kept in {rescue}") from error
+        raise RunError(f"{error}\n{_rescued(folder, results)}") from error
     texts = [texts_path(folder.path / CSV_NAME).name] if results.texts else []
     return [CSV_NAME, *texts, MANIFEST_NAME]
+
+
+def _rescued(folder: RunFolder, results: Results) -> str:
+    """Write the results where temporary files are, and return what to say of them."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.shortage import of_temporary_files
+
+    try:
+        rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
+        try:
+            results.write(rescue)
+        except ConfigError as error:
+            shutil.rmtree(rescue, ignore_errors=True)
+            said = str(error)
+        else:
+            return f"the results are kept in {rescue}"
+    except OSError as error:
+        said = of_temporary_files(error)
+    said = f"nor can they be kept elsewhere: {said}"
+    if not folder.rows.exists():
+        return said
+    recover = f"`evcosim results recover {folder.path}` makes results.csv of them"
+    return f"{said}\nthe rows that were saved in the run are in {folder.rows}: {recover}"
 
 
 def figure_of(results: Results) -> FigureSpec | None:

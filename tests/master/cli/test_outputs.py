@@ -67,7 +67,10 @@ def test_full_disk_after_the_run(evcosim, monkeypatch):
 
     monkeypatch.setattr(outputs, "write_figure", full)
     answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
-    assert (answer.code, answer.err) == (1, "evcosim: out/figure.png: No space left on device\n")
+    assert (answer.code, answer.err) == (
+        1,
+        "evcosim: out/figure.png: No space left on device: make room on the disk\n",
+    )
 
 
 def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch, tmp_path):
@@ -87,6 +90,31 @@ def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch,
     assert "No space left on device" in answer.err
     assert f"the results are kept in {kept}" in answer.err
     assert len(Results.read(kept)) == 11
+
+
+def test_results_that_cannot_be_written_anywhere_are_said_to_be_where_their_rows_are(
+    evcosim, monkeypatch, tmp_path
+):
+    def full(self, folder):
+        (folder / "results.rows").write_bytes(b"rows") if str(folder) == "out" else None
+        raise ConfigError(f"{folder}/results.csv: cannot be written: No space left on device")
+
+    monkeypatch.setattr(Results, "write", full)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    (tmp_path / "elsewhere").mkdir()
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
+    assert answer.code == 1
+    first, second, third = answer.err.splitlines()
+    assert first == "evcosim: out/results.csv: cannot be written: No space left on device"
+    assert second.startswith(f"nor can they be kept elsewhere: {tmp_path}/elsewhere/evcosim-results-")
+    assert third.startswith("the rows that were saved in the run are in out/results.rows: ")
+    assert "`evcosim results recover out`" in third
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+    # and where there is no folder for temporary files at all
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "gone"))
+    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out", "--isolation", "none", "--replace")
+    assert answer.code in (1, 2)
+    assert "unexpected" not in answer.err
 
 
 def test_a_default_folder_is_named_by_what_has_a_name():
