@@ -21,28 +21,48 @@ class Kind(enum.StrEnum):
     swap = "swap"
 
 
+class Verb(enum.StrEnum):
+    """The verbs with `--json`."""
+
+    run = "run"
+    list = "list"
+    info = "info"
+    check = "check"
+    compare = "compare"
+    identify = "identify"
+    budget = "budget"
+    reproduce = "reproduce"
+
+
 def schema(
     kind: Annotated[
         Kind,
         typer.Argument(metavar="[KIND]", help="system (the default), scenario or swap.", show_default=False),
     ] = Kind.system,
+    json_of: Annotated[
+        Verb | None,
+        typer.Option("--json-of", help="Of what a verb prints with --json.", show_default=False),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="PATH", help="Write it: a file, or a folder to put it into."),
     ] = None,
 ) -> None:
-    """Print the JSON schema of a kind of file, for editors.
+    """Print the JSON schema of a kind of file, for editors, or of the output of a verb.
 
     An editor that knows TOML completes and checks a file whose first line is #:schema ./system.schema.json
     """
     from ...cosim.system.schema import json_schema
     from ...cosim.writing import write_text
+    from .json_schemas import schema_of
 
-    text = json.dumps(json_schema(_model(kind), f"evcosim {kind} file"), indent=2, ensure_ascii=False) + "\n"
+    made = json_schema(_model(kind), f"evcosim {kind} file") if json_of is None else schema_of(json_of)
+    text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     if output is None:
         typer.echo(text, nl=False)
         return
-    path = output / f"{kind}.schema.json" if output.is_dir() else output
+    name = kind if json_of is None else f"{json_of}-output"
+    path = output / f"{name}.schema.json" if output.is_dir() else output
     write_text(path, text)
     typer.echo(path)
 

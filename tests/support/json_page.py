@@ -1,0 +1,65 @@
+"""docs/json.md: the keys of what each verb prints with --json, made of the schemas.
+
+python tests/support/json_page.py --write
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from evcosim.master.cli.json_schemas import SCHEMAS
+
+PAGE = Path(__file__).parents[2] / "docs" / "json.md"
+HEAD = """# What `--json` prints
+
+Eight verbs print JSON for programs on stdout with `--json`; warnings and errors stay on stderr, and the exit
+code is the same. A number that is not finite is `null`. `evcosim schema --json-of run` prints the JSON schema
+of one of them. A new version may add keys; the [changelog](../CHANGELOG.md) says of any other change.
+
+```sh
+evcosim run scooter --stop-time 5 --json
+evcosim schema --json-of run
+evcosim schema --json-of compare
+```
+
+In the tables `rows[].name` is the key `name` of each entry of the list `rows`, and `metrics.*.value`
+the key `value` of each entry of `metrics`, by name.
+"""
+
+
+def rows(schema: dict[str, Any], path: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield path, type and meaning of each key of a schema."""
+    kinds = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
+    if path:
+        yield path, " or ".join(kinds), schema.get("description", "")
+    for key, inner in schema.get("properties", {}).items():
+        yield from rows(inner, f"{path}.{key}" if path else key)
+    if isinstance(schema.get("additionalProperties"), dict):
+        inner = schema["additionalProperties"]
+        if "properties" in inner:
+            yield from rows(inner, f"{path}.*" if path else "*")
+    if "properties" in schema.get("items", {}):
+        for key, inner in schema["items"]["properties"].items():
+            yield from rows(inner, f"{path}[].{key}")
+
+
+def page() -> str:
+    """Return the text of the page."""
+    parts = [HEAD]
+    for verb, schema in SCHEMAS.items():
+        for each in schema.get("oneOf", [schema]):
+            about = f": {each['description']}" if "oneOf" in schema else ""
+            parts.append(f"## `evcosim {verb} --json`{about}\n")
+            parts.append("| key | type | meaning |\n|---|---|---|")
+            parts[-1] += "".join(f"\n| `{key}` | {kind} | {text} |" for key, kind, text in rows(each)) + "\n"
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    if "--write" in sys.argv:
+        PAGE.write_text(page(), encoding="utf-8")
+    else:
+        print(page())
