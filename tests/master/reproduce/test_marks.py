@@ -153,7 +153,16 @@ def marks_of_docs() -> Iterator[Mark]:
                 yield Mark(path.stem, f"{path.name}: {cells[0]}", cells[1])
 
 
-MARKS = [*marks_of_models(), *marks_of_files(), *marks_of_docs()]
+def marks_of_prose() -> Iterator[Mark]:
+    """Yield what the sentences of the pages call published, to the next comma, semicolon or bracket."""
+    for path in sorted((ROOT / "docs" / "systems").glob("*.md")):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        text = " ".join(line for line in lines if not line.startswith("|"))
+        for match in re.finditer(r"\bpublished ([^;:,()]*?)(?=[;:,()]|\. |$)", text):
+            yield Mark(path.stem, f"{path.name}: {match[1]}", match[1])
+
+
+MARKS = [*marks_of_models(), *marks_of_files(), *marks_of_docs(), *marks_of_prose()]
 
 
 def test_marks_are_found_everywhere():

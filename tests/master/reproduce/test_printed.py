@@ -22,6 +22,11 @@ def test_no_statement_stands_twice_in_a_paper():
     assert len(set(names)) == len(names)
 
 
+def test_the_docs_show_the_table_of_the_package():
+    shown = counts.README.parent / "docs" / "papers" / printed.FILE.name
+    assert shown.samefile(printed.FILE) or shown.read_text(encoding="utf-8").endswith(printed.FILE.name)
+
+
 def test_keys_are_those_of_one_row():
     keys = [(row.paper, row.by) for row in printed.rows() if row.by]
     assert len(set(keys)) == len(keys)
