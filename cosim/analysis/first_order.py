@@ -304,13 +304,14 @@ def _longest(inside: NDArray[np.bool_], amount: Array) -> float:
 
 @dataclasses.dataclass(frozen=True)
 class Prediction:
-    """A measured output and the model's: `time` [s], `measured`, `predicted` and `esr` [%], shapes (n,).
+    """A measured output and the model's: `time` [s], `u`, `measured`, `predicted` and `esr` [%], shapes (n,).
 
     `esr` (4) is NaN outside accelerations; `mean_esr` [%] is its mean over them, NaN where there is none or
     the output is not above zero in one: a share of it says nothing then.
     """
 
     time: Array
+    u: Array
     measured: Array
     predicted: Array
     esr: Array
@@ -344,7 +345,7 @@ def predict(
     if rising.any() and y[rising].min() > 0.0:
         esr[rising] = 100.0 * np.abs(y - predicted)[rising] / y[rising]  # (4)
     mean = float(esr[rising].mean()) if rising.any() else math.nan
-    return Prediction(time, y, predicted, esr, mean)
+    return Prediction(time, u, y, predicted, esr, mean)
 
 
 def _slope(y: Array, step: float, half: float) -> Array:

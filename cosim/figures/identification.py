@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..analysis.frequency_response import FrequencyResponse
 from ..row_store import Array
 from ..visible import flowing
 from .canvas import canvas
-from .style import COLORS
+from .style import COLORS, look
 from .text import pretty
 
 if TYPE_CHECKING:
@@ -105,8 +105,13 @@ def _plain_ticks(axes: Axes) -> None:
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
-    """Draw measured and predicted output over time [s], and ESR(t) [%] in the accelerations."""
+def prediction(
+    found: Prediction, unit: str, label: str, title: str, others: Mapping[str, Array] | None = None
+) -> Figure:
+    """Draw measured and predicted output over time [s], and ESR(t) [%] in the accelerations.
+
+    `others` are outputs, shape (n,), of other models beside it, by the texts of their legend.
+    """
     shown = np.isfinite(found.esr).any()
     rows, height = (2, 2.35) if shown else (1, 3.1)
     with canvas(rows, height=height, title=title, share_x=True) as (figure, grid):
@@ -118,6 +123,8 @@ def prediction(found: Prediction, unit: str, label: str, title: str) -> Figure:
             found.time, found.predicted, color=COLORS[1], linestyle=dashes, linewidth=1.4, label="model,\n"
             "re-initialized in\ndecelerations",
         )  # fmt: skip # one line of text in two
+        for i, (text, values) in enumerate((others or {}).items(), 2):
+            top.plot(found.time, values, **look(i) | {"linewidth": 1.4}, label=text)
         name = flowing(label)
         top.set_ylabel(f"{name}\n[{pretty(unit)}]" if unit else name)
         if shown:

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ...cosim.figures import draw as figures
 from ...cosim.results.results import Results
 from ...models.bound_controller import BoundController
 from ..simulation import simulate
 from ..studies.parallel import Task
 from . import printed
+from . import scooter_bounds as bounds
 from . import scooter_numbers as numbers
-from .page import Findings, Found, Page, Paper, Picture, at_least, at_most, holds, near, page
+from .page import Findings, Found, Page, Paper, at_least, at_most, holds, near, page
 from .scooter_identification import (
     PUBLISHED_GAIN,
     PUBLISHED_POLE,
@@ -25,6 +25,7 @@ from .scooter_identification import (
     at_speed,
     at_working_point,
 )
+from .scooter_pictures import pictures
 
 _VARIANTS = {"bus": "over the bus", "ideal": "without the bus", "jacobi": "one step later (jacobi)"}
 _RELEASE = 30.0  # s: the rider of Fig. 8 closes the throttle
@@ -42,10 +43,19 @@ def _runs() -> tuple[Task[Any], ...]:
         *(Task(f"fig8 {name}", simulate, ("scooter", "fig8"), o) for name, o in numbers.VARIANTS.items()),
         *(Task(f"fig9 {name}", simulate, ("scooter", "fig9"), o) for name, o in numbers.VARIANTS.items()),
         Task("fig8 raw", simulate, ("scooter", "fig8"), raw),
+        Task("fig8 wheels", simulate, ("scooter", "fig8_wheels")),
+        *(Task(f"fig8 fine {on}", _ripple_of_fine_wheels, (on,)) for on in (True, False)),
+        *bounds.tasks(),
         *(Task(f"constant {v:g} km/h", numbers.at_constant_speed, (v,)) for v in numbers.CONSTANT_SPEEDS),
         *(Task(f"stop and go {on}", _stop_and_go, (on,)) for on in (True, False)),
         *(Task(f"{c} {on}", _cycle, (c, on)) for c in ("ece15", "udds") for on in (True, False)),
     )
+
+
+def _ripple_of_fine_wheels(observer: bool) -> float:
+    """Return the rms of dg_e/dt [%/s] in Fig. 8 with the speed of the wheels as it is, not to 1 km/h."""
+    fine = {"ecu.speed_resolution": 0.0, "ecu.use_observer": observer}
+    return numbers.ripple(simulate("scooter", "fig8_wheels", parameters=fine))
 
 
 def _stop_and_go(bounded: bool) -> tuple[float, float]:
@@ -78,14 +88,17 @@ def _page(found: dict[str, Any]) -> Page:
             **_supervisor(found),
             **_figure_8(found),
             **_figure_9(found),
+            **_ranges(found),
             **_acceleration(found),
         },
         own=_own(found, identified),
-        pictures=_pictures(found, identified),
+        pictures=pictures(found, identified),
         commands=(
             "evcosim identify scooter",
             "evcosim run scooter",
             "evcosim run scooter --set ecu.use_observer=false",
+            "evcosim run scooter --scenario fig8_wheels",
+            "evcosim run scooter --set planner.acceleration_at_rest=4 --set ecu.dwell_time=0.5",
             "evcosim run scooter --scenario fig9",
             "evcosim run scooter --scenario udds --set ecu.enabled=false",
         ),
@@ -233,9 +246,36 @@ def _late_excess(results: Results) -> float:
     return float(numbers.over_bound(results)[late].max())
 
 
+def _ranges(found: dict[str, Any]) -> Findings:
+    """Return the ranges of the bounds that were run, and what a_b does to the consumption."""
+    low, *_, high = bounds.ACCELERATION_BOUNDS
+    rest, slowest, fastest = found["a_b = 0"], min(bounds.SPEED_BOUNDS), max(bounds.SPEED_BOUNDS)
+    fall = [found[f"ride v_b = {max(bounds.FREE):g}"], *(found[f"ride a_b = {a:g}"] for a in (1.0, 0.5))]
+    equal = {a: bounds.at_equal_speed(found, a) for a in (1.0, 0.5)}
+    shown = ", ".join(f"{used:.1f} Wh/km at {speed:.1f} km/h" for used, speed in fall)
+    beside = " and ".join(f"{other:.1f}" for _, _, other in equal.values())
+    return {
+        "range of a_b": holds(
+            f"0 (the vehicle stays where it is) and {low:g} to {high:g} m/s²",
+            rest.distance < 1e-6 and [0.0, high] == printed.row("scooter", "range of a_b").numbers,
+        ),
+        "range of v_b": holds(
+            f"{slowest:g} to {fastest:g} km/h",
+            [slowest, fastest] == printed.row("scooter", "range of v_b").numbers,
+        ),
+        "less consumption": holds(
+            f"without, a_b = 1, a_b = 0.5 m/s²: {shown}; at the latter two speeds without a_b, below a v_b: "
+            f"{beside} Wh/km",
+            fall[0][0] > fall[1][0] > fall[2][0],
+        ),
+    }
+
+
 def _own(found: dict[str, Any], identified: ScooterIdentification) -> Findings:
     product = identified.numbers["gain x pole over published"]
-    shares = {of: found[f"fig8 {name}"] for name, of in _VARIANTS.items()}
+    shares = {
+        of: found[f"fig8 {name}"] for name, of in (_VARIANTS | {"wheels": "speed of the wheels"}).items()
+    }
     varying = {of: found[f"fig9 {name}"] for name, of in _VARIANTS.items()}
     return {
         "identified gain x pole, over the printed ones": near(product, 1.0, 0.03, reason=_QUANTIZER),
@@ -244,8 +284,34 @@ def _own(found: dict[str, Any], identified: ScooterIdentification) -> Findings:
             at_most(float(numbers.over_bound(run).max()), 1.5, "km/h", digits=3, of=of)
             for of, run in shares.items()
         ],
+        "mean ESR of the non-linear model (3)": near(identified.nonlinear_esr, 1.08, 0.1, "%"),
+        "rms of the throttle's rate, without and with observer, speed of the wheels not rounded": near(
+            found["fig8 fine False"] / found["fig8 fine True"], 1.99, 0.1, digits=3
+        ),
+        **_over_bounds(found),
         "Fig. 9: switches": [_nine_switches(run, of) for of, run in varying.items()],
         **_energy(found),
+    }
+
+
+def _over_bounds(found: dict[str, Any]) -> Findings:
+    """Return what the map over both bounds, and the rides at equal mean speed, gave before."""
+    many, dwelling = bounds.at(found, 4.0, 30.0).switches, found["dwell"].switches
+    pairs = [(a, v) for a in bounds.ACCELERATION_BOUNDS for v in bounds.SPEED_BOUNDS]
+    highest = max(bounds.at(found, *pair).overshoot for pair in pairs)
+    more = {a: bounds.at_equal_speed(found, a) for a in bounds.ALONE}
+    return {
+        "a_b = 4 m/s²: switches, and with a dwell time of 0.5 s": holds(
+            f"{many}, {dwelling}", (many, dwelling) == (26, 6), "26, 6"
+        ),
+        "a_b = 2 m/s²: overshoot over v_b = 30 km/h": near(
+            bounds.at(found, 2.0, 30.0).overshoot, 1.67, 0.05, "km/h", digits=3
+        ),
+        "a_b to 4 m/s², v_b from 30 to 50 km/h: highest overshoot": at_most(highest, 2.0, "km/h", digits=3),
+        "a_b alone, at equal mean speed: consumption over that of v_b alone": [
+            near(used / other, ratio, 0.015, digits=4, of=f"{a:g} m/s², {speed:.1f} km/h")
+            for (a, (speed, used, other)), ratio in zip(more.items(), (1.030, 1.016), strict=True)
+        ],
     }
 
 
@@ -277,44 +343,6 @@ def _energy(found: dict[str, Any]) -> Findings:
         saves = on["energy per distance"] < off["energy per distance"]
         rows[f"{cycle}, bounds on, then off"] = holds(shown, saves, "bounds save energy")
     return rows
-
-
-def _pictures(found: dict[str, Any], identified: ScooterIdentification) -> tuple[Picture, ...]:
-    captions = {
-        "fig2": "Fig. 2: frequency response from throttle to measured speed, and the fitted model",
-        "fig3": "Fig. 3: gain and pole over speed",
-        "fig4": "Fig. 4: the identified model beside the scooter, and ESR(t)",
-    }
-    redrawn = [Picture(stem, captions[stem], figure) for stem, figure in identified.figures().items()]
-    return (
-        *redrawn,
-        Picture.over_time("fig8", "Fig. 8: fixed bounds, 30 km/h and 1 m/s²", found["fig8 bus"]),
-        Picture.over_time(
-            "fig9", "Fig. 9: bounds that depend on estimated speed and on time", found["fig9 bus"]
-        ),
-        Picture(
-            "raw",
-            "Beyond the paper's text: the throttle without the observer, and with it",
-            _raw_figure(found),
-        ),
-    )
-
-
-def _raw_figure(found: dict[str, Any]) -> Any:
-    with figures.canvas(2, height=2.4, title="scooter: what the observer is for", share_x=True) as (
-        figure,
-        axes,
-    ):
-        for row, (name, label) in enumerate((("fig8 raw", "raw v_m"), ("fig8 bus", "observer"))):
-            results = found[name]
-            axes[row, 0].plot(
-                results.time, results["ecu.throttle"], drawstyle="steps-post", **figures.look(0)
-            )
-            axes[row, 0].set_ylabel(f"g_e [%]\n{label}")
-            axes[row, 0].set_ylim(-5.0, 105.0)
-        axes[1, 0].set_xlabel("time [s]")
-        axes[1, 0].set_xlim(0.0, np.max(results.time))
-    return figure
 
 
 PAPER = Paper("scooter", _runs, _page)

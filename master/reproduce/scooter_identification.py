@@ -10,14 +10,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ...cosim.analysis.first_order import Prediction
+from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...models.scooter import Scooter
 from ..studies.identification import Identification, identify
 from ..studies.identification_run import PhaseProgress
 from . import printed
-from .scooter_numbers import steady_throttle
+from .scooter_numbers import KMH, steady_throttle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,6 +54,18 @@ class ScooterIdentification:
             "mean ESR [%]": self.measured.prediction.mean_esr,
         }
 
+    @cached_property
+    def nonlinear(self) -> Array:
+        """The speed [km/h] of the non-linear model (3) in the test of Fig. 4, shape (n,)."""
+        return nonlinear_speed(self.measured.prediction)
+
+    @property
+    def nonlinear_esr(self) -> float:
+        """The mean ESR [%] of the non-linear model over the same accelerations as the linear one's."""
+        test = self.measured.prediction
+        rising = np.isfinite(test.esr)
+        return float((100.0 * np.abs(test.measured - self.nonlinear) / test.measured)[rising].mean())
+
     def figures(self) -> dict[str, Figure]:
         """Draw Figs. 2, 3 and 4; return them as `fig2`, `fig3`, `fig4`."""
         from ...cosim.figures import identification as figures
@@ -76,7 +94,8 @@ class ScooterIdentification:
                 found.prediction,
                 found.output_unit,
                 "Measured speed",
-                "The identified model beside the scooter",
+                "The identified and the non-linear model beside the scooter",
+                {"non-linear model (3),\nre-initialized too": self.nonlinear},
             ),
         }
 
@@ -100,6 +119,22 @@ def scooter_identification(
 def at_working_point(progress: PhaseProgress | None = None, **options: Any) -> Identification:
     """Identify as in Figs. 2 and 4: the rider's throttle to the measured speed, over the bus (whole km/h)."""
     return identify("scooter", progress=progress, **options)
+
+
+def nonlinear_speed(test: Prediction) -> Array:
+    """Return the speed [km/h] of `Scooter` under the throttle [%] of a test, shape (n,).
+
+    It starts at the first measured speed, and is set to the measured one wherever the linear model is.
+    """
+    p, dt = Scooter.Parameters(), float(test.time[1] - test.time[0])
+    speeds = np.empty_like(test.measured)
+    x = Scooter.initial(p, Scooter.Inputs())
+    for k, (throttle, measured) in enumerate(zip(test.u.tolist(), test.measured.tolist(), strict=True)):
+        if k == 0 or test.predicted[k] == measured:
+            x = dataclasses.replace(x, speed=measured / KMH)
+        speeds[k] = KMH * x.speed
+        x = Scooter.step(p, x, Scooter.Inputs(throttle), dt)
+    return speeds
 
 
 def at_speed(speed: float, progress: PhaseProgress | None = None) -> Identification:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -137,9 +138,9 @@ def at_constant_speed(speed: float, **options: Any) -> ConstantSpeed:
     return ConstantSpeed(float(error.max()), float(from_measured.mean()))
 
 
-def stop_and_go(bounded: bool) -> Results:
-    """Run 300 s, with full throttle for 18 s and coasting for 12 s in turn."""
-    with Simulation("scooter", "fig8", parameters={"ecu.enabled": bounded}) as sim:
+def stop_and_go(bounded: bool, bounds: Mapping[str, float] | None = None) -> Results:
+    """Run 300 s, with full throttle for 18 s and coasting for 12 s in turn; `bounds` are other parameters."""
+    with Simulation("scooter", "fig8", parameters={"ecu.enabled": bounded, **(bounds or {})}) as sim:
         for second in range(300):
             sim.override("ecu.throttle_request", 100.0 if second % 30 < 18 else 0.0)
             sim.step(100)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from evcosim.master.reproduce import scooter_identification as scooter
@@ -36,3 +37,13 @@ def test_pole_gets_slower_with_speed_at_the_same_gain():
     assert found[0].fit.pole.value == pytest.approx(0.0411, rel=0.03)
     assert found[1].fit.pole.value == pytest.approx(0.0206, rel=0.03)
     assert [each.working_point[1] for each in found] == pytest.approx([25.0, 49.0], abs=0.05)
+
+
+def test_the_non_linear_model_is_closer_than_the_linear_one(measured):
+    """It is the scooter without the bus: what is left is the rounding to 1 km/h and the mean over blocks."""
+    found = scooter.ScooterIdentification(measured, ())
+    assert found.nonlinear_esr < 0.6 * measured.prediction.mean_esr
+    test = measured.prediction
+    assert found.nonlinear[0] == test.measured[0]
+    rising = np.isfinite(test.esr)
+    assert np.abs(found.nonlinear - test.measured)[rising].max() < 1.5
