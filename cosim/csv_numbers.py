@@ -62,6 +62,10 @@ class CsvFile:
         """Return the column of the time, by its name. Raises ConfigError where there is none, or several."""
         return time_column(self.names, f"{self.path}: line {self.header_lines}")
 
+    def count_lines(self) -> int:
+        """Return the number of lines below the header. Raises OSError."""
+        return _count_lines(self.path) - self.header_lines
+
     def last_line_without_end(self) -> CutRow | None:
         """Return the last line where it does not end: it may be complete, or cut off. None: it ends.
 

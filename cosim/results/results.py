@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 __all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results"]
 
 CSV_NAME = "results.csv"
+ROWS = "rows"
+"""The key of run.json for the number of rows of results.csv."""
+
 _CHECKED = 4096  # rows that are looked at at a time before they are written
 PIECE = 2**16  # rows that `pieces` gives at a time: half a megabyte for each variable
 
@@ -267,7 +270,7 @@ class Results:
         folder = Path(folder)
         self._save(folder / CSV_NAME, CSV)  # whatever was computed: a run's last rows must not be lost
         described = [*self.variables, *self.text_table.variables]
-        write_manifest(folder / MANIFEST_NAME, self.manifest, described)
+        write_manifest(folder / MANIFEST_NAME, {**self.manifest, ROWS: len(self)}, described)
         return folder
 
     @classmethod
@@ -280,7 +283,7 @@ class Results:
         results.csv every variable is a Real without a unit of measure. Raises ConfigError for another suffix,
         and naming file, line, column and value of what is not a number, or the last line that was cut off:
         in a file with the header that evcosim writes any last line that does not end, in others one that is
-        not complete.
+        not complete. So is a results.csv with fewer rows than its run.json says.
         """
         check_name(path)
         path = Path(path)
@@ -293,6 +296,7 @@ class Results:
         manifest, variables = dict(held.manifest), list(held.variables)
         if path.name == CSV_NAME:
             manifest, known = read_manifest(path.with_name(MANIFEST_NAME))
+            _check_whole(path, len(held.time), manifest.pop(ROWS, 0))
             if "status" in manifest:
                 manifest["status"] = status(path.parent, manifest)
             variables = [known.get(v.name, v) for v in variables]
@@ -350,6 +354,15 @@ def _of_rows(path: Path) -> Results:
         manifest.pop(counted_at_the_end, None)
     texts = read_text_rows(path.with_name(TEXT_ROWS_NAME), len(saved.time))
     return Results(saved.time, saved.data, saved.variables, manifest, texts=texts)
+
+
+def _check_whole(path: Path, count: int, wanted: object) -> None:
+    """Raise ConfigError for a results.csv that has fewer rows than run.json says: it was cut off."""
+    if isinstance(wanted, int) and count < wanted:
+        raise ConfigError(
+            f"{path}: has {count} rows, where {MANIFEST_NAME} says {wanted}: the file was cut off. 'evcosim "
+            "results recover' makes results of the rows that are left"
+        )
 
 
 def _check_times(times: Array) -> None:

@@ -10,19 +10,21 @@ from __future__ import annotations
 import contextlib
 import datetime
 import json
+import math
 import os
 import socket
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..csv_numbers import CsvFile
 from ..csv_text import cut_row
 from ..errors import ConfigError
 from ..file_names import check_name
 from ..writing import remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
 from .manifest import manifest_text, read_manifest, write_manifest
-from .results import CSV_NAME, Results
+from .results import CSV_NAME, ROWS, Results
 from .rows_file import ROWS_NAME
 from .text_rows import TEXT_ROWS_NAME
 from .text_table import texts_path
@@ -118,10 +120,10 @@ class RunFolder(FolderLock):
     def recover(self) -> Results | None:
         """Make results.csv of the rows of a killed run, and return the results; None: there are no such rows.
 
-        A results.csv that was cut off within its last row goes without that. Raises ConfigError where a file
-        cannot be read or written.
+        A results.csv that was cut off within its last row goes without that, and of one that lacks rows those
+        are kept that are left. Raises ConfigError where a file cannot be read or written.
         """
-        if not self.rows.exists() and self._drop_cut_row():
+        if not self.rows.exists() and self._drop_missing_rows():
             results = Results.read(self.path)
             results.manifest["status"] = "cut off"
             self.finish(results)
@@ -137,6 +139,26 @@ class RunFolder(FolderLock):
         self.finish(results)
         remove_drafts(self.path)
         return results
+
+    def _drop_missing_rows(self) -> bool:
+        """Let run.json know of no more rows than results.csv has; return True if it did."""
+        wanted = manifest_of(self.path).get(ROWS)
+        if not (self._drop_cut_row() or (isinstance(wanted, int) and self._count_rows() < wanted)):
+            return False
+        if wanted is not None:
+            about, variables = read_manifest(self.path / MANIFEST_NAME)
+            del about[ROWS]
+            write_manifest(self.path / MANIFEST_NAME, about, variables.values())
+        return True
+
+    def _count_rows(self) -> float:
+        """Return the number of rows of results.csv; infinity where it is not there, or is none of ours."""
+        try:
+            file = CsvFile.of(self.path / CSV_NAME)
+            file.time_column()
+            return file.count_lines()
+        except (ConfigError, OSError):
+            return math.inf
 
     def _drop_cut_row(self) -> bool:
         """Leave out the last row of results.csv where it does not end; return True if it does not."""

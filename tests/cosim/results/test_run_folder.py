@@ -131,6 +131,38 @@ def test_a_folder_that_cannot_be_emptied_is_named(tmp_path: Path) -> None:
         run.begin(ABOUT, VARIABLES)
 
 
+def test_a_csv_that_was_cut_off_at_the_end_of_a_row_is_found_and_mended(tmp_path: Path) -> None:
+    done(tmp_path)
+    whole = (tmp_path / "results.csv").read_bytes()
+    for rows in (1, 0):
+        done(tmp_path)
+        (tmp_path / "results.csv").write_bytes(b"".join(whole.splitlines(keepends=True)[: 1 + rows]))
+        with pytest.raises(
+            ConfigError, match=rf"results.csv: has {rows} rows, where run.json says 2: .*recover"
+        ):
+            Results.read(tmp_path)
+        found = recover(tmp_path)
+        assert found is not None
+        assert (len(found), status(tmp_path)) == (rows, "cut off")
+        assert len(Results.read(tmp_path)) == rows
+        assert recover(tmp_path) is None
+
+
+def test_a_csv_that_is_none_stands_in_no_runs_way(tmp_path: Path) -> None:
+    done(tmp_path)
+    for content in (b"", b"tim", b"a,b\n0,1\n"):
+        (tmp_path / "results.csv").write_bytes(content)
+        assert recover(tmp_path) is None
+
+
+def test_a_part_that_is_written_is_whole(tmp_path: Path) -> None:
+    done(tmp_path)
+    part = Results.read(tmp_path).part(slice(0, 1), ["a.x"])
+    part.write(tmp_path / "part")
+    assert len(Results.read(tmp_path / "part")) == 1
+    assert "rows" not in Results.read(tmp_path / "part").manifest
+
+
 def test_a_csv_that_was_cut_off_within_its_last_row_is_mended(tmp_path: Path) -> None:
     """Whatever is left of the last row: it may be half a number."""
     done(tmp_path)
