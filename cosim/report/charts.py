@@ -59,7 +59,7 @@ def charts(
         states=states_data(results, spec.shade if spec else None, found.items),
         events=events,
         said=said,
-        end=end,
+        shown=(results.span[0], end),
     )
 
 
@@ -84,13 +84,14 @@ def element(
     states: Mapping[str, Any] | None = None,
     events: Sequence[Event] = (),
     said: Sequence[str] = (),
-    end: float | None = None,
+    shown: tuple[float, float] | None = None,
 ) -> str:
     """Return panels over a time axis as HTML; `said` are the lines of text below them.
 
-    They show the time up to `end` [s] at first (None: all of it).
+    They show the time from `shown[0]` to `shown[1]` [s] at first (None: all of it).
     """
-    ends = {"begin": axis.begin, "end": axis.end, "shown": axis.end if end is None else axis.scale * end}
+    part = [axis.begin, axis.end] if shown is None else [axis.scale * end for end in shown]
+    ends = {"begin": axis.begin, "end": axis.end, "shown": part}
     data = {
         "time": {"scale": axis.scale, "unit": axis.unit, **ends},
         **page.as_data(),

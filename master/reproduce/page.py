@@ -64,7 +64,8 @@ class Row:
 class Picture:
     """A figure of the paper, redrawn, or one beyond it: `stem` names its files.
 
-    `panels` are the same curves in HTML, to zoom into; "" where there is nothing over time.
+    `panels` are the same curves in HTML, to zoom into; "" for those of the figure's own lines, if they are
+    over time.
     """
 
     stem: str

@@ -12,6 +12,7 @@ from pathlib import Path
 from ...cosim.figures import draw as figures
 from ...cosim.report.assets import policy, styles
 from ...cosim.report.assets import scripts as panel_scripts
+from ...cosim.report.redrawn import redrawn
 from ...cosim.visible import visible
 from ...cosim.writing import markdown_table, write_text
 from .page import MISSED, Page, Picture, Row
@@ -160,14 +161,15 @@ def _html(page: Page, images: dict[str, Path]) -> str:
 def _figure(page: Page, picture: Picture, image: Path) -> str:
     """Return a picture with its caption: its panels, to zoom into, or else the image itself."""
     caption = html.escape(picture.caption)
-    if picture.panels:
+    panels = picture.panels or redrawn(picture.figure)
+    if panels:
         link = f'<a href="figures/{page.name}-{picture.stem}.png">as a picture</a>'
-        shown, caption = picture.panels, f"{caption} ({link})"
+        shown, caption = panels, f"{caption} ({link})"
     else:
         data = base64.b64encode(image.read_bytes()).decode()
         shown = f'<img alt="{caption}" src="data:image/png;base64,{data}">'
     caption = f"<figcaption>{caption}</figcaption>"
-    inside = f"{caption}{shown}" if picture.panels else f"{shown}{caption}"  # a picture is seen at a glance
+    inside = f"{caption}{shown}" if panels else f"{shown}{caption}"  # a picture is seen at a glance
     return f'<figure id="{html.escape(picture.stem)}">{inside}</figure>'
 
 

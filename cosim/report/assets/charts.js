@@ -217,7 +217,7 @@
       this.key = `charts ${++sections}`;
       const { begin, end, shown } = data.time;
       this.whole = begin < end ? [begin, end] : [begin - 0.5, end + 0.5];
-      this.view = begin < shown ? [begin, shown] : this.whole;
+      this.view = shown[0] < shown[1] ? shown : this.whole;
     }
 
     async start() {

@@ -16,7 +16,7 @@ def test_a_run_without_a_figure_has_its_signals_by_quantity():
     (data,) = data_in(charts(small_run(), events=[(1.0, "set a")]))
     assert data["states"]["name"] == "ecu.state"
     assert "speed" in [panel["title"] for panel in data["panels"]]
-    assert data["time"] == {"scale": 1.0, "unit": "s", "begin": 0.0, "end": 4.0, "shown": 4.0}
+    assert data["time"] == {"scale": 1.0, "unit": "s", "begin": 0.0, "end": 4.0, "shown": [0.0, 4.0]}
     assert data["events"] == [{"time": 1.0, "text": "set a"}]
     assert len(data["signals"]) == 7
 
@@ -40,10 +40,10 @@ def test_a_figure_that_ends_before_its_run():
     until = EndSpec(signal="car.speed", below=0.0, unit="km/h")
     spec = FigureSpec(until=until, panels=[PanelSpec(unit="m/s", signals=[SignalSpec(name="car.speed")])])
     part = charts(small_run(step=0.1), spec)  # at once: the run begins there
-    assert data_in(part)[0]["time"]["shown"] == 40.0
+    assert data_in(part)[0]["time"]["shown"] == [0.0, 40.0]
     spec = spec.model_copy(update={"until": until.model_copy(update={"signal": "car.wind"})})
     part = charts(small_run(step=0.1), spec)
-    assert (data_in(part)[0]["time"]["shown"], data_in(part)[0]["time"]["end"]) == (1.5, 40.0)
+    assert (data_in(part)[0]["time"]["shown"], data_in(part)[0]["time"]["end"]) == ([0.0, 1.5], 40.0)
     assert "The figure ends at 1.5 s" in part
 
 
