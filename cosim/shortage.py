@@ -8,10 +8,12 @@ from __future__ import annotations
 import errno
 import math
 import os
+import sys
 from typing import TypeGuard
 
-SCIPY = 200e6
-"""Bytes of address space that scipy and its libraries take."""
+LINEAR_ALGEBRA = "scipy.linalg"
+"""The module whose library tries without an end to get the memory that it lacks."""
+_SCIPY = 150e6  # bytes of address space that scipy and its libraries take
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 _NO_FOLDER = (*_NO_ROOM, errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENOTDIR)
@@ -102,13 +104,14 @@ def memory_left() -> float:
         return most
 
 
-def too_little_memory(least: float, what: str) -> str:
+def too_little_memory(least: float, what: str, module: str = "") -> str:
     """Return a sentence where fewer bytes than `least` are left for `what`; "" where there are as many.
 
-    Libraries of linear algebra do not fail with too little memory: they try again without an end.
+    They are those that a `module` takes with its libraries, if it is not loaded yet. Libraries of linear
+    algebra do not fail with too little memory: they try again without an end.
     """
     left = memory_left()
-    if left >= least:
+    if left >= least or module in sys.modules:
         return ""
     return (
         f"{what} needs {least / 1e6:.0f} MB of memory, and {max(0.0, left) / 1e6:.0f} MB are left"
@@ -116,9 +119,14 @@ def too_little_memory(least: float, what: str) -> str:
     )
 
 
-def require_memory(least: float, what: str) -> None:
-    """Raise ShortageError where fewer bytes than `least` are left for `what`."""
+def require_memory(least: float, what: str, module: str = "") -> None:
+    """Raise ShortageError where fewer bytes are left than `too_little_memory` says."""
     from .errors import ShortageError  # as above
 
-    if said := too_little_memory(least, what):
+    if said := too_little_memory(least, what, module):
         raise ShortageError(said)
+
+
+def require_scipy() -> None:
+    """Raise ShortageError where there is too little memory to load scipy and its libraries."""
+    require_memory(_SCIPY, "scipy", LINEAR_ALGEBRA)

@@ -28,7 +28,7 @@ from ..cosim.plan.plan import Plan
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
-from ..cosim.shortage import require_memory
+from ..cosim.shortage import LINEAR_ALGEBRA, require_memory
 from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..cosim.system.selection import figure_spec, metric_specs
@@ -47,7 +47,7 @@ from .prepare import check_frames, prepare
 from .unit import Unit
 from .warned import warnings_text
 
-_LEAST = 200e6  # bytes of address space for the libraries that models may use
+_LEAST = 150e6  # bytes of address space for the libraries that models may use
 RunProgress = Callable[[float, float], None]
 """Called with the simulated time reached and the stop time, both in s."""
 
@@ -72,7 +72,7 @@ class Simulation:
         to_stop: bool = False,
         **options: Unpack[RunOptions],
     ) -> None:
-        require_memory(_LEAST, "a run")
+        require_memory(_LEAST, "a run", LINEAR_ALGEBRA)
         prepared = prepare(system, scenario, **options)
         made, self._notice = engine_class(options.get("engine") or prepared.plan.experiment.engine)
         self.system: System = prepared.system

@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 
 from ..errors import ConfigError
 from ..row_store import Array
-from ..shortage import SCIPY, require_memory
+from ..shortage import require_scipy
 from .frequency_response import FrequencyResponse
 
 POOR_COHERENCE = 0.9
@@ -186,7 +186,7 @@ def fit_first_order(measured: FrequencyResponse, band: tuple[float, float], conf
 
     Raises ConfigError when the band holds fewer than three points, or the response is zero or not finite.
     """
-    require_memory(SCIPY, "scipy")
+    require_scipy()
     from scipy import optimize
 
     data = measured.within(band)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..errors import ConfigError
 from ..row_store import Array
-from ..shortage import SCIPY, require_memory
+from ..shortage import require_scipy
 
 LARGEST = 1e150
 """The magnitude of a signal at most: spectra are squares, which doubles hold to 1e308."""
@@ -82,7 +82,7 @@ def frequency_response(u: Array, y: Array, rate: float, length: int | None = Non
     `length` samples make a segment (default: a power of two, at most a quarter of the signal). The
     frequency 0 is left out. Raises ConfigError for signals that do not vary, are not finite, or too short.
     """
-    require_memory(SCIPY, "scipy")
+    require_scipy()
     from scipy import signal
 
     _check_signals(u, y)

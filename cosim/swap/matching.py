@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from ..errors import ConfigError
 from ..interface import UnitInterface, VariableInfo
-from ..shortage import SCIPY, require_memory
+from ..shortage import require_scipy
 from ..system.system import MapEntry, UnitEntry
 from ..units.conversion import conversion
 from ..units.definition import defined
@@ -157,7 +157,7 @@ def _assigned(
         return same
     import numpy as np
 
-    require_memory(SCIPY, "scipy")
+    require_scipy()
     from scipy.optimize import linear_sum_assignment  # 0.2 s, and a report alone needs it
 
     table = np.array([[scores[name][j] for j in left] for name in names])

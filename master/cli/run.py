@@ -232,7 +232,9 @@ def _draw(finished: FinishedRun, wanted: Wanted) -> None:
     from ...cosim.shortage import too_little_memory
     from .outputs import figure_of, write_figure, write_report
 
-    if (wanted.figure or wanted.report) and (said := too_little_memory(_FIGURE, "drawing")):
+    if (wanted.figure or wanted.report) and (
+        said := too_little_memory(_FIGURE, "drawing", "matplotlib.figure")
+    ):
         finished.remarks.append(f"no figure and no page: {said}")
         return
     results, folder = finished.results, finished.folder.path

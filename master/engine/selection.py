@@ -23,7 +23,7 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
         raise ConfigError(f"there is no engine '{wanted}'{nearest(str(wanted), known)}: {', '.join(known)}")
     if wanted == "python":
         return PythonEngine, ""
-    if said := too_little_memory(_NUMBA, "the compiled engine"):
+    if said := too_little_memory(_NUMBA, "the compiled engine", "numba"):
         return PythonEngine, f"{said}: engine python"
     try:
         from .compiled.engine import CompiledEngine

@@ -7,6 +7,7 @@ import math
 import os
 import re
 import resource
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -107,6 +108,12 @@ def test_too_little_memory_is_refused_with_the_limit(monkeypatch: pytest.MonkeyP
         shortage.require_memory(200e6, "a run")
     assert issubclass(ShortageError, RunError)
     shortage.require_memory(50e6, "a run")
+    shortage.require_memory(200e6, "a run", "evcosim.cosim.shortage")  # what is loaded takes no more
+    with pytest.raises(ShortageError, match=r"^a run needs"):
+        shortage.require_memory(200e6, "a run", "not_loaded")
+    monkeypatch.delitem(sys.modules, "scipy.linalg", raising=False)
+    with pytest.raises(ShortageError, match=r"^scipy needs 150 MB"):
+        shortage.require_scipy()
     assert shortage.no_memory().startswith("no memory is left: the limit of memory is 300 KiB")
     assert "300 (`ulimit -u`), or the limit of memory is 300 KiB" in shortage.no_thread().replace(
         "307200", "300"

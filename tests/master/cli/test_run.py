@@ -56,6 +56,7 @@ def test_run_quietly(evcosim):
 def test_a_figure_for_which_there_is_no_memory_is_left_out(evcosim, monkeypatch, tmp_path):
     monkeypatch.setattr("evcosim.cosim.shortage.memory_left", lambda: 220e6)
     monkeypatch.setattr("evcosim.master.cli.run._FIGURE", 230e6)
+    monkeypatch.delitem(sys.modules, "matplotlib.figure", raising=False)
     answer = evcosim("run", "scooter", "--stop-time", "0.1", "--quiet", "--output", str(tmp_path / "out"))
     assert answer.code == 0
     assert "warning: no figure and no page: drawing needs 230 MB of memory, and 220 MB are left" in answer.err
@@ -75,7 +76,7 @@ def test_a_command_with_little_memory_runs_or_says_so(most, tmp_path):
     said = f"the limit of memory is {most} KiB (`ulimit -v`"
     if run.returncode:
         assert run.returncode == 1
-        assert run.stderr.startswith("evcosim: a run needs 200 MB of memory, and ") and said in run.stderr
+        assert run.stderr.startswith("evcosim: a run needs 150 MB of memory, and ") and said in run.stderr
     else:
         assert len(Results.read(tmp_path / "out")) == 101
         assert said in run.stderr or not run.stderr

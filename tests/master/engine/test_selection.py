@@ -46,13 +46,15 @@ def test_a_numba_whose_libraries_find_no_memory_is_as_none(monkeypatch):
 
 def test_too_little_memory_for_numba_is_as_none(monkeypatch):
     monkeypatch.setattr(shortage, "memory_left", lambda: 300e6)
+    monkeypatch.delitem(sys.modules, "numba", raising=False)
     found, notice = engine_class()
     assert found.name == "python"
     assert notice.startswith("the compiled engine needs 450 MB of memory, and 300 MB are left")
     with Simulation("scooter", stop_time=1.0) as simulation:
         assert notice in simulation.warnings
     monkeypatch.setattr(shortage, "memory_left", lambda: 100e6)
-    with pytest.raises(ShortageError, match=r"^a run needs 200 MB of memory, and 100 MB are left"):
+    monkeypatch.delitem(sys.modules, "scipy.linalg", raising=False)
+    with pytest.raises(ShortageError, match=r"^a run needs 150 MB of memory, and 100 MB are left"):
         Simulation("scooter")
 
 
