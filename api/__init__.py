@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .cosim.results.text_table import TextTable
     from .cosim.results.variable import ResultVariable
     from .cosim.row_store import Array, Grid, Table
-    from .cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
+    from .cosim.system.figure_spec import EndSpec, FigureSpec, PanelSpec, SignalSpec
     from .cosim.system.identification_spec import IdentificationSpec
     from .cosim.system.metric_spec import MetricSpec, Reduction
     from .cosim.system.run_options import RunOptions
@@ -57,6 +57,7 @@ __all__ = [
     "BusVariation",
     "Clock",
     "ConfigError",
+    "EndSpec",
     "EngineName",
     "Estimate",
     "Failure",
@@ -118,6 +119,7 @@ _MODULES = {
     "EngineName": "cosim.system.system",
     "Estimate": "cosim.analysis.first_order",
     "Failure": "master.studies.parallel",
+    "EndSpec": "cosim.system.figure_spec",
     "FigureSpec": "cosim.system.figure_spec",
     "FileValue": "cosim.system.toml",
     "FirstOrder": "cosim.analysis.first_order",
