@@ -289,6 +289,9 @@ def _conclude(
         print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}{allowed}")
         if left_open:
             print(f"open, each with its guess as a comment in {write}: {', '.join(left_open)}")
+    elif problems and file.endswith(".toml"):
+        again = f"evcosim check {file} --as {checked.place} --try {tried.duration:g}s" if tried else ""
+        print(f"{conclusion}: {again} --write {file} writes what the trial proposes")
     elif complete and file.endswith(".toml"):
         print(f"{conclusion}: evcosim run {system} --swap {unit}={file}{_trust(checked, Path(file))}")
     else:

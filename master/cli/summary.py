@@ -50,7 +50,8 @@ def show(finished: FinishedRun) -> None:
 def _isolated(units: dict[str, Any]) -> str:
     """Return which units have a process of their own."""
     isolated = [name for name, unit in units.items() if unit["isolation"] == "process"]
-    return f"{', '.join(isolated)} (each in a process of its own)" if isolated else "none"
+    each = "each " if len(isolated) > 1 else ""
+    return f"{', '.join(isolated)} ({each}in a process of its own)" if isolated else "none"
 
 
 def _next(finished: FinishedRun) -> list[str]:

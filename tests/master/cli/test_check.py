@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import zipfile
 from pathlib import Path
 
@@ -47,6 +48,15 @@ def test_a_trial_proposes_what_makes_the_next_one_pass(evcosim, tmp_path: Path) 
     written = swap.read_text()
     assert 'brake_force = { variable = "F_brake", invert = true }  # [N]; proposed:' in written
     assert "# problem: brake_force -> speed: reacts to the other sign only" in written
+    written = swap.read_text().replace(", invert = true", "")
+    swap.write_text(written)
+    wrong = check(evcosim, swap, "--as", "scooter.vehicle", "--try", "1s")
+    said = wrong.out.splitlines()[-1]
+    assert said.startswith("4 problems: evcosim check ") and said.endswith("writes what the trial proposes")
+    words = shlex.split(
+        said.removeprefix("4 problems: evcosim ").removesuffix(" writes what the trial proposes")
+    )
+    assert evcosim(*words).code == 1  # of what was wrong; now it is written
     again = check(evcosim, swap, "--as", "scooter.vehicle", "--try", "1s", "--json")
     assert again.code == 0, again
     assert again.json["trial"]["passed"] is True

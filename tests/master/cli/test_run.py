@@ -105,7 +105,7 @@ def test_results_name_own_files(evcosim, system, tmp_path):
 
 def test_the_units_in_processes_of_their_own_are_named(evcosim):
     apart = evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "--isolation", "process")
-    assert "isolated" in apart.out and "(each in a process of its own)" in apart.out
+    assert "isolated" in apart.out and "in a process of its own)" in apart.out
     assert (
         "isolated  none\n" in evcosim("run", "scooter", "--stop-time", "0.1", "--no-plot", "-o", "here").out
     )
