@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable
 from pathlib import Path
+
+from ..reading import content
+from .toml_text import parsed
 
 _PICTURE = ("a picture", "`evcosim run` draws it anew beside its results")
 _LIBRARY = (
@@ -109,6 +111,6 @@ def other_file(path: Path) -> str:
 
 def _keys(path: Path) -> Iterable[str]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):  # the reader of the file says what is wrong
+        return parsed(content(path).decode("utf-8-sig"))
+    except ValueError:  # the reader of the file says what is wrong
         return ()

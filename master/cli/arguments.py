@@ -54,7 +54,7 @@ def scalar(text: str) -> Value:
     """Return a value that is written as in TOML: true, false, a number, a quoted string; else the text."""
     import tomllib
 
-    from ...cosim.system.toml import parsed
+    from ...cosim.system.toml_text import parsed
 
     with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is plain text
         value = parsed(f"value = {text}")["value"] if "\n" not in text else text
