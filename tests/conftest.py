@@ -5,16 +5,21 @@ from __future__ import annotations
 import pytest
 from hypothesis import settings
 
-from support import bytecode
+from support import bytecode, scratch
 
 # an example that a busy machine slows down has failed nothing: speed is shown by benchmarks
 settings.register_profile("evcosim", deadline=None)
 settings.load_profile("evcosim")
 
 bytecode.compile_sources()
+scratch.use()
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection():
     with bytecode.written():
         return (yield)
+
+
+def pytest_sessionfinish(exitstatus):
+    scratch.failed = exitstatus != 0

@@ -10,15 +10,15 @@ import functools
 import hashlib
 import os
 import subprocess
-import tempfile
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from support import scratch
 from support.needs import need_c_compiler
 
 SOURCES = Path(__file__).with_name("sources")
-_CACHE = Path(tempfile.gettempdir()) / f"evcosim-tests-{os.getuid()}"
+_CACHE = scratch.kept()
 PLATFORM = {1: "linux64", 2: "linux64", 3: "x86_64-linux"}
 
 
@@ -28,7 +28,7 @@ def compiled(source: Path, flags: tuple[str, ...] = ()) -> bytes:
     need_c_compiler()
     command = ["cc", "-O1", "-fPIC", "-shared", "-w", *flags]
     content = source.read_bytes() + " ".join(command).encode()
-    _CACHE.mkdir(exist_ok=True)
+    _CACHE.mkdir(mode=0o700, exist_ok=True)
     path = _CACHE / f"{hashlib.sha256(content).hexdigest()[:24]}.so"
     if not path.exists():
         made = path.with_suffix(f".{os.getpid()}")  # several test processes may compile it at once
