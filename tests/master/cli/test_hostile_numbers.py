@@ -54,7 +54,7 @@ FILES = {
     "--write",
     "--plot",
 }
-NAMES = {"--as", "--signals", "--causality", "--search", "--unit"}
+NAMES = {"--as", "--from", "--signals", "--causality", "--search", "--unit"}
 
 
 def valued(verb: str) -> list[Any]:
