@@ -54,7 +54,7 @@ FILES = {
     "--write",
     "--plot",
 }
-NAMES = {"--as", "--from", "--signals", "--causality", "--search", "--unit"}
+NAMES = {"--as", "--from", "--json-of", "--signals", "--causality", "--search", "--unit"}
 
 
 def valued(verb: str) -> list[Any]:
