@@ -41,6 +41,10 @@ via = "can0.VCU_Request.VCU_ThrottleRequest"
 signals = [{ name = "vehicle.speed", weight = 1.0 }]
 unit = "km/h"
 limits = [0.0, 30.0]
+[figure.until]
+signal = "vehicle.speed"
+below = 0.0
+unit = "km/h"
 [[metrics]]
 name = "above"
 signal = "vehicle.speed"
@@ -90,6 +94,10 @@ value = 1.0
 signals = [{ name = "vehicle.speed", weight = 1.0 }]
 unit = "km/h"
 limits = [0.0, 30.0]
+[figure.until]
+signal = "vehicle.speed"
+below = 0.0
+unit = "km/h"
 [[metrics]]
 name = "above"
 signal = "vehicle.speed"
