@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .cosim.clock import Clock
     from .cosim.errors import ConfigError, RunError
     from .cosim.interface import Value
-    from .cosim.results.metrics import Metric
+    from .cosim.results.metrics import Metric, Metrics
     from .cosim.results.results import Results
     from .cosim.results.text_table import TextTable
     from .cosim.results.variable import ResultVariable
@@ -72,6 +72,7 @@ __all__ = [
     "Isolation",
     "Metric",
     "MetricSpec",
+    "Metrics",
     "Outcome",
     "PanelSpec",
     "PhaseProgress",
@@ -131,6 +132,7 @@ _MODULES = {
     "Isolation": "cosim.system.system",
     "Metric": "cosim.results.metrics",
     "MetricSpec": "cosim.system.metric_spec",
+    "Metrics": "cosim.results.metrics",
     "Outcome": "master.studies.parallel",
     "PanelSpec": "cosim.system.figure_spec",
     "PhaseProgress": "master.studies.identification_run",

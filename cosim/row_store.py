@@ -274,3 +274,16 @@ class RowStore:
             if not self._freed or self._file is None:
                 return MemoryTable(rows)
             return _FileTable(self._file, self._freed, rows)
+
+
+def check_times(times: Array) -> None:
+    """Raise ValueError for times [s], shape (n,), of which one is not finite or comes before the last one."""
+    if times.ndim != 1:
+        raise ValueError(f"time has {times.ndim} dimensions: it is a list of numbers")
+    bad = np.flatnonzero(~np.isfinite(times))
+    if len(bad):
+        raise ValueError(f"time[{bad[0]}] = {times[bad[0]]}: times are finite")
+    back = np.flatnonzero(times[1:] < times[:-1])
+    if len(back):
+        k = int(back[0]) + 1
+        raise ValueError(f"time[{k}] = {times[k]!r} comes after {times[k - 1]!r}: time must not decrease")

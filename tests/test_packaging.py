@@ -54,9 +54,14 @@ def test_dependencies_are_what_is_imported():
         for name in third_party(ast.parse(file.read_text(encoding="utf-8")))
     }
     needed = {DISTRIBUTIONS.get(name, name) for name in imported} - CHOSEN_BY_ANOTHER.keys()
-    declared = {re.split(r"[<>=!~\[; ]", text)[0] for text in PROJECT["project"]["dependencies"]}
+    project = PROJECT["project"]
+    declared, optional = (
+        {re.split(r"[<>=!~\[; ]", text)[0] for text in texts}
+        for texts in (project["dependencies"], project["optional-dependencies"]["data"])
+    )
     # the runtime of a built FMU is copied from pythonfmu's files, which are found without an import
-    assert declared == needed | {"pythonfmu"}
+    assert declared | optional == needed | {"pythonfmu"}
+    assert not declared & optional
 
 
 def test_the_version_is_the_same_everywhere():

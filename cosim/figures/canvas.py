@@ -44,10 +44,10 @@ def drawing(left: float, right: float, bottom: float, top: float) -> Iterator[tu
 
     Gives the figure, as large as the edges say, and what to draw on inside the `with` block.
     """
-    from matplotlib.figure import Figure
+    from .shown import ShownFigure
 
     with style():
-        figure = Figure(figsize=(right - left, top - bottom))
+        figure = ShownFigure(figsize=(right - left, top - bottom))
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()
         axes.set_xlim(left, right)
@@ -69,9 +69,9 @@ def grid(
 
     `heights` and `widths` are in proportion to each other; None: all equal.
     """
-    from matplotlib.figure import Figure
+    from .shown import ShownFigure
 
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = ShownFigure(figsize=(WIDTH, height), layout="constrained")
     axes = figure.subplots(
         rows, columns, squeeze=False, sharex=share_x, height_ratios=heights, width_ratios=widths
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -175,3 +176,18 @@ def _panel(variables: list[ResultVariable]) -> PanelSpec:
     if not unit and len(variables) == 1:
         label = variables[0].name
     return PanelSpec(label=label, unit=unit, signals=[SignalSpec(name=v.name) for v in variables])
+
+
+def spec_of(results: Results, names: Sequence[str]) -> FigureSpec:
+    """Return a figure of some variables, all of them, those that measure the same quantity in one panel.
+
+    Raises ConfigError without a name, and naming the nearest one for a name that there is not.
+    """
+    if not names:
+        raise ConfigError("no signal to draw is named")
+    outlines = Outlines(results)
+    groups: dict[object, list[ResultVariable]] = {}
+    for name in dict.fromkeys(names):
+        variable = results.variable(name)
+        groups.setdefault(_group(outlines, variable), []).append(variable)
+    return FigureSpec(panels=[_panel(group) for group in groups.values()])

@@ -27,7 +27,7 @@ def report(results: Results, spec: FigureSpec | None = None) -> str:
     about = facts.plain(results.manifest)
     span = results.span if len(results) else (0.0, 0.0)
     failed = "error" in about
-    metrics = [] if failed or not results.metric_specs else results.metrics()
+    metrics = [] if failed or not results.metric_specs else results.metrics
     described = (*results.variables, *results.text_table.variables)
     body = (
         facts.headline(about, len(results), span),

@@ -116,3 +116,12 @@ def _check_types(variable: ResultVariable) -> None:
         raise ValueError(
             f"type = {short(variable.type)} of {short(variable.name)}: it is {', '.join(_TYPES)}"
         )
+
+
+def check_whole(path: Path, count: int, wanted: object) -> None:
+    """Raise ConfigError for a results.csv that has fewer rows than run.json says: it was cut off."""
+    if isinstance(wanted, int) and count < wanted:
+        raise ConfigError(
+            f"{path}: has {count} rows, where run.json says {wanted}: the file was cut off. 'evcosim "
+            "results recover' makes results of the rows that are left"
+        )

@@ -25,8 +25,10 @@ from __future__ import annotations
 
 import bisect
 import dataclasses
+import html
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import SupportsIndex, overload
 
 import numpy as np
 
@@ -36,6 +38,7 @@ from ..system.metric_spec import MetricSpec, Reduction
 from ..units.conversion import conversion
 from ..units.definition import defined
 from ..units.measure import BASE_UNITS, Affine, UnitOfMeasure
+from ..visible import flowing
 from .recording import Recording
 from .variable import ResultVariable
 
@@ -60,6 +63,37 @@ class Metric:
         if math.isnan(self.value):
             return f"- ({self.reason})"
         return f"{self.value:.4g}" if self.unit in ("", "1") else f"{self.value:.4g} {self.unit}"
+
+
+class Metrics(list[Metric]):
+    """The metrics of a run in the order of its files; `metrics["distance"]` is the one of that name."""
+
+    def __call__(self) -> Metrics:
+        """Return the same: `results.metrics()` is `results.metrics`."""
+        return self
+
+    @overload
+    def __getitem__(self, place: SupportsIndex | str) -> Metric: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Metric]: ...
+    def __getitem__(self, place: SupportsIndex | slice | str) -> Metric | list[Metric]:
+        """Return a metric by place or name, or some by a slice. Raises ConfigError naming the nearest one."""
+        if not isinstance(place, str):
+            return super().__getitem__(place)
+        named = {metric.name: metric for metric in self}
+        if place not in named:
+            known = ", ".join(named) or "none"
+            raise ConfigError(f"the run has no metric '{place}'{nearest(place, named)}; there are: {known}")
+        return named[place]
+
+    def _repr_html_(self) -> str:
+        """Return a table, which a notebook shows."""
+        rows = "".join(f"<tr>{_cell(metric.name)}{_cell(metric.text)}</tr>" for metric in self)
+        return f"<table>{rows}</table>" if rows else "<p>no metrics</p>"
+
+
+def _cell(text: str) -> str:
+    return f'<td style="text-align: left">{html.escape(flowing(text))}</td>'
 
 
 def check(specs: Sequence[MetricSpec], variables: Mapping[str, ResultVariable], place: str) -> None:

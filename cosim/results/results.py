@@ -17,12 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ConfigError, nearest
 from ..file_names import check_name
-from ..row_store import Array, Grid, MemoryTable, Table
+from ..row_store import Array, Grid, MemoryTable, Table, check_times
 from ..writing import replacing
+from . import frames
 from .folder_lock import MANIFEST_NAME, status
 from .formats.format import Format
 from .formats.suffixes import CSV, format_of, reader_of
-from .manifest import read_manifest, write_manifest
+from .manifest import check_whole, read_manifest, write_manifest
 from .rows_file import ROWS_NAME
 from .rows_file import read as read_rows
 from .text_rows import TEXT_ROWS_NAME, read_text_rows
@@ -30,13 +31,15 @@ from .text_table import TextTable, read_texts, write_texts
 from .variable import ResultVariable
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
     from matplotlib.figure import Figure
 
     from ..errors import Recorded
     from ..interface import Value
     from ..system.figure_spec import FigureSpec
     from ..system.metric_spec import MetricSpec
-    from .metrics import Metric
+    from .metrics import Metrics
 
 __all__ = ["CSV_NAME", "MANIFEST_NAME", "PIECE", "ResultVariable", "Results"]
 
@@ -79,7 +82,7 @@ class Results:
         self._time: Array | None = None
         if not isinstance(time, Grid):
             self._time = np.array(time, dtype=np.float64, ndmin=1)
-            _check_times(self._time)
+            check_times(self._time)
         self._table: Table = data if isinstance(data, Table) else _table(data)
         self.variables = tuple(variables)
         self.manifest: dict[str, Any] = dict(manifest or {})
@@ -296,7 +299,7 @@ class Results:
         manifest, variables = dict(held.manifest), list(held.variables)
         if path.name == CSV_NAME:
             manifest, known = read_manifest(path.with_name(MANIFEST_NAME))
-            _check_whole(path, len(held.time), manifest.pop(ROWS, 0))
+            check_whole(path, len(held.time), manifest.pop(ROWS, 0))
             if "status" in manifest:
                 manifest["status"] = status(path.parent, manifest)
             variables = [known.get(v.name, v) for v in variables]
@@ -305,32 +308,54 @@ class Results:
             table = TextTable([known.get(v.name, v) for v in table.variables], table.changes)
         return cls(held.time, held.data, variables, manifest, texts=table)
 
-    def metrics(self) -> list[Metric]:
-        """Return the numbers that the run's system and scenario name.
+    @property
+    def metrics(self) -> Metrics:
+        """The numbers that the run's system and scenario name; by place or name, as `metrics["distance"]`.
 
-        Raises ConfigError for one whose variable is not recorded or whose unit of measure does not fit.
+        `metrics()` is the same. Raises ConfigError for one whose variable is not recorded or whose unit of
+        measure does not fit.
         """
         from . import metrics  # knows units of measure; reading and writing results does without
 
-        return metrics.evaluate(self, self.metric_specs)
+        return metrics.Metrics(metrics.evaluate(self, self.metric_specs))
+
+    def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
+        """Return the variables, or some of them, as a pandas.DataFrame over the time in s.
+
+        `attrs["units"]` has the units of measure by column; enumerations are categories, named by their
+        states. Raises ConfigError without pandas (`pip install "evcosim[data]"`) and as `variable` does.
+        """
+        return frames.to_dataframe(self, names)
+
+    def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
+        """Return the variables, or some of them, as an xarray.Dataset over the time in s.
+
+        Each has its unit of measure as the attribute `units`; enumerations are numbers with `flag_values` and
+        `flag_meanings`. Raises ConfigError without xarray (`pip install "evcosim[data]"`) and as `variable`.
+        """
+        return frames.to_xarray(self, names)
+
+    def _repr_html_(self) -> str:
+        from ..report.inline import shown  # knows figures, as `plot` does
+
+        return shown(self)
 
     def plot(
         self,
-        path: str | os.PathLike[str] | None = None,
+        path: str | os.PathLike[str] | Sequence[str] | None = None,
         title: str | None = None,
         spec: FigureSpec | None = None,
+        *,
+        signals: str | Sequence[str] | None = None,
     ) -> Figure:
-        """Draw the figure of the run's system, another `spec`, or else signals grouped by unit of measure.
+        """Draw the figure of the run's system, another `spec`, `signals`, or else all, grouped by quantity.
 
-        It is written where a path (.png, .svg, .pdf) is given. Raises ConfigError for a spec that does not
-        fit, and where the file cannot be written.
+        It is written where a path (.png, .svg, .pdf) is given; a notebook shows it. Signals, a name or a
+        list, may stand first, as in `plot(["vehicle.speed"])`. Raises ConfigError for what does not fit.
         """
-        from ..figures import draw as figures  # matplotlib: 0.5 s that only figures need
+        from ..figures import asked  # matplotlib: 0.5 s that only figures need
 
-        figure = figures.draw(self, spec or self.figure, title=title)
-        if path is not None:
-            figures.write(figure, Path(path))
-        return figure
+        return asked.plot(self, path, title, spec, signals)
 
     def report(self, path: str | os.PathLike[str], spec: FigureSpec | None = None) -> Path:
         """Write a page (.html) of the run, its curves, metrics and settings, that needs no network.
@@ -354,28 +379,6 @@ def _of_rows(path: Path) -> Results:
         manifest.pop(counted_at_the_end, None)
     texts = read_text_rows(path.with_name(TEXT_ROWS_NAME), len(saved.time))
     return Results(saved.time, saved.data, saved.variables, manifest, texts=texts)
-
-
-def _check_whole(path: Path, count: int, wanted: object) -> None:
-    """Raise ConfigError for a results.csv that has fewer rows than run.json says: it was cut off."""
-    if isinstance(wanted, int) and count < wanted:
-        raise ConfigError(
-            f"{path}: has {count} rows, where {MANIFEST_NAME} says {wanted}: the file was cut off. 'evcosim "
-            "results recover' makes results of the rows that are left"
-        )
-
-
-def _check_times(times: Array) -> None:
-    """Raise ValueError for times [s], shape (n,), of which one is not finite or comes before the last one."""
-    if times.ndim != 1:
-        raise ValueError(f"time has {times.ndim} dimensions: it is a list of numbers")
-    bad = np.flatnonzero(~np.isfinite(times))
-    if len(bad):
-        raise ValueError(f"time[{bad[0]}] = {times[bad[0]]}: times are finite")
-    back = np.flatnonzero(times[1:] < times[:-1])
-    if len(back):
-        k = int(back[0]) + 1
-        raise ValueError(f"time[{k}] = {times[k]!r} comes after {times[k - 1]!r}: time must not decrease")
 
 
 def _table(data: ArrayLike) -> Table:

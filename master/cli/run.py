@@ -197,7 +197,7 @@ def _evaluate(finished: FinishedRun, command: str) -> None:
     manifest = finished.results.manifest
     manifest["command"] = command
     if finished.error is None:
-        finished.metrics = finished.results.metrics()
+        finished.metrics = finished.results.metrics
         manifest["metrics"] = {m.name: {"value": m.value, "unit": m.unit} for m in finished.metrics}
     ended(finished.results, True, finished.error)
 

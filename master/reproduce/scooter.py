@@ -64,7 +64,7 @@ def _stop_and_go(bounded: bool) -> tuple[float, float]:
 
 def _cycle(name: str, bounded: bool) -> dict[str, float]:
     results = simulate("scooter", name, parameters={"ecu.enabled": bounded})
-    return {metric.name: metric.value for metric in results.metrics()}
+    return {metric.name: metric.value for metric in results.metrics}
 
 
 def _page(found: dict[str, Any]) -> Page:

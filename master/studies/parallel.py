@@ -32,6 +32,7 @@ from ...cosim import leftovers
 from ...cosim.errors import ConfigError, RunError, short
 from ...cosim.visible import visible_stream
 from ..fmi import crash
+from .packing import hiding_no_file, packed
 
 T = TypeVar("T")
 
@@ -100,14 +101,15 @@ def run_all(
     """Run all tasks in `workers` processes (default: one for each core) and return their outcomes in order.
 
     A script that calls this needs `if __name__ == "__main__":` around its own calls, since every worker
-    imports it. Before any task is started it raises TypeError for one that cannot be pickled and for
-    `workers` that are no whole number, ConfigError for fewer than one.
+    imports it; the functions of a notebook stand in a file beside it. Before any task is started it raises
+    TypeError for one that cannot be pickled or imported and for `workers` that are no whole number,
+    ConfigError for fewer than one.
     """
     if workers is not None and not isinstance(workers, SupportsIndex):
         raise TypeError(f"workers = {short(workers)}: a whole number is needed, or None")
     if workers is not None and workers < 1:
         raise ConfigError(f"workers = {short(workers)}: at least one is needed")
-    queue = [_packed(task) for task in tasks]
+    queue = [packed(task, task.name) for task in tasks]
     outcomes: dict[int, Outcome[T]] = {}
     if not tasks:
         return []
@@ -117,13 +119,6 @@ def run_all(
             if progress is not None:
                 progress(len(outcomes), len(tasks), outcome.name)
     return [outcomes[i] for i in range(len(tasks))]
-
-
-def _packed(task: Task[Any]) -> bytes:
-    try:
-        return pickle.dumps(task)
-    except Exception as error:  # pickle raises what the objects' own methods raise
-        raise TypeError(f"task '{task.name}' cannot be sent to a process: {error}") from error
 
 
 @dataclasses.dataclass
@@ -177,7 +172,7 @@ class _Pool:
         ours, theirs = self.context.Pipe()
         sent = (theirs, str(self.folder), crash.report() is not None)
         process = self.context.Process(target=_serve, args=sent, daemon=True)
-        with _without_ctrl_c():
+        with _without_ctrl_c(), hiding_no_file():
             process.start()
         theirs.close()  # so that the end of the process is the end of the pipe
         self.workers.append(_Worker(process, ours))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 import sys
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import pytest
 
@@ -26,3 +27,13 @@ def need_linux() -> None:
     """Give up on another system."""
     if sys.platform != "linux":
         give_up("this needs what Linux has: its libraries and /proc")
+
+
+def need_module(name: str) -> Any:
+    """Return a module of the extra `test`, or give up where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError:
+        if os.environ.get("CI"):
+            raise
+        pytest.skip(f"{name} is not installed: pip install -e '.[test]'", allow_module_level=True)

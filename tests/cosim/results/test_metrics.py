@@ -299,3 +299,17 @@ def test_a_level_has_no_integral() -> None:
     assert metric(noise, signal="motor.noise", unit="dB", reduce="max").value == 10.0
     with pytest.raises(ConfigError, match=r"\[dB\] is logarithmic: it has no integral"):
         metric(noise, signal="motor.noise", unit="s", reduce="integral")
+
+
+def test_the_metrics_of_a_run_are_there_by_name_place_and_call():
+    specs = [MetricSpec(name="top", signal="a.x", reduce="max"), MetricSpec(name="end", signal="a.x")]
+    results = Results([0.0, 1.0], [[3.0], [2.0]], [ResultVariable("a.x", "1")], metrics=specs)
+    assert [metric.name for metric in results.metrics] == ["top", "end"]
+    assert results.metrics["end"].value == results.metrics[1].value == 2.0
+    assert results.metrics() == results.metrics
+    assert results.metrics[:1] == [results.metrics["top"]]
+    assert results.metrics._repr_html_().count("<tr>") == 2
+    with pytest.raises(ConfigError, match=r"no metric 'topp' \(did you mean 'top'\?\); there are: top, end"):
+        results.metrics["topp"]
+    none = Results([0.0], [[1.0]], [ResultVariable("a.x")]).metrics
+    assert (none, none._repr_html_()) == ([], "<p>no metrics</p>")

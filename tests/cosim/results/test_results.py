@@ -232,7 +232,7 @@ def reached(count: int, use: Callable[[Results], object]) -> int:
 
 
 @pytest.mark.parametrize(
-    "use", [Results.metrics, lambda r: draw(r, LINE), lambda r: r.part(slice(7), ["a.x"])]
+    "use", [lambda r: r.metrics, lambda r: draw(r, LINE), lambda r: r.part(slice(7), ["a.x"])]
 )
 def test_what_reads_a_long_run_holds_a_piece_of_it(use: Callable[[Results], object]) -> None:
     """Twice the rows take no more memory: not even a column of those that came to them."""
