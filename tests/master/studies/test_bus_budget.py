@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import resource
+from pathlib import Path
 
 import pytest
 
@@ -191,7 +192,9 @@ def test_command(evcosim, line, measured, tmp_path):
         "in out: budget.md, budget.json, budget.png, budget.svg",
     ):
         assert text in answer.out, answer.out
-    assert json.loads((tmp_path / "out" / "budget.json").read_text()) == as_data(measured[0])
+    written = json.loads((tmp_path / "out" / "budget.json").read_text())
+    assert Path(written.pop("settings")["system"]) == line / "line.toml"  # by which the folder is known again
+    assert written == as_data(measured[0])
     assert "![arrived over each variation](budget.png)" in (tmp_path / "out" / "budget.md").read_text()
 
 
