@@ -38,7 +38,8 @@ def offered(capsys, monkeypatch, tmp_path):
 def test_names_for_a_line(offered):
     assert offered("evcosim run sc") == ["scooter"]
     assert offered("evcosim re") == ["reproduce", "results"]
-    assert offered("evcosim run scooter --scenario f") == ["fig8", "fig9"]
+    bounds = ["fig8", "fig8_wheels", "fig9", "fig9_wheels"]
+    assert offered("evcosim run scooter --scenario f") == bounds
     assert offered("evcosim new mine --from b") == ["braking"]
     assert offered("evcosim info Sl") == ["SlipController"]
     assert offered("evcosim check my.fmu --as scooter.v") == ["scooter.vehicle"]

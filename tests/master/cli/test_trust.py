@@ -55,7 +55,8 @@ def test_studies(evcosim, stranger: Path, verb: str) -> None:
     assert REFUSED not in evcosim(*command, "--trust").err
 
 
-def test_info_shows_what_would_be_asked_for(evcosim, stranger: Path) -> None:
+def test_info_shows_what_would_be_asked_for(evcosim, stranger: Path, monkeypatch) -> None:
+    monkeypatch.setenv("COLUMNS", "200")  # so that no cell is wrapped
     assert "evcosim's (with --trust)" in evcosim("info", stranger).out
     units = {unit["name"]: unit for unit in evcosim("info", stranger, "--json").json["units"]}
     assert {name: unit["needs_trust"] for name, unit in units.items()} == {"rider": False, "a": True}
