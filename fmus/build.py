@@ -47,15 +47,27 @@ _SLAVE = '''\
 """pythonfmu imports this module by its name and, for every instance, runs its text once more."""
 
 import ctypes
+import os
 import sys
+
+
+def _settle():
+    """Without an instance nobody else lets the library release its interpreter in time (native.py)."""
+    from {identity}.evcosim.fmus.native import settle_at_exit
+
+    settle_at_exit(os.path.dirname(os.path.abspath(__file__)), "{name}")
+
 
 _PYTHON = "%d.%d.%d in %s" % (sys.version_info[0], sys.version_info[1], sys.version_info[2], sys.prefix)
 if sys.version_info < {python}:
+    if hasattr(sys, "orig_argv"):  # since Python 3.10; an older one cannot import that file
+        _settle()
     raise ImportError("{name}.fmu needs Python {least} or newer; this importer runs Python " + _PYTHON)
 try:
 {needed}
     from {identity}.entry import {name}
 except ImportError as error:
+    _settle()
     raise ImportError(
         "{name}.fmu needs a Python package that Python %s does not have (%s); pip installs it there"
         % (_PYTHON, error)

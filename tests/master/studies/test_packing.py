@@ -7,8 +7,7 @@ import sys
 
 import pytest
 
-from evcosim.master.studies.packing import main_is_a_file, packed
-from support import tasks
+from evcosim.master.studies.packing import packed
 
 # as a notebook: a main module that no file holds
 CELLS = """
@@ -53,10 +52,15 @@ def test_a_function_of_a_notebook_is_refused_with_what_to_do(tmp_path, given):
     assert results == "[42]"
 
 
-def test_a_script_sends_its_own_functions():
-    """pytest is one; docs/python.md shows a script whose workers find its function."""
-    assert main_is_a_file()
-    assert packed(tasks.square, "square")
+def test_a_script_sends_its_own_functions(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from evcosim.master.studies.packing import main_is_a_file, packed\n"
+        "def square(x):\n    return x * x\n"
+        "print(main_is_a_file(), bool(packed(square, 'square')))\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("True True\n", "")
 
 
 def test_what_cannot_be_pickled_is_named_by_its_task():
