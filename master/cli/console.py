@@ -16,11 +16,10 @@ from typing import Any
 import typer
 
 from ...cosim.visible import flowing, on_one_line, raw_stream, visible, visible_json, visible_stream
-from .wrapping import is_narrow, wrapped, wrapped_below
+from .wrapping import GAP, is_narrow, wrapped, wrapped_below
 
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
 _NARROW = 24  # a text is not wrapped to fewer columns
-_GAP = "  "
 _REFRESH = 0.1  # s
 
 Show = Callable[[float], None]
@@ -83,7 +82,7 @@ def print_fields(fields: Sequence[tuple[str, str]], indent: int = 0) -> None:
     fields = [(on_one_line(name), flowing(value)) for name, value in fields]
     width = max((len(name) for name, _ in fields), default=0)
     for name, value in fields:
-        head = " " * indent + name.ljust(width) + _GAP
+        head = " " * indent + name.ljust(width) + GAP
         print(_wrapped(head, value, len(head)))
 
 
@@ -91,7 +90,7 @@ def print_next(commands: Sequence[str]) -> None:
     """Print commands that go on from here, after an empty line; not wrapped, so that they can be copied."""
     print()
     for i, command in enumerate(commands):
-        print(f"{'' if i else 'next':4}{_GAP}{on_one_line(command)}")
+        print(f"{'' if i else 'next':4}{GAP}{on_one_line(command)}")
 
 
 def print_title(text: str, first: bool = False) -> None:

@@ -232,14 +232,13 @@ def _draw(finished: FinishedRun, wanted: Wanted) -> None:
     from ...cosim.shortage import too_little_memory
     from .outputs import figure_of, write_figure, write_report
 
-    if (wanted.figure or wanted.report) and (
-        said := too_little_memory(_FIGURE, "drawing", "matplotlib.figure")
-    ):
+    if not (wanted.figure or wanted.report):
+        return
+    if said := too_little_memory(_FIGURE, "drawing", "matplotlib.figure"):
         finished.remarks.append(f"no figure and no page: {said}")
         return
     results, folder = finished.results, finished.folder.path
-    if wanted.figure or wanted.report:
-        results.figure = figure_of(results)  # which both draw
+    results.figure = figure_of(results)  # which both draw
     if wanted.figure and not results.variables:
         finished.remarks.append("no figure: the run records no numbers")
     elif wanted.figure and len(results) > 1:

@@ -5,7 +5,32 @@ A key that is not in them can be added to its table. The scenario runs in the bu
 
 from __future__ import annotations
 
-SYSTEM = """
+_SHOWN = """[[figure.panels]]
+signals = [{ name = "vehicle.speed", weight = 1.0 }]
+unit = "km/h"
+limits = [0.0, 30.0]
+[figure.until]
+signal = "vehicle.speed"
+below = 0.0
+unit = "km/h"
+[[metrics]]
+name = "above"
+signal = "vehicle.speed"
+reduce = "share_above"
+threshold = 1.0
+threshold_unit = "km/h"
+after = 0.0
+per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
+[[metrics]]
+name = "equal"
+signal = "ecu.state"
+reduce = "share_equal"
+value = 1
+per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
+"""
+
+SYSTEM = (
+    """
 name = "bench"
 record = ["*"]
 [experiment]
@@ -37,35 +62,17 @@ initial = 0.0
 from = "ecu.throttle"
 to = ["vehicle.throttle"]
 via = "can0.VCU_Request.VCU_ThrottleRequest"
-[[figure.panels]]
-signals = [{ name = "vehicle.speed", weight = 1.0 }]
-unit = "km/h"
-limits = [0.0, 30.0]
-[figure.until]
-signal = "vehicle.speed"
-below = 0.0
-unit = "km/h"
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-threshold_unit = "km/h"
-after = 0.0
-per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
-[[metrics]]
-name = "equal"
-signal = "ecu.state"
-reduce = "share_equal"
-value = 1
-per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
-[budget]
+"""
+    + _SHOWN
+    + """[budget]
 metric = "above"
 limit = 1.0
 """
+)
 """Its database is `small_bench.DATABASE`."""
 
-SCENARIO = """
+SCENARIO = (
+    """
 [experiment]
 stop_time = 0.03
 step_size = 0.01
@@ -90,28 +97,9 @@ action = "override"
 time = 0.01
 variable = "ecu.throttle_request"
 value = 1.0
-[[figure.panels]]
-signals = [{ name = "vehicle.speed", weight = 1.0 }]
-unit = "km/h"
-limits = [0.0, 30.0]
-[figure.until]
-signal = "vehicle.speed"
-below = 0.0
-unit = "km/h"
-[[metrics]]
-name = "above"
-signal = "vehicle.speed"
-reduce = "share_above"
-threshold = 1.0
-after = 0.0
-per = { signal = "vehicle.distance", reduce = "share_above", threshold = 1.0, after = 0.0 }
-[[metrics]]
-name = "equal"
-signal = "ecu.state"
-reduce = "share_equal"
-value = 1
-per = { signal = "ecu.state", reduce = "share_equal", value = 1 }
-[identification]
+"""
+    + _SHOWN
+    + """[identification]
 input = "ecu.throttle_request"
 output = "vehicle.speed"
 amplitude = 1.0
@@ -122,6 +110,7 @@ duration = 100.0
 repeats = 1
 band = [0.1, 0.5]
 """
+)
 SWAP = """
 fmu = "Scooter"
 period = 0.01
