@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
 
 from ..errors import ConfigError, short
+from .message_settings import SLOWEST, MessageSettings
 
 _SLOWEST, _MOST_STEPS = 10**6, 10**6
 LONGEST_DELAY = 3600.0
@@ -60,6 +61,16 @@ class BusSettings(BaseModel):
 
     cycle: int = Field(default=1, ge=1, le=_SLOWEST)
     """Factor by which messages are sent less often than the DBC says."""
+
+    cycle_time: float | None = Field(default=None, gt=0.0, le=SLOWEST)
+    """Cycle time in s of all messages for which neither the database nor `messages` has one."""
+
+    messages: dict[str, MessageSettings] = {}
+    """Settings of single messages by name: a table `[buses.NAME.messages.NAME]` for each."""
+
+    def of_message(self, name: str) -> MessageSettings:
+        """Return the settings of the message `name`: those of no file where it has none."""
+        return self.messages.get(name, MessageSettings())
 
 
 _Settings = TypeVar("_Settings", bound=BusSettings)

@@ -9,7 +9,7 @@ from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
 from ..can.dbc import load_dbc
 from ..can.resolution import with_resolution
-from ..can.send_steps import send_steps
+from ..can.send_steps import send_steps, with_times
 from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
@@ -109,6 +109,8 @@ def connect(
         work.databases[name] = database
         texts = {signal.unit for message in database.messages.values() for signal in message.signals.values()}
         work.network.warnings += check_texts(entry.units, texts, f"{system.path}: buses.{name}.units")
+        for message in entry.messages:
+            database.require(message, f"{system.path}: buses.{name}.messages")
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)
@@ -304,9 +306,9 @@ def _message(
 
     Under `gauss_seidel` it is sent after the last of its senders, by `order`, with a sampled output.
     """
-    message = work.databases[bus].require(name)
     settings = work.system.file.buses[bus]
-    every, first = send_steps(message, step_size, str(work.system.path))
+    message = with_times(work.databases[bus].require(name), settings)
+    every, first = send_steps(message, step_size, str(work.system.path), bus)
     delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
     arrivals: list[tuple[int, int]] = []
     if delay:

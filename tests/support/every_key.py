@@ -53,6 +53,8 @@ fmu = "Scooter"
 period = 0.01
 [buses.can0]
 dbc = "bench.dbc"
+[buses.can0.messages.EMD_Status]
+cycle_time = 0.01
 [[connect]]
 from = "vehicle.speed"
 to = ["ecu.speed_measured"]

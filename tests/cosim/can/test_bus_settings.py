@@ -17,6 +17,7 @@ from evcosim.cosim.system.toml import validate
         ({"rounding": "up"}, "rounding: Input should be 'nearest', 'half_even' or 'truncate', not 'up'"),
         ({"overflow": "clip"}, "overflow: Input should be 'saturate', 'wrap' or 'error', not 'clip'"),
         ({"bitrate": 0}, "bitrate: Input should be greater than 0, not 0"),
+        ({"cycle_time": 0.0}, "cycle_time: Input should be greater than 0, not 0.0"),
     ],
 )
 def test_unknown_settings_are_refused(keys, said):

@@ -121,6 +121,28 @@ def test_a_late_message_passes_slots_of_its_own(cycle):
     assert message.settings == BusEntry(**bus)
 
 
+def test_a_message_is_sent_as_the_system_file_says():
+    own = {"EMD_Status": {"cycle_time": 0.05, "start_delay": 0.02}}
+    bus = {"dbc": "can/ev.dbc", "cycle": 3, "messages": own}
+    (message,) = plan([SENT], buses={"can0": bus}).messages
+    assert (message.every, message.first) == (15, 2)
+    assert (message.message.cycle_time, message.message.start_delay) == (0.05, 0.02)
+
+
+def test_settings_of_a_message_that_there_is_not_are_named():
+    bus = {"dbc": "can/ev.dbc", "messages": {"EMD_Statsu": {"cycle_time": 0.05}}}
+    said = r"mocks.toml: buses.can0.messages: .*no message 'EMD_Statsu' \(did you mean 'EMD_Status'\?\)"
+    with pytest.raises(ConfigError, match=said):
+        plan([], buses={"can0": bus})
+
+
+def test_a_cycle_time_that_does_not_fit_is_named_with_the_key_that_changes_it():
+    bus = {"dbc": "can/ev.dbc", "messages": {"EMD_Status": {"cycle_time": 0.013}}}
+    said = r"the nearest are 0.01 s and 0.02 s \(`cycle_time` in \[buses.can0.messages.EMD_Status\]\)"
+    with pytest.raises(ConfigError, match=said):
+        plan([SENT], buses={"can0": bus})
+
+
 def test_a_coarser_signal_is_in_the_message_and_in_the_route():
     made = plan([SENT], buses={"can0": {"dbc": "can/ev.dbc", "resolution": 4.0}})
     (message,) = made.messages
