@@ -155,9 +155,9 @@ class Turn:
 class Engine:
     """A plan with its units, and the steps done so far; a subclass does the steps of a chunk in `_run`.
 
-    `k` counts the steps done, `memory` has shape (size,), `chunks` counts the chunks begun, and `whole` is
-    False within one and from an error on. `store` has the recorded rows, those of a long run in a file,
-    `text_notes` their texts.
+    `k` counts the steps done, `memory` has shape (size,), `chunks` counts the chunks begun, `before` is the
+    number of rows before the last one, and `whole` is False within one and from an error on. `store` has the
+    recorded rows, those of a long run in a file, `text_notes` their texts.
     """
 
     name: str
@@ -178,7 +178,8 @@ class Engine:
         self.columns = np.array(plan.column_slots, dtype=np.intp)
         self.store = RowStore(len(self.columns))
         self.text_notes = TextNotes(plan, self.view)
-        self.chunks = 0
+        self.chunks = self.before = 0
+        self._under_way: tuple[int, NDArray[np.float64]] | None = None  # its first step, and its rows
         self._most = max(_LEAST, _ROOM // (8 * (len(self.columns) + len(plan.drives) + 1)))
         self._chunk = min(_FIRST, self._most)
         for unit_plan in plan.units:
@@ -240,6 +241,8 @@ class Engine:
         drives = self._finite(self._stimuli(count))
         count = drives.shape[1]
         rows = np.empty((count, len(self.columns)))
+        # in this order: another thread that sees the chunk must not take the rows of the last one for its own
+        self._under_way, self.before = None, len(self.store)
         self.whole = False
         self.chunks += 1
         try:
@@ -303,7 +306,7 @@ class Engine:
         raise NotImplementedError
 
     def rows_under_way(self) -> NDArray[np.float64]:
-        """Return a copy of the rows that the present chunk has done, shape (rows, columns).
+        """Return a copy of the rows that the last chunk has done, shape (rows, columns).
 
         For another thread, while a step takes long.
         """

@@ -16,7 +16,6 @@ class PythonEngine(Engine):
     """The engine whose actions are Python functions."""
 
     name = "python"
-    _under_way: tuple[int, NDArray[np.float64]] | None = None
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         first, width = self.k, int(self.columns.max(initial=-1)) + 1
@@ -39,9 +38,9 @@ class PythonEngine(Engine):
             np.take(wide[: self.k - first], self.columns, axis=1, out=rows[: self.k - first])
 
     def rows_under_way(self) -> NDArray[np.float64]:
-        if self._under_way is None:
+        if (under_way := self._under_way) is None:
             return np.empty((0, len(self.columns)))
-        first, wide = self._under_way
+        first, wide = under_way
         return wide[: self.k - first, self.columns]
 
     def _acts(self, first: int, drives: NDArray[np.float64], wide: NDArray[np.float64]) -> list[Act]:

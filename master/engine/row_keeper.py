@@ -51,7 +51,7 @@ class RowKeeper:
         The process ends then, whatever its other threads are doing.
         """
         engine = self._engine
-        before = len(engine.store)
+        before = engine.before
         rows = None if engine.whole else engine.rows_under_way()
         engine.store.save(rows, before)
         return max(before + (0 if rows is None else len(rows)), len(engine.store))
@@ -66,8 +66,8 @@ class RowKeeper:
 
     def _look(self) -> None:
         engine = self._engine
-        # in this order: when the chunk has ended meanwhile, there are more rows than `before`
-        chunk, before = engine.chunks, len(engine.store)
+        # in this order: when the chunk has ended meanwhile, there are more rows in the store than `before`
+        chunk, before = engine.chunks, engine.before
         rows = None if engine.whole else engine.rows_under_way()
         if time.monotonic() - self._begin >= FIRST:
             engine.store.save(None if rows is None or chunk != self._chunk else rows[: self._done], before)

@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from evcosim import ConfigError, Results, Simulation, simulate
+from evcosim import ConfigError, Results, RunError, Simulation, simulate
 from evcosim.cosim.results.run_folder import recover
+from evcosim.fmus.build import build_model
 from evcosim.master.keeping import ended
 from support.c_fmu import typed_fmu
+from support.cli_models import Fragile
 
 
 def status(folder: Path) -> str:
@@ -97,6 +100,34 @@ def test_the_rows_of_a_chunk_are_seen_while_it_is_under_way(engine: str) -> None
         assert sim._engine.rows_under_way().shape[0] == 0
         sim.step(20)
         assert np.array_equal(sim._engine.rows_under_way(), sim.results.data[:20])
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_a_chunk_that_begins_has_no_rows(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Simulation("scooter", engine=engine) as sim:
+        within, seen = sim._engine._run, []
+
+        def run(*arguments: Any) -> None:
+            seen.append((sim._engine.before, len(sim._engine.rows_under_way())))
+            within(*arguments)
+
+        monkeypatch.setattr(sim._engine, "_run", run)
+        sim.step(20)
+        sim.step(5)
+    assert seen == [(0, 0), (20, 0)]
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_a_failed_run_saves_its_rows_once(tmp_path: Path, engine: str) -> None:
+    fmu = build_model(Fragile, tmp_path)
+    with Simulation(fmu, engine=engine, parameters={"last": 300}) as sim:
+        sim.keep_in(tmp_path / "out")
+        sim.step(200)
+        with pytest.raises(RunError, match="the chain came off after 300 steps"):
+            sim.step(200)
+        assert sim._kept._keeper.save_all() == 300
+        saved = Results.read(tmp_path / "out")
+        assert saved["fmu.way"].tolist() == list(map(float, range(300)))
 
 
 @pytest.mark.parametrize(

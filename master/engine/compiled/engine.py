@@ -34,17 +34,16 @@ class CompiledEngine(Engine):
 
     name = "compiled"
     _program: Program | None = None
-    _rows: NDArray[np.float64] | None = None
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         program = self._program
         assert program is not None  # it was made at the start
         state, first, addresses = self._state, self.k, self._addresses
-        self._rows = rows
         # the operations that are due in this chunk
         ops, self._places = program.chunk(first, count)
         state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
         state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
+        self._under_way = first, rows
         # the arrays that are the chunk's own
         log, starts = self._log_buffer(count)
         drives = np.ascontiguousarray(drives)
@@ -66,10 +65,9 @@ class CompiledEngine(Engine):
             self._finish_step(program, rows, first)
 
     def rows_under_way(self) -> NDArray[np.float64]:
-        rows = self._rows
-        if rows is None:
+        if (under_way := self._under_way) is None:
             return np.empty((0, len(self.columns)))
-        return rows[: int(self._state[L.STEPS_DONE])].copy()
+        return under_way[1][: int(self._state[L.STEPS_DONE])].copy()
 
     def _recheck(self, program: Program, result: int) -> None:
         """Repeat the check at which the kernel stopped with the code `result`, and raise its exception.

@@ -20,7 +20,7 @@ class Engine:
     def __init__(self, path: Path) -> None:
         self.store = RowStore(1)
         self.store.keep_in(path, b"head....")
-        self.chunks, self.whole = 0, True
+        self.chunks, self.before, self.whole = 0, 0, True
         self.under_way = np.empty((0, 1))
 
     def rows_under_way(self) -> Any:
@@ -62,7 +62,7 @@ def test_the_rows_before_a_step_that_takes_long_are_saved(tmp_path: Path, monkey
     engine = Engine(path)
     keeper = kept(engine, monkeypatch)
     engine.store.append(rows(0.0))
-    engine.chunks, engine.whole, engine.under_way = 1, False, rows(1.0, 2.0)
+    engine.chunks, engine.before, engine.whole, engine.under_way = 1, 1, False, rows(1.0, 2.0)
     keeper._look()
     assert on_disk(path) == [0.0]  # the chunk was not there at the look before
     engine.under_way = rows(1.0, 2.0, 3.0)
@@ -70,7 +70,7 @@ def test_the_rows_before_a_step_that_takes_long_are_saved(tmp_path: Path, monkey
     assert on_disk(path) == [0.0, 1.0, 2.0]
     # it ends, and the next one is under way
     engine.store.append(rows(1.0, 2.0, 3.0, 4.0))
-    engine.chunks, engine.under_way = 2, rows(5.0)
+    engine.chunks, engine.before, engine.under_way = 2, 5, rows(5.0)
     keeper._look()
     assert on_disk(path) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert engine.store.table().whole()[:, 0].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -91,6 +91,19 @@ def test_a_chunk_that_ends_meanwhile_is_saved_once(tmp_path: Path, monkeypatch: 
 
     engine.rows_under_way = ends  # type: ignore[method-assign] # the engine goes on between two lines
     keeper._look()
+    assert on_disk(path) == [0.0, 1.0]
+    keeper.stop()
+
+
+def test_the_rows_of_a_chunk_that_has_failed_are_saved_once(tmp_path: Path, monkeypatch: Any) -> None:
+    path = tmp_path / "rows"
+    engine = Engine(path)
+    keeper = kept(engine, monkeypatch)
+    engine.chunks, engine.whole, engine.under_way = 1, False, rows(0.0, 1.0)
+    keeper._look()
+    engine.store.append(engine.under_way)  # the run has failed, and its units are being released
+    keeper._look()
+    assert keeper.save_all() == 2
     assert on_disk(path) == [0.0, 1.0]
     keeper.stop()
 
