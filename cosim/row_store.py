@@ -200,9 +200,29 @@ class RowStore:
     def keep_in(self, path: Path, head: bytes, before: Callable[[], None] = lambda: None) -> None:
         """Name the file that `save` makes: it begins with `head`, then the rows follow from the first on.
 
-        `before` is called before rows are written; it may raise OSError as writing them may.
+        `before` is called before rows are written; it may raise OSError as writing them may. Rows that are no
+        more in memory are copied at once. Raises RunError where that fails; then all is as it was.
         """
-        self._path, self._head, self._before = path, head, before
+        with self._lock:
+            earlier = self._path, self._head, self._before, self._file, self._in_file
+            self._path, self._head, self._before = path, head, before
+            if self._file is None:
+                return
+            try:
+                self._copy(self._file)
+            except OSError as error:
+                refused = self._refused(error)
+                self._path, self._head, self._before, self._file, self._in_file = earlier
+                raise refused from error
+
+    def _copy(self, file: _RowFile) -> None:
+        """Write the rows that are in another file alone, a stretch of rows at a time. Raises OSError."""
+        rows = _FileTable(file, self._freed, np.empty((0, self._width)))
+        self._file, self._in_file = None, 0
+        self._before()
+        step = max(1, _STRETCH // (8 * self._width))
+        for k in range(0, self._freed, step):
+            self._save(k, rows.rows(k, k + step))
 
     def append(self, rows: Array) -> None:
         """Keep rows, shape (n, width), which are not to be changed afterwards.

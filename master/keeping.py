@@ -21,7 +21,7 @@ class KeptRun:
 
     `about` is the manifest at the begin. A folder that is given by its name is filled by `end`; one that the
     caller has locked, the caller fills. Raises ConfigError for a folder that another run has, that holds
-    another one's results, or that cannot be written.
+    another one's results, or that cannot be written; RunError where the rows up to now cannot be copied.
     """
 
     def __init__(

@@ -112,7 +112,8 @@ class Simulation:
 
         `Results.read` reads that, even if the process is killed; `close` writes results.csv and run.json in
         its place. An earlier run of the same files, FMUs and settings is replaced. Raises ConfigError for a
-        folder with other files of these names, that another run has, or that cannot be written.
+        folder with other files of these names, that another run has, or that cannot be written; RunError
+        where the rows of a long run up to now do not find room there.
         """
         if self._kept is not None:
             raise ConfigError(f"{folder}: the run has a folder already: {self._kept.folder.path}")

@@ -89,6 +89,37 @@ def test_a_full_disk_loses_nothing() -> None:
     assert len(store) == 110
 
 
+def doubles_in(path: Path, head: bytes) -> np.ndarray:
+    content = path.read_bytes()
+    assert content.startswith(head)
+    return np.frombuffer(content[len(head) :]).reshape(-1, WIDTH)
+
+
+@pytest.mark.parametrize("memory", [0, 2000, 10**9])
+def test_rows_that_left_the_memory_come_into_a_file_that_is_named_later(tmp_path: Path, memory: int) -> None:
+    first, second, third = chunks([50_000, 60, 7])
+    store = RowStore(WIDTH, memory)
+    store.append(first)
+    store.append(second)
+    before, path = store.table(), tmp_path / "rows"
+    store.keep_in(path, b"head....")
+    store.append(third)
+    store.save()
+    assert np.array_equal(doubles_in(path, b"head...."), np.vstack([first, second, third]))
+    assert np.array_equal(store.table().whole(), np.vstack([first, second, third]))
+    assert np.array_equal(before.whole(), np.vstack([first, second]))
+
+
+def test_a_file_that_cannot_be_named_leaves_the_rows_where_they_are(tmp_path: Path) -> None:
+    first, second = chunks([50, 60])
+    store = RowStore(WIDTH, memory=0)
+    store.append(first)
+    with pytest.raises(RunError, match=r"cannot be kept in .*none: No such file or directory"):
+        store.keep_in(tmp_path / "none" / "rows", b"head....")
+    store.append(second)
+    assert np.array_equal(store.table().whole(), np.vstack([first, second]))
+
+
 @given(
     st.floats(-10.0, 10.0),
     st.floats(1e-3, 1.0),

@@ -50,6 +50,17 @@ def test_rows_are_there_while_it_goes_on(tmp_path: Path, engine: str) -> None:
     assert (status(tmp_path), len(Results.read(tmp_path))) == ("stopped", 51)
 
 
+def test_rows_that_left_the_memory_before_it_has_a_folder_are_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Simulation("scooter") as sim:
+        monkeypatch.setattr(sim._engine.store, "_memory", 0)
+        sim.step(40)
+        sim.keep_in(tmp_path)
+        sim.step(10)
+        assert np.array_equal(Results.read(tmp_path).data, sim.results.data[:50])
+
+
 @pytest.mark.parametrize("isolation", ["none", "process"])
 @pytest.mark.parametrize("engine", ["python", "compiled"])
 def test_no_row_is_on_the_disk_without_its_texts(tmp_path: Path, engine: str, isolation: str) -> None:
