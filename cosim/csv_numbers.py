@@ -13,9 +13,8 @@ import contextlib
 import csv
 import dataclasses
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 
@@ -70,19 +69,40 @@ class CsvFile:
         """Return the last line where it does not end: it may be complete, or cut off. None: it ends.
 
         Raises ConfigError for a file as evcosim writes it, whose lines all end: one that does not was cut
-        off, and that within its last number nobody could see.
+        off, and that within its last number nobody could see. In any other file it was cut off where it ends
+        with a decimal mark, or within quotes.
         """
         try:
             row = cut_row(self.path)
         except OSError as error:
             raise ConfigError(f"{self.path}: cannot be read: {error.strerror or error}") from error
-        if row is None or not self._is_ours():
+        if row is None:
+            return None
+        if self._is_ours():
+            more = ". 'evcosim results recover' leaves the line out of a run's folder"
+        elif how := self._how_it_was_cut():
+            more = f": its last value {how}"
+        else:
             return row
         raise ConfigError(
-            f"{self.path}: line {row.line}, the last, does not end: {row.text!r}; the file was cut off. "
-            "'evcosim results recover' leaves the line out of a run's folder; if nothing is missing, end the "
-            "line"
+            f"{self.path}: line {row.line}, the last, does not end: {row.text!r}; the file was cut off{more}"
+            "; if nothing is missing, end the line"
         )
+
+    def _how_it_was_cut(self) -> str:
+        """Return how the last value of a file that does not end shows that it was cut; "" if it does not."""
+        behind = "\0"  # in a row of its own, unless a quote above it is open
+        last: list[str] = []
+        with opened(self.path, self.encoding, self.header_lines) as file:
+            for _, row in self._rows(itertools.chain(file, ("\n", behind))):
+                if row == [behind]:
+                    break
+                last = row or last
+            else:
+                return "has no closing quote"
+        text = last[-1].strip() if len(last) == len(self.names) else ""  # else its length is the mistake
+        number = number_in(text, self.separator) is not None
+        return "ends with its decimal mark" if number and text.endswith((".", ",")) else ""
 
     def _is_ours(self) -> bool:
         """Return True for a header as that of results: `time,unit.variable,...`."""
@@ -172,7 +192,7 @@ class CsvFile:
             raise self._wrong_length(line, len(row))
         return line, row
 
-    def _rows(self, file: TextIO) -> Iterator[tuple[int, list[str]]]:
+    def _rows(self, file: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
         """Yield the values of each row with the line that it ends in."""
         comments = Comments()
         reader = csv.reader(comments.without(file), delimiter=self.separator, skipinitialspace=True)

@@ -82,20 +82,28 @@ def encoding_of(path: Path) -> str:
             if len(first) >= 2 and 0 in first[:2]:  # UTF-16 without a mark: a letter has one byte of 0
                 return "utf-16-le" if first[1] == 0 else "utf-16-be"
             file.seek(0)
-            return "utf-8" if _is_utf_8(iter(lambda: file.read(_BLOCK), b"")) else "cp1252"
+            return _of_bytes(path, iter(lambda: file.read(_BLOCK), b""))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
 
 
-def _is_utf_8(blocks: Iterable[bytes]) -> bool:
+def _of_bytes(path: Path, blocks: Iterable[bytes]) -> str:
+    """Return utf-8 where the bytes are UTF-8, else cp1252.
+
+    Raises ConfigError for UTF-8 that ends within a character: the file was cut off.
+    """
     decoder = codecs.getincrementaldecoder("utf-8")()
+    letters = False  # beyond ASCII: without any, the last byte may well be a letter of Windows-1252
     try:
         for block in blocks:
-            decoder.decode(block)
-        decoder.decode(b"", final=True)
+            letters |= not decoder.decode(block).isascii()
     except UnicodeDecodeError:
-        return False
-    return True
+        return "cp1252"
+    if not decoder.getstate()[0]:
+        return "utf-8"
+    if letters:
+        raise ConfigError(f"{path}: ends within a character of UTF-8: the file was cut off")
+    return "cp1252"
 
 
 @contextlib.contextmanager

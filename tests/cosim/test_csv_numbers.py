@@ -238,3 +238,57 @@ def test_texts_and_the_lines_of_rows_pass_over_comments_and_empty_lines(tmp_path
     file = opened(tmp_path / "x.csv", '# a\nt,v\n\n0, warm \n# b\n1,"cold,\n# wet"\n2,\n')
     assert file.texts(1) == ["warm", "cold,\n# wet", ""]
     assert [file.line_of(row) for row in range(3)] == [4, 7, 8]
+
+
+CUT = {
+    "t;v\n0;1,5\n1;2,": "line 3, the last, does not end: '1;2,'; the file was cut off: its last value ends",
+    "t,v\n0,1.5\n1,2.": "line 3, the last, does not end: '1,2.'; the file was cut off: its last value ends",
+    "t\tv\n0\t1\n1\t-2. ": "line 3, the last, does not end: ",
+    't,v\n0,1\n1,"2.5': "line 3, the last, does not end: '1,\"2.5'; the file was cut off: its last value has",
+    't,v\n0,1\n1,"2.': "line 3, the last, does not end: ",
+    't,v\n0,1\n1,"two\nand': "line 4, the last, does not end: 'and'; the file was cut off",
+    "t,v\n0,1\n1,2e": "line 3, column 'v': '2e' is not a number",
+    "t,v\n0,1\n1,2e-": "line 3, column 'v': '2e-' is not a number",
+    "t,v\n0,1\n1,-": "line 3, column 'v': '-' is not a number",
+    "t,v\n0,1\n1,": "line 3, column 'v': the value is missing",
+    "t,v\n0,1\n1": "line 3 has 1 value, the header has 2 columns",
+    't,\N{DEGREE SIGN}C,w\n0,1,"5 \N{DEGREE SIGN}': "line 2, the last, does not end: ",
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("text", CUT)
+def test_a_file_that_was_cut_off_within_its_last_value_is_refused(
+    text: str, encoding: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "x.csv"
+    with pytest.raises(ConfigError) as refusal:
+        file = opened(path, text.encode(encoding))
+        file.last_line_without_end()
+        file.numbers()
+    if encoding == "utf-8":
+        assert str(refusal.value).startswith(f"{path}: {CUT[text]}")
+
+
+@pytest.mark.parametrize(
+    "text", ["t,v\n0,1\n1,2.5", "t;v\n0;1\n1;2,5", 't,v\n0,1\n1,"2.5"', "t,v\n0,1.\n1,2\n# cut.", 't,6"\n1,2']
+)
+def test_a_whole_last_line_need_not_end_and_one_that_does_may_end_with_a_mark(
+    text: str, tmp_path: Path
+) -> None:
+    file = opened(tmp_path / "x.csv", text)
+    file.last_line_without_end()
+    assert len(file.numbers()) == text.count("\n") - ("#" in text)
+    ended = opened(tmp_path / "y.csv", "t,v\n0,1\n1,2.\n")
+    assert ended.last_line_without_end() is None
+    assert ended.numbers().tolist() == [[0.0, 1.0], [1.0, 2.0]]
+
+
+def test_a_text_may_end_with_a_full_stop_and_is_not_cut_within_a_character(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    whole = "t,\N{DEGREE SIGN}C\n0,warm\n1,no more of it.".encode()
+    file = opened(path, whole)
+    file.last_line_without_end()
+    assert file.texts(1) == ["warm", "no more of it."]
+    with pytest.raises(ConfigError, match=r"x\.csv: ends within a character of UTF-8: the file was cut off"):
+        opened(path, whole + "\N{EURO SIGN}".encode()[:-1])

@@ -304,6 +304,12 @@ def test_another_tools_file_need_not_end_its_last_line(header: str, encoding: st
             ConfigError, match=rf"x\.csv: line {line}.* {said}.* does not end: the file was cut"
         ):
             Results.read(path)
+    for left in ("0.5,2.", '0.5,"2.75'):
+        path.write_bytes(whole.replace("0.5,-2.75", left).encode(encoding))
+        with pytest.raises(
+            ConfigError, match=rf"x\.csv: line {line}, the last, does not end: .* was cut off"
+        ):
+            Results.read(path)
     for encoded in (f"{header}\n0.0,no\n0.5,1".encode(encoding), f"{header}\n0.0,no\n".encode(encoding)):
         path.write_bytes(encoded)
         with pytest.raises(ConfigError, match=r"'no' is not a number$"):

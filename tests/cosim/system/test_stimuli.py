@@ -173,6 +173,10 @@ def test_results_that_were_cut_off_drive_nothing(tmp_path):
         ConfigError, match=r"results.csv: line 3, the last, does not end: '2.0,3.2'; the file"
     ):
         values([1], csv=str(path))
+    for cut in ("2;3,", '2;"3,5'):
+        path.write_text(f"time;v\n0;1\n{cut}")
+        with pytest.raises(ConfigError, match=r"line 3, the last, does not end: .* was cut off"):
+            values([1], csv=str(path))
     path.write_text("time,v\n0,1\n2,3")  # of a spreadsheet
     assert values([1], csv=str(path)) == pytest.approx([2])
 
