@@ -161,6 +161,8 @@ def _experiment(fmu: Fmu, options: RunOptions) -> dict[str, float]:
         stop = times["stopTime"]
     if stop is None or (stop <= start and options.get("stop_time") is None):
         stop = start + _DURATION
+    if not math.isfinite(stop):
+        raise ConfigError(f"stop_time {stop} s is not finite")
     step = options.get("step_size")
     if step is None and 0.0 < stop - start < _SHORTEST:
         raise ConfigError(f"stop_time = {stop:g}: a run from {start:g} s on lasts {_SHORTEST:g} s or more")

@@ -144,7 +144,7 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "delay": (_is_delay, f"must be a number of seconds from 0 to {LONGEST_DELAY:g}"),
     "algorithm": _one_of(Algorithm),
     "stop_time": (_is_time, f"must be a number of seconds, up to {LATEST:g}"),
-    "step_size": (_is_positive, "must be a number of seconds above 0"),
+    "step_size": (_is_positive, f"must be a number of seconds above 0, {SHORTEST:g} to {LATEST:g}"),
     "record": (_are_patterns, "must be a list of patterns of variables, one at least"),
     "interface": _one_of(Literal["co_simulation", "model_exchange"]),
     "tolerance": (_is_share, "must be a number between 0 and 1"),

@@ -6,6 +6,7 @@
     completion  the names that the Tab key offers
     failures    every error as plain text on stderr, and the exit code
     console     tables, JSON and the progress bar
+    once        an option that takes one value is given once
     early_exit  an FMU in this process that calls exit()
     interrupts  Ctrl-C, SIGTERM and SIGHUP, whatever the command is doing
     outputs     the folder of a run

@@ -17,6 +17,7 @@ from .identify import identify
 from .info import info
 from .listing import list_
 from .new import new
+from .once import OnceCommand
 from .plot import plot
 from .reproduce import reproduce
 from .results import results
@@ -52,7 +53,7 @@ def command() -> Any:
         "schema": schema,
     }
     for name, verb in verbs.items():
-        app.command(name)(checks_paths(verb))
+        app.command(name, cls=OnceCommand)(checks_paths(verb))
     app.add_typer(results, name="results")
     return typer.main.get_command(app)
 

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from .once import OnceCommand
+
 results = typer.Typer(help="What is done with the folder of a run.", rich_markup_mode=None)
 
 
@@ -15,7 +17,7 @@ def _group() -> None:
     """Recover the folder of a run that was killed."""
 
 
-@results.command("recover")
+@results.command("recover", cls=OnceCommand)
 def recover(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a run that was killed.")],
 ) -> None:

@@ -26,7 +26,7 @@ from ...cosim.errors import ConfigError, RunError
 from ...cosim.plan.resolve import step_size_of
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
-from ...cosim.system.run_options import RunOptions
+from ...cosim.system.run_options import RunOptions, check_options
 from ...cosim.system.scenario import load_scenario
 from ...cosim.system.system import load_system
 from ..prepare import prepare
@@ -119,6 +119,7 @@ def identify(
     Raises ConfigError for input that does not fit, before the sweep; RunError if the run fails, or the
     output does not come to rest or does not react.
     """
+    check_options(options)
     spec = spec or spec_of(target, scenario)
     if spec is None:
         raise ConfigError(f"{target}: which input and output? There is no [identification] in its scenario")

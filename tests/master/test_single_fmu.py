@@ -110,6 +110,8 @@ REFUSED = [
     ),
     ({"step_size": 0.0}, "step_size = 0.0: must be a number of seconds above 0"),
     ({"step_size": float("nan")}, "step_size = nan"),
+    ({"stop_time": float("inf")}, r"^stop_time inf s is not finite"),
+    ({"stop_time": float("nan")}, r"^stop_time nan s is not finite"),
     ({"tolerance": 2.0}, "tolerance = 2.0: must be a number between 0 and 1"),
     ({"interface": "me"}, "interface = 'me': must be"),
     ({"interface": "model_exchange"}, "it has no such interface"),

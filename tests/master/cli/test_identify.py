@@ -9,6 +9,12 @@ import pytest
 FMU = ["identify", "Scooter", "--input", "throttle", "--output", "speed", "--unit", "km/h"]
 
 
+def fmu(*more):
+    """Return the arguments for an FMU alone, some of them others."""
+    given = dict(zip(FMU[2::2], FMU[3::2], strict=True)) | dict(zip(more[::2], more[1::2], strict=True))
+    return [*FMU[:2], *(text for pair in given.items() for text in pair)]
+
+
 QUICK = ["--amplitude", "2", "--sweep", "0.02,0.6", "--duration", "150", "--set", "initial_speed=8.3333"]
 
 
@@ -42,10 +48,10 @@ def test_command_as_json(evcosim):
         (["identify", "Scooter"], ["Scooter: --input is needed"]),
         (["identify", "scooter", "-s", "fig8"], ["scooter: --input is needed"]),
         (["identify", "no.fmu", "--input", "a", "--output", "b", "--amplitude", "1"], ["no such FMU file"]),
-        ([*FMU, "--amplitude", "2", "--input", "throtle"], ["throtle", "(did you mean 'throttle'?)"]),
-        ([*FMU, "--amplitude", "2", "--output", "sped"], ["sped", "(did you mean 'speed'?)"]),
-        ([*FMU, "--amplitude", "2", "--input", "speed"], ["input speed: it is of causality output"]),
-        ([*FMU, "--amplitude", "2", "--unit", "N"], ["[m/s] and [N] measure different quantities"]),
+        (fmu("--amplitude", "2", "--input", "throtle"), ["throtle", "(did you mean 'throttle'?)"]),
+        (fmu("--amplitude", "2", "--output", "sped"), ["sped", "(did you mean 'speed'?)"]),
+        (fmu("--amplitude", "2", "--input", "speed"), ["input speed: it is of causality output"]),
+        (fmu("--amplitude", "2", "--unit", "N"), ["[m/s] and [N] measure different quantities"]),
         ([*FMU, "--amplitude", "0"], ["Scooter: amplitude: Input should be greater than 0, not 0.0"]),
         (
             [*FMU, "--amplitude", "1e308"],
@@ -53,9 +59,12 @@ def test_command_as_json(evcosim):
         ),
         (
             [*FMU, "--amplitude", "2", "--step-size", "0"],
-            ["step_size: Input should be greater"],
+            ["--step-size = 0.0: must be a number of seconds above 0"],
         ),
-        ([*FMU, "--amplitude", "2", "--step-size", "nan"], ["step_size: Input should be a finite"]),
+        (
+            [*FMU, "--amplitude", "2", "--step-size", "nan"],
+            ["--step-size = nan: must be a number of seconds above 0"],
+        ),
         ([*FMU, "--amplitude", "nan"], ["Scooter: amplitude: Input should be a finite number, not nan"]),
         ([*FMU, "--amplitude", "2", "--repeats", "0"], ["Scooter: repeats: Input should be greater than or"]),
         ([*FMU, "--amplitude", "2", "--sweep", "0,1"], ["Scooter: sweep 1: Input should be greater than 0"]),
@@ -67,6 +76,18 @@ def test_command_as_json(evcosim):
         ([*FMU, "--amplitude", "2", "--ideal"], ["--ideal: Scooter is an FMU alone"]),
         ([*FMU, "--amplitude", "2", "--algorithm", "jacobi"], ["--algorithm: Scooter is an FMU alone"]),
         ([*FMU, "--amplitude", "2", "--set", "mas=1"], ["(did you mean 'mass'?)"]),
+        (
+            ["identify", "scooter", "--step-size", "nan"],
+            ["--step-size = nan: must be a number of seconds above 0"],
+        ),
+        (
+            ["identify", "scooter", "--step-size", "1e400"],
+            ["--step-size = inf: must be a number of seconds above"],
+        ),
+        (
+            ["identify", "scooter", "--step-size", "0"],
+            ["--step-size = 0.0: must be a number of seconds above 0"],
+        ),
         (
             ["identify", "scooter", "--step-size", "0.1"],
             ["--step-size = 0.1 s, where the files have 0.01 s: "],
