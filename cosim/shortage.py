@@ -15,6 +15,8 @@ LINEAR_ALGEBRA = "scipy.linalg"
 """The module whose library tries without an end to get the memory that it lacks."""
 _SCIPY = 150e6  # bytes of address space that scipy and its libraries take
 
+_ANNOUNCED = 2  # s of processor time before its limit
+
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 _NO_FOLDER = (*_NO_ROOM, errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOENT, errno.ENOTDIR)
 _LIMITS = {  # the limited thing, its name in `resource`, what sets it, and the unit that this counts
@@ -90,6 +92,22 @@ def _limit(name: str) -> float:
         return math.inf
     soft, _ = resource.getrlimit(getattr(resource, name))
     return math.inf if soft == resource.RLIM_INFINITY else float(soft)
+
+
+def announced_time_limit() -> str:
+    """Let the limit of processor time announce itself by SIGXCPU, and return " (the limit of ...)"; "": none.
+
+    `ulimit -t` sets both limits at once, and then the system kills the process without a word.
+    """
+    most = _limit("RLIMIT_CPU")
+    if math.isinf(most):
+        return ""
+    import resource
+
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    if most == hard and hard > 1:
+        resource.setrlimit(resource.RLIMIT_CPU, (hard - min(_ANNOUNCED, hard - 1), hard))
+    return f" (the limit of processor time is {most:.0f} s: `ulimit -t`)"
 
 
 def memory_left() -> float:

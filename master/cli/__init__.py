@@ -8,14 +8,14 @@
     console     tables, JSON and the progress bar
     once        an option that takes one value is given once
     early_exit  an FMU in this process that calls exit()
-    interrupts  Ctrl-C, SIGTERM and SIGHUP, whatever the command is doing
+    interrupts  Ctrl-C, SIGTERM and other signals that end a command, whatever it is doing
     outputs     the folder of a run
     summary     the summary of a run at its end
     typed_paths the paths that are typed, checked before a verb does anything
 
 Exit codes: 0 done; 1 the run or the check failed; 2 wrong use or bad input; 130 ended by Ctrl-C, 143 by
-SIGTERM, 129 by SIGHUP; 141 the reader of the output has gone. Verb modules import heavy packages inside their
-functions, so that `evcosim --help` answers at once.
+SIGTERM, 128 + signal by another one; 141 the reader of the output has gone. Verb modules import heavy
+packages inside their functions, so that `evcosim --help` answers at once.
 """
 
 from __future__ import annotations

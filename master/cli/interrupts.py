@@ -1,4 +1,7 @@
-"""Signals that end a command: Ctrl-C (SIGINT), SIGTERM and SIGHUP, whatever it is doing.
+"""Signals that end a command, whatever it is doing: Ctrl-C (SIGINT), SIGTERM, SIGHUP, and those below.
+
+Batch systems announce the end of a job by SIGUSR1, SIGUSR2 or SIGXCPU; Ctrl-\\ is SIGQUIT; timers send
+SIGALRM. Each signal is taken whose default is to end the process, but for those of a crash.
 
 Python would raise KeyboardInterrupt wherever it happens to be: in an import, which takes it for a missing
 module, in a `finally`, in a model that runs on pythonfmu, whose native library makes a failed step of it. And
@@ -11,8 +14,9 @@ it would wait for the end of whatever native code is running. So nothing is rais
   The run has PATIENCE to write its results; then, or at a second signal, the thread saves the rows as they
   are and ends the process. While the master waits for a unit in a process of its own, the wait is broken off.
 
-A signal that is ignored at the start stays ignored (nohup). A program that uses evcosim as a library handles
-signals by itself: only the command line calls `install`.
+A signal that is ignored at the start stays ignored (nohup), and one that somebody else handles, as
+faulthandler or a profiler does, stays theirs. A program that uses evcosim as a library handles signals by
+itself: only the command line calls `install`.
 """
 
 from __future__ import annotations
@@ -28,12 +32,16 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import NoReturn
 
+from ...cosim import shortage
 from ..isolation.waiting import waits
 
 _exit = os._exit  # `early_exit` puts another one in its place
 PATIENCE = 0.7  # s that the end of a run may take
 _GRACE = 0.25  # s until the thread ends a process whose handler has not come
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
+_OURS = ("SIGINT", "SIGHUP", "SIGTERM")  # whoever else handles them; Windows has no SIGHUP
+_OTHERS = (
+    "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGXCPU", "SIGALRM", "SIGVTALRM", "SIGPROF", "SIGIO", "SIGPWR",
+)  # fmt: skip # a list
 
 
 class Interrupted(KeyboardInterrupt):
@@ -51,7 +59,10 @@ def exit_code(error: BaseException) -> int:
 
 def words(number: int) -> str:
     """Return what is said of a command that a signal has ended."""
-    return "interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}"
+    if number == signal.SIGINT:
+        return "interrupted"
+    name = signal.Signals(number).name
+    return f"ended by {name}{_state.time_limit if name == 'SIGXCPU' else ''}"
 
 
 class _State:
@@ -62,7 +73,7 @@ class _State:
         self.number = 0
         self.keeping = False
         self.rescue: Callable[[str], str] | None = None
-        self.said = ""
+        self.said = self.time_limit = ""
         self.ending = threading.Lock()  # whoever has it ends the process
 
 
@@ -71,9 +82,13 @@ _state = _State()
 
 def install() -> None:
     """Handle the signals from now on, all but those that are ignored. The process is the command's own."""
-    for name in _NAMES:
+    _state.time_limit = shortage.announced_time_limit()
+    foreign = _caught()
+    for name in (*_OTHERS, *_OURS):
         number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+        if number is None or signal.getsignal(number) is signal.SIG_IGN:
+            continue
+        if name in _OURS or (signal.getsignal(number) is signal.SIG_DFL and number not in foreign):
             signal.signal(number, _handle)
             _state.handled.append(int(number))
     if os.name == "posix":  # Windows has no wake-up by a pipe: there the handler alone does it
@@ -83,6 +98,14 @@ def install() -> None:
         with contextlib.suppress(RuntimeError):  # no thread can be started: the handler alone does it
             thread.start()
             signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+
+
+def _caught() -> set[int]:
+    """Return the signals that have a handler: Python itself does not know those that machine code set."""
+    with contextlib.suppress(OSError, IndexError, ValueError), open("/proc/self/status") as file:
+        mask = int(file.read().partition("SigCgt:")[2].split()[0], 16)
+        return {number for number in range(1, signal.NSIG) if mask >> (number - 1) & 1}
+    return set()  # not Linux
 
 
 def leave() -> None:

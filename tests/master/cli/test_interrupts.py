@@ -81,7 +81,7 @@ def test_a_signal_at_any_moment_ends_the_command_cleanly(name, share, tmp_path):
     assert end is None or end.problems == []
 
 
-@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT", "SIGTERM", "SIGUSR1"])
 def test_a_signal_that_is_ignored_at_the_start_stays_ignored(name, process, tmp_path):
     """As with nohup, and in a shell's background jobs."""
     number = signal.Signals[name]
@@ -136,6 +136,63 @@ def test_the_words_and_the_codes_of_signals():
     assert interrupts.exit_code(interrupts.Interrupted(signal.SIGTERM)) == 143
     assert interrupts.words(signal.SIGINT) == "interrupted"
     assert interrupts.words(signal.SIGHUP) == "ended by SIGHUP"
+
+
+def after(code: str) -> subprocess.CompletedProcess[str]:
+    """The end of a process that does `code` with signal, os and interrupts at hand."""
+    code = f"import os, signal, time\nfrom evcosim.master.cli import interrupts\n{code}"
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+
+
+NAMES = ["SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGXCPU", "SIGALRM", "SIGVTALRM", "SIGPROF", "SIGIO", "SIGPWR"]
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if hasattr(signal, name)])
+def test_any_signal_that_would_end_the_process_ends_it_cleanly(name):
+    """Its default would, without a word."""
+    run = after(f"interrupts.install(); os.kill(os.getpid(), signal.{name}); time.sleep(10)")
+    assert (run.returncode, run.stderr) == (128 + signal.Signals[name], f"evcosim: ended by {name}\n")
+
+
+@pytest.mark.parametrize("name", ["SIGUSR1", "SIGQUIT"])
+def test_the_signal_of_a_batch_system_loses_no_row(name, process, tmp_path):
+    run = process("run", "scooter", "--scenario", "udds", "-o", "out", "--no-plot")
+    while not (tmp_path / "out" / "run.json").exists():
+        assert run.poll() is None
+        time.sleep(0.02)
+    time.sleep(0.3)
+    run.send_signal(signal.Signals[name])
+    err = run.communicate(timeout=30)[1]
+    assert run.returncode == 128 + signal.Signals[name]
+    assert err.startswith(f"evcosim: ended by {name}")
+    results = Results.read(tmp_path / "out")
+    assert (results.manifest["status"], len(results) > 0) == ("interrupted", True)
+
+
+def test_the_limit_of_processor_time_announces_itself():
+    """The system kills a process at once where both limits are the same, as `ulimit -t` sets them."""
+    run = after(
+        "import resource; resource.setrlimit(resource.RLIMIT_CPU, (2, 2)); interrupts.install()\n"
+        "while True: pass"
+    )
+    said = "evcosim: ended by SIGXCPU (the limit of processor time is 2 s: `ulimit -t`)\n"
+    assert (run.returncode, run.stderr) == (128 + signal.SIGXCPU, said)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="machine code's handlers are found in /proc")
+@pytest.mark.parametrize(
+    ("handler", "said"),
+    [
+        ("import faulthandler; faulthandler.register(signal.SIGUSR1)", "most recent call first"),
+        ("import sys; signal.signal(signal.SIGUSR1, lambda *_: print('mine', file=sys.stderr))", "mine"),
+    ],
+)
+def test_a_signal_that_somebody_else_handles_stays_theirs(handler, said):
+    run = after(f"{handler}\ninterrupts.install(); os.kill(os.getpid(), signal.SIGUSR1); time.sleep(0.1)")
+    assert run.returncode == 0
+    assert said in run.stderr
+    assert "evcosim" not in run.stderr
 
 
 def test_where_no_thread_can_be_started_a_signal_still_ends_the_command():
