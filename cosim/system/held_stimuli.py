@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..clock import Clock
+from ..csv_text import number_in
 from ..errors import ConfigError
 from ..interface import Value, VariableInfo
 from ..units.measure import Affine
@@ -21,7 +22,7 @@ from .values import of_type
 ToDouble = Callable[[Value, str], float]
 """(value, place): the double in which a run keeps a value of the input's type."""
 
-_WHOLE = re.compile(r"[+-]?\d+")
+_WHOLE = re.compile(r"[+-]?\d{1,400}")  # of more digits Python makes no integer, and a double none either
 
 
 def held_stimulus(
@@ -80,7 +81,7 @@ def _of_csv(
     values: NDArray[np.float64] = np.empty(len(texts))
     for k, text in enumerate(texts):
         if text not in known:
-            value = _value(text, variable)
+            value = _value(text, variable, file.separator)
             try:
                 known[text] = number(value, "")
             except ConfigError:  # only then the file is read again for the line
@@ -112,20 +113,21 @@ def _pairs(entry: StimulusEntry, place: str, beside: Path | None) -> list[tuple[
     if entry.csv is not None:
         file, rows = csv_of(entry, place, beside)
         known = VariableInfo(entry.to, "Boolean")  # of which true and false are values
-        values = [_value(text, known) for text in file.texts(rows.value)]
+        values = [_value(text, known, file.separator) for text in file.texts(rows.value)]
         return list(zip(read_times(file, rows).tolist(), values, strict=True))
     return [(0.0, entry.constant)] if entry.constant is not None else list(entry.table or [])
 
 
-def _value(text: str, variable: VariableInfo) -> Value:
-    """Return the value of a cell of a CSV file: a text where it is neither a number nor a truth value."""
+def _value(text: str, variable: VariableInfo, separator: str) -> Value:
+    """Return the value of a cell of a CSV file: a text where it is neither a number nor a truth value.
+
+    Numbers are those of `csv_text.number_in`, but whole ones are exact.
+    """
     if variable.type == "String":
         return text
     if variable.type == "Boolean" and text.lower() in ("true", "false"):
         return text.lower() == "true"
     if _WHOLE.fullmatch(text):
         return int(text)
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    number = number_in(text, separator)
+    return text if number is None else number

@@ -13,7 +13,7 @@ from evcosim.cosim.clock import Clock
 from evcosim.cosim.csv_numbers import CsvFile
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.system.held_stimuli import held_stimulus
+from evcosim.cosim.system.held_stimuli import course, held_stimulus
 from evcosim.cosim.system.scenario import StimulusEntry
 from evcosim.cosim.system.values import as_double
 from evcosim.cosim.texts import Texts
@@ -80,7 +80,9 @@ def test_a_csv_holds_numbers_truths_and_names_of_items(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("time,n\n0,\n", "line 2, column 'n': n is a finite Integer number, not ''"),
-        ("time,n\n0,1\n# c\n1,nan\n", "line 4, column 'n': n is a finite Integer number, not nan"),
+        ("time,n\n0,1\n# c\n1,nan\n", "line 4, column 'n': n is a finite Integer number, not 'nan'"),
+        ("time,n\n0,1_0\n", "line 2, column 'n': n is a finite Integer number, not '1_0'"),
+        (f"time,n\n0,{'9' * 5000}\n", "line 2, column 'n': n is a finite Integer number, not '999"),
         ("time,n\n0,9007199254740993\n", "line 2, column 'n': n = 9007199254740993 is more than a double"),
         ("time,n\n1,0\n0,1\n", "line 3, column 'time': time goes back from 1.0 s to 0.0 s"),
         ("time,n\nnan,0\n", "line 2, column 'time': 'nan' is not a finite number"),
@@ -92,6 +94,14 @@ def test_a_wrong_row_is_named(text: str, said: str, tmp_path: Path) -> None:
     path.write_text(text)
     with pytest.raises(ConfigError, match=said):
         values(COUNT, [0], csv=str(path))
+
+
+def test_decimal_commas_are_those_of_a_real(tmp_path: Path) -> None:
+    path = tmp_path / "in.csv"
+    path.write_text("time;n;x\n0,0;1,0;0,5\n1,5;2,0;0,25\n")
+    assert values(COUNT, [0, 1.5], csv=str(path)) == [1, 2]
+    entry = StimulusEntry.model_validate({"to": "u.x", "csv": str(path), "column": "x"})
+    assert course(entry, "here", None, CLOCK, np.array([0.0, 0.75, 1.5])) == [0.5, 0.375, 0.25]
 
 
 def test_a_table_that_goes_back_is_named() -> None:
