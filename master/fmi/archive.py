@@ -178,15 +178,21 @@ def _problem(entry: zipfile.ZipInfo, allowed: ArchiveLimits) -> str:
 
 
 def read_entry(path: Path, name: str) -> bytes:
-    """Return the bytes of one entry of at most 64 MiB. Raises FmuError."""
+    """Return the bytes of one entry of at most 64 MiB, by its name in `entries_of`. Raises FmuError."""
     try:
-        with zipfile.ZipFile(path) as archive, archive.open(name) as file:
+        with zipfile.ZipFile(path) as archive, archive.open(_named(archive, name)) as file:
             content = file.read(_DESCRIPTION + 1)
     except Exception as error:  # a wrong checksum, a compression that is not known, ...
         raise FmuError(f"{path}: entry {name!r} cannot be read: {error}") from error
     if len(content) > _DESCRIPTION:
         raise FmuError(f"{path}: entry {name!r} has more than {_DESCRIPTION >> 20} MiB")
     return content
+
+
+def _named(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
+    """Return the entry of a name whose folders the archive may separate otherwise. Raises KeyError."""
+    found = (entry for entry in archive.infolist() if entry.filename.replace("\\", "/") == name)
+    return next(found, None) or archive.getinfo(name)
 
 
 def extract(path: Path) -> Path:

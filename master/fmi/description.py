@@ -17,6 +17,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
+from ...cosim.errors import short
 from .archive import FmuError
 from .attributes import mend_attributes, wrong_counts
 from .structure import mend_structure
@@ -208,9 +209,9 @@ def _require(path: Path, v: Any, name: str, seen: Collection[str]) -> None:
     if name in seen:
         raise FmuError(f"{place} is declared twice")
     reference = (v.get("valueReference") or "").strip()
-    if not re.fullmatch(r"\d+", reference) or int(reference) >= 2**32:
-        given = v.get("valueReference")
-        raise FmuError(f"{place} has valueReference {given!r}; a whole number from 0 to 2^32 - 1 is needed")
+    if not re.fullmatch(r"\d{1,100}", reference) or int(reference) >= 2**32:
+        given = short(v.get("valueReference"))
+        raise FmuError(f"{place} has valueReference {given}; a whole number from 0 to 2^32 - 1 is needed")
 
 
 def _mend_variable(v: Any, value: Any, name: str, types: set[str | None], kind: FmiType | None) -> list[str]:

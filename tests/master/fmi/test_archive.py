@@ -146,6 +146,7 @@ def test_folders_of_an_archive_that_separates_them_otherwise(tmp_path: Path) -> 
     path.write_bytes(path.read_bytes().replace(b"resources/table/one", b"resources\\table\\one"))
     folder = extract(path)
     assert (folder / "resources" / "table" / "one.txt").read_bytes() == b"1"
+    assert read_entry(path, "resources/table/one.txt") == b"1"
     shutil.rmtree(folder)
 
 

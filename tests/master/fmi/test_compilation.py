@@ -49,6 +49,13 @@ def answer(path: Path) -> list[object]:
     return found
 
 
+@pytest.mark.parametrize("fmi", [1, 3])
+def test_sources_in_an_archive_that_separates_folders_otherwise(tmp_path: Path, fmi: int) -> None:
+    path = bare(tmp_path / "bare.fmu", fmi, {"mixed.c": source(fmi), "buildDescription.xml": BUILD})
+    path.write_bytes(path.read_bytes().replace(b"sources/", b"sources\\"))
+    assert answer(compile_fmu(path, tmp_path / "made.fmu")) == answer(tmp_path / "full.fmu")
+
+
 @pytest.mark.parametrize("fmi", [1, 2, 3])
 def test_the_library_made_here_computes_what_that_of_the_same_source_does(tmp_path: Path, fmi: int) -> None:
     path = bare(tmp_path / "bare.fmu", fmi, {"mixed.c": source(fmi)})

@@ -67,6 +67,7 @@ def test_a_parameter_whose_variability_was_wrong_is_fixed(tmp_path: Path) -> Non
         (('name="y"', 'name="u"'), r"variable 'u' \(line 7\) is declared twice"),
         (('valueReference="1" ', ""), "valueReference None; a whole number"),
         (('valueReference="1" ', 'valueReference="-1" '), "valueReference '-1'; a whole number"),
+        (('valueReference="1" ', f'valueReference="{"9" * 5000}" '), "valueReference '999"),
         *(
             (
                 ('modelIdentifier="m"', f'modelIdentifier="{name}"'),
