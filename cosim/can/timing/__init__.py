@@ -1,0 +1,1 @@
+"""Time on the bus: lengths of frames, who wins the arbitration, the longest response times."""
