@@ -15,10 +15,8 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import ConfigError
 from ..row_store import Array
@@ -26,10 +24,10 @@ from ..units.conversion import conversion
 from ..units.definition import defined
 from ..units.measure import Affine
 from ..visible import on_one_line
+from .common_times import CommonTimes, NotCompared
 from .results import Results, ResultVariable
 from .text_table import shown_text
 
-_SAME_TIME = 1e-9  # s: other tools print accumulated times, 0.29000000000000004 for 0.29
 _SQUARES = 1e150  # the squares of greater differences overflow
 
 
@@ -65,13 +63,17 @@ class VariableDifference:
 class Comparison:
     """The outcome: a row for each common variable, the names on one side alone, and remarks.
 
-    `points` is the number of compared times; `same_span` is true where both runs begin and end together.
+    `points` is the number of compared times, of which `only_times_a` and `only_times_b` are of one run alone.
+    `not_compared` are the points of one run before or after the other; `same_span` is true without any.
     """
 
     rows: tuple[VariableDifference, ...]
     only_a: tuple[str, ...]
     only_b: tuple[str, ...]
     points: int
+    only_times_a: int
+    only_times_b: int
+    not_compared: tuple[NotCompared, ...]
     same_span: bool
     tolerance: float
     relative: float
@@ -113,27 +115,35 @@ def _cells(row: VariableDifference) -> tuple[str, ...]:
 
 
 def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.0) -> Comparison:
-    """Compare two results at the times of `a` that `b` covers too.
+    """Compare two results at the times of both, over the stretch that both cover.
 
-    On a grid of its own, `b` is interpolated: linearly between continuous values, the previous value for
-    what is held. Units of measure are converted. Raises ConfigError for a negative or NaN tolerance.
+    Where one of them lacks a time it is interpolated: linearly between continuous values, the previous value
+    for what is held. Units of measure are converted. Raises ConfigError for a negative or NaN tolerance, and
+    for an infinite `relative`.
     """
     if not (tolerance >= 0.0 and relative >= 0.0):
         raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
-    grid = _Grid.of(a, b)
-    rows = [_compared(a, b, v, grid, tolerance, relative) for v in a.variables if v.name in b.names]
-    rows += [_compared_texts(a, b, name, grid) for name in a.texts if name in b.texts]
+    if math.isinf(relative):
+        raise ConfigError(
+            f"a relative tolerance must be finite, not {relative!r}: it is a share of the range"
+        )
+    at = CommonTimes.of(a.time, b.time)
+    rows = [_compared(a, b, v, at, tolerance, relative) for v in a.variables if v.name in b.names]
+    rows += [_compared_texts(a, b, name, at) for name in a.texts if name in b.texts]
     for name in (*(n for n in a.names if n in b.texts), *(n for n in a.texts if n in b.names)):
         rows.append(_without_values(name, "", "a text on one side, numbers on the other"))
     return Comparison(
         rows=tuple(rows),
         only_a=tuple(name for name in (*a.names, *a.texts) if name not in b),
         only_b=tuple(name for name in (*b.names, *b.texts) if name not in a),
-        points=len(grid.time),
-        same_span=grid.same_span,
+        points=len(at.time),
+        only_times_a=at.second.interpolated,
+        only_times_b=at.first.interpolated,
+        not_compared=at.not_compared,
+        same_span=at.same_span,
         tolerance=tolerance,
         relative=relative,
-        remarks=grid.remarks,
+        remarks=at.remarks,
     )
 
 
@@ -143,66 +153,16 @@ def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
     The times are those at which the two are compared. Raises ConfigError where they measure different
     quantities, or one of them lacks the variable.
     """
-    grid = _Grid.of(a, b)
+    at = CommonTimes.of(a.time, b.time)
     variable, other = a.variable(name), b.variable(name)
     convert, _ = _conversion(other, variable)
-    values = grid.values_of(b, variable if variable.held else other)
-    return grid.time, convert.scale * values + convert.offset - a.column(name)[grid.rows]
-
-
-@dataclasses.dataclass(frozen=True)
-class _Grid:
-    """The times [s] at which two runs are compared, shape (n,), and the `rows` of `a` that have them.
-
-    `exact` is true where these are all rows of both; else `b` is interpolated.
-    """
-
-    time: Array
-    rows: slice
-    exact: bool
-    same_span: bool
-    remarks: tuple[str, ...]
-
-    @classmethod
-    def of(cls, a: Results, b: Results) -> _Grid:
-        """Return the grid of two runs: the times of `a` that `b` covers too."""
-        ta, tb = a.time, b.time
-        if not len(ta) or not len(tb):
-            both = not len(ta) and not len(tb)
-            return cls(ta[:0], slice(0, 0), True, both, ("there is nothing to compare: a run has no points",))
-        if len(ta) == len(tb) and float(np.max(np.abs(ta - tb))) <= _SAME_TIME:
-            return cls(ta, slice(None), True, True, ())
-        begin, end = max(ta[0], tb[0]) - _SAME_TIME, min(ta[-1], tb[-1]) + _SAME_TIME
-        rows = slice(int(np.searchsorted(ta, begin)), int(np.searchsorted(ta, end, side="right")))
-        apart = abs(ta[0] - tb[0]) > _SAME_TIME or abs(ta[-1] - tb[-1]) > _SAME_TIME
-        remarks = ["the times differ: the second was interpolated (linear; held values: the previous one)"]
-        if apart:
-            spans = [f"{t[0]:g} to {t[-1]:g} s" for t in (ta, tb)]
-            remarks.append(f"the first goes from {spans[0]}, the second from {spans[1]}")
-        return cls(ta[rows], rows, False, not apart, tuple(remarks))
-
-    def values_of(self, b: Results, variable: ResultVariable) -> Array:
-        """Return the values of a variable of `b` at the times of the grid, shape (n,)."""
-        values = b.column(variable.name)
-        if self.exact:
-            return values[: len(self.time)]
-        if not variable.held:
-            return np.interp(self.time, b.time, values)
-        return values[self._previous(b)]
-
-    def texts_of(self, b: Results, name: str) -> NDArray[Any]:
-        """Return the texts of a variable of `b` at the times of the grid, shape (n,)."""
-        texts = b[name]
-        return texts[: len(self.time)] if self.exact else texts[self._previous(b)]
-
-    def _previous(self, b: Results) -> NDArray[np.intp]:
-        """Return the rows of `b` that are valid at the times of the grid, shape (n,)."""
-        rows = np.searchsorted(b.time, self.time + _SAME_TIME, side="right") - 1
-        return np.clip(rows, 0, len(b) - 1)
+    held = variable.held or other.held
+    values = at.second.values(b.column(name), held, at.time)
+    return at.time, convert.scale * values + convert.offset - at.first.values(a.column(name), held, at.time)
 
 
 def _compared(
-    a: Results, b: Results, variable: ResultVariable, grid: _Grid, tolerance: float, relative: float
+    a: Results, b: Results, variable: ResultVariable, at: CommonTimes, tolerance: float, relative: float
 ) -> VariableDifference:
     other = b.variable(variable.name)
     unit = variable.unit or other.unit
@@ -210,8 +170,9 @@ def _compared(
         convert, remark = _conversion(other, variable)
     except ConfigError as error:
         return _without_values(variable.name, unit, str(error))
-    x = a.column(variable.name)[grid.rows]
-    y = grid.values_of(b, variable if variable.held else other)
+    held = variable.held or other.held
+    x = at.first.values(a.column(variable.name), held, at.time)
+    y = at.second.values(b.column(variable.name), held, at.time)
     if not convert.identity:
         y = convert.scale * y + convert.offset
     if not len(x):
@@ -222,11 +183,11 @@ def _compared(
     share = relative * span if math.isfinite(span) else 2 * relative * _range(x / 2)
     equal = math.isfinite(largest) and largest <= tolerance + share
     rms = _rms(apart, largest)
-    return VariableDifference(variable.name, unit, largest, float(grid.time[worst]), rms, span, equal, remark)
+    return VariableDifference(variable.name, unit, largest, float(at.time[worst]), rms, span, equal, remark)
 
 
-def _compared_texts(a: Results, b: Results, name: str, grid: _Grid) -> VariableDifference:
-    x, y = a[name][grid.rows], grid.texts_of(b, name)
+def _compared_texts(a: Results, b: Results, name: str, at: CommonTimes) -> VariableDifference:
+    x, y = at.first.texts(a[name]), at.second.texts(b[name])
     if not len(x):
         return _without_values(name, "", "no common time")
     apart = np.flatnonzero(x != y)
@@ -236,7 +197,7 @@ def _compared_texts(a: Results, b: Results, name: str, grid: _Grid) -> VariableD
     first = int(apart[0])
     texts = f"{shown_text(x[first])} and {shown_text(y[first])}"
     said = f"{texts}; they differ at {len(apart)} of {len(x)} times"
-    return dataclasses.replace(row, time=float(grid.time[first]), remark=said)
+    return dataclasses.replace(row, time=float(at.time[first]), remark=said)
 
 
 def _without_values(name: str, unit: str, remark: str) -> VariableDifference:

@@ -142,7 +142,21 @@ _COMPARE = record(
         ),
         "only_a": listed("Variables that A alone has."),
         "only_b": listed("Variables that B alone has."),
-        "points": whole("Times at which they are compared."),
+        "points": whole("Times at which they are compared: those of both, where both run."),
+        "only_times_a": whole("Of these, times that A alone has: B is interpolated there."),
+        "only_times_b": whole("Of these, times that B alone has: A is interpolated there."),
+        "not_compared": listed(
+            "The points of one run before or after the other.",
+            record(
+                "A stretch.",
+                {
+                    "side": text('"first" (A) or "second" (B).'),
+                    "points": whole("Points that are not compared."),
+                    "begin": number("The time of the first of them [s]."),
+                    "end": number("The time of the last of them [s]."),
+                },
+            ),
+        ),
         "same_span": flag("Whether both begin and end at the same times."),
         "tolerance": number("The difference allowed."),
         "relative": number("The difference allowed beside it, as a share of the range."),

@@ -73,7 +73,7 @@ def test_a_line_on_another_grid_is_the_same_line(slope: float, start: float) -> 
         return one(start + slope * step * np.arange(n), step=step)
 
     found = compare(line(1.0, 5), line(0.25, 17), tolerance=1e-12)
-    assert found.equal and found.points == 5
+    assert found.equal and (found.points, found.only_times_a, found.only_times_b) == (17, 0, 12)
     assert "interpolated" in found.remarks[0]
     assert compare(line(0.25, 17), line(1.0, 5), tolerance=1e-12).equal
 
@@ -98,6 +98,7 @@ def test_a_run_that_ends_early_is_not_equal() -> None:
     assert all(row.equal for row in found.rows)
     assert not found.same_span and not found.equal
     assert "the first goes from 0 to 2 s, the second from 0 to 1 s" in found.summary()
+    assert "not compared: 1 point of the first at 2 s" in found.summary()
 
 
 def test_nothing_in_common_is_not_equal() -> None:
@@ -213,3 +214,42 @@ def test_a_text_on_one_side_is_named() -> None:
     assert (both.only_a, both.only_b) == (("vehicle.speed",), ())
     assert compare(text, one([1.0, 2.0])).only_a == ("ecu.mode",)
     assert compare(one([1.0, 2.0]), text).only_b == ("ecu.mode",)
+
+
+runs = st.tuples(
+    st.lists(st.integers(0, 12), min_size=1, max_size=8).map(sorted),
+    st.lists(st.integers(-3, 3), min_size=8, max_size=8),
+).map(lambda run: Results(0.25 * np.array(run[0]), np.array(run[1][: len(run[0])], float)[:, None], [SPEED]))
+
+
+@given(runs, runs, st.booleans())
+def test_the_first_compared_with_the_second_is_the_second_compared_with_the_first(
+    a: Results, b: Results, held: bool
+) -> None:
+    if held:
+        variable = dataclasses.replace(SPEED, variability="discrete")
+        a, b = (Results(each.time, each.data, [variable]) for each in (a, b))
+    one_way, other = compare(a, b), compare(b, a)
+    assert (one_way.equal, one_way.points, one_way.same_span) == (other.equal, other.points, other.same_span)
+    assert (one_way.only_times_a, one_way.only_times_b) == (other.only_times_b, other.only_times_a)
+    assert {(x.points, x.begin, x.end) for x in one_way.not_compared} == {
+        (x.points, x.begin, x.end) for x in other.not_compared
+    }
+    ours, theirs = dataclasses.astuple(one_way.rows[0]), dataclasses.astuple(other.rows[0])
+    assert ours[2:5] == pytest.approx(theirs[2:5], nan_ok=True)
+    assert difference(a, b, SPEED.name)[1] == pytest.approx(-difference(b, a, SPEED.name)[1])
+
+
+def test_a_difference_between_the_points_of_the_first_is_one() -> None:
+    coarse, fine = one([0.0, 1.0, 2.0]), one([0.0, 0.5, 1.0, 9.0, 2.0], step=0.5)
+    for found in (compare(coarse, fine), compare(fine, coarse)):
+        assert not found.equal
+        assert (found.rows[0].difference, found.rows[0].time, found.points) == (7.5, 1.5, 5)
+    mode = states("off", "on", "on")
+    blip = states("off", "off", "on", "off", "on", step=0.5)
+    assert [compare(*pair).rows[1].time for pair in ((mode, blip), (blip, mode))] == [1.5, 1.5]
+
+
+def test_an_infinite_share_of_the_range_is_refused() -> None:
+    with pytest.raises(ConfigError, match="a relative tolerance must be finite, not inf"):
+        compare(one([1.0]), one([1.0]), relative=math.inf)
