@@ -18,7 +18,7 @@ from ..plan.unit_maps import End, scaled_map
 from ..system.figure_spec import FigureSpec
 from ..system.metric_spec import MetricSpec
 from ..system.problems import spelled
-from ..system.scenario import Scenario
+from ..system.scenario import Event, Scenario, StimulusEntry
 from ..system.system import Connection, MapEntry, System, UnitEntry
 from ..units.definition import defined
 
@@ -174,16 +174,18 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
             "metrics": metrics,
             "figure": _figure(file.figure, absent, left_out),
             "budget": budget,
+            "record": _recorded(file.record, absent, left_out),
         }
     )
     driven = driven.model_copy(
         update={
-            "stimuli": [s for s in driven.stimuli if s.to not in absent],
-            "events": [e for e in driven.events if absent.isdisjoint(e.needs)],
+            "stimuli": _stimuli(driven.stimuli, absent, left_out),
+            "events": _events(driven.events, absent, left_out),
             "parameters": _known(driven.parameters, absent, left_out),
             "start": _known(driven.start, absent, left_out),
             "metrics": _metrics(driven.metrics, absent, left_out),
             "figure": _figure(driven.figure, absent, left_out),
+            "record": driven.record and _recorded(driven.record, absent, left_out),
         }
     )
     sentences = tuple(f"left out, since it is absent: {text}" for text in dict.fromkeys(left_out))
@@ -223,8 +225,29 @@ def _connection(connection: Connection, absent: set[str], left_out: list[str]) -
     kept = [name for name in connection.to if name not in absent]
     if kept == connection.to:
         return connection
-    left_out.append(f"{connection.source} -> {', '.join(set(connection.to) - set(kept))}")
+    lost = [name for name in connection.to if name in absent]
+    left_out.append(f"{connection.source} -> {', '.join(lost)}")
     return connection.model_copy(update={"to": kept}) if kept or connection.via else None
+
+
+def _stimuli(stimuli: Iterable[StimulusEntry], absent: set[str], left_out: list[str]) -> list[StimulusEntry]:
+    kept = []
+    for stimulus in stimuli:
+        if stimulus.to in absent:
+            left_out.append(f"the stimulus of {stimulus.to}")
+        else:
+            kept.append(stimulus)
+    return kept
+
+
+def _events(events: Iterable[Event], absent: set[str], left_out: list[str]) -> list[Event]:
+    kept = []
+    for event in events:
+        if absent.isdisjoint(event.needs):
+            kept.append(event)
+        else:
+            left_out.append(f"the event '{event.action}' of {', '.join(event.needs)} at {event.time:g} s")
+    return kept
 
 
 def _metrics(specs: Iterable[MetricSpec], absent: set[str], left_out: list[str]) -> list[MetricSpec]:
@@ -235,6 +258,11 @@ def _metrics(specs: Iterable[MetricSpec], absent: set[str], left_out: list[str])
         else:
             kept.append(spec)
     return kept
+
+
+def _recorded(patterns: Iterable[str], absent: set[str], left_out: list[str]) -> list[str]:
+    left_out += [f"{pattern} in the record" for pattern in patterns if pattern in absent]
+    return [pattern for pattern in patterns if pattern.removeprefix("!") not in absent]
 
 
 def _figure(spec: FigureSpec | None, absent: set[str], left_out: list[str]) -> FigureSpec | None:

@@ -114,6 +114,7 @@ SYSTEM = {
         {"from": "w.b", "to": ["u.x"]},
         {"from": "u.z", "to": ["w.d"]},
     ],
+    "record": ["w.*", "u.y", "u.z", "!u.x"],
     "figure": {"panels": [{"signals": ["u.y", "u.z"]}]},
     "metrics": [{"name": "of y", "signal": "u.y"}, {"name": "of z", "signal": "u.z"}],
     "budget": {"metric": "of y", "limit": 1.0},
@@ -150,9 +151,28 @@ def test_what_needs_absent_variables_is_left_out_and_said() -> None:
     assert [e.needs for e in scenario.file.events] == [("w.e",)]
     assert scenario.file.parameters == {"u": {"p": 2.0}}
     assert scenario.file.start == {"u": {}}
-    assert "left out, since it is absent: u.y -> w.a; a receiver keeps its start value" in said
-    assert "left out, since it is absent: metric 'of y'" in said
-    assert len(said) == len(set(said))
+    assert system.file.record == ["w.*", "u.z"]
+    assert said == tuple(
+        f"left out, since it is absent: {text}"
+        for text in (
+            "u.y -> w.a; a receiver keeps its start value",
+            "w.b -> u.x",
+            "metric 'of y'",
+            "u.y in the figure",
+            "u.y in the record",
+            "the stimulus of u.x",
+            "the event 'reset' of u.x at 1 s",
+            "the value of u.x",
+        )
+    )
+
+
+def test_what_is_left_out_of_a_connection_stands_in_the_order_of_the_file() -> None:
+    names = [f"u.x{i}" for i in range(20)]
+    absent = [name.removeprefix("u.") for name in names]
+    units = {"u": {"fmu": "F", "absent": absent}, "w": {"fmu": "F"}}
+    *_, said = left(units=units, connect=[{"from": "w.b", "to": ["w.c", *names]}])
+    assert said == (f"left out, since it is absent: w.b -> {', '.join(names)}",)
 
 
 def test_nothing_of_what_is_left_names_what_is_absent() -> None:
