@@ -113,7 +113,8 @@ def identify(
     options = _with_values(options, settings or [], starts or [], is_fmu(target))
     kept = {"target": target, "scenario": scenario, "spec": spec.model_dump(mode="json")}
     kept["options"] = given_options(options)
-    where, remarks = study_folder(folder, (*_names(target, scenario), "identify"), DATA, kept)
+    named = (*_names(target, scenario), "identify")
+    where, remarks = study_folder(folder, named, DATA, kept, "--output-folder")
     bar = not (as_json or quiet)
     found = _measure(target, spec, scenario, (settings or [], starts or []), options, bar)
     files = _write(where, found, not no_plot, kept)

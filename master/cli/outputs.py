@@ -27,10 +27,10 @@ def default_folder(*names: str) -> Path:
     return Path("results") / "-".join(name for name in names if name)
 
 
-def output_folder(folder: Path) -> Path:
+def output_folder(folder: Path, option: str = "--output") -> Path:
     """Make the folder if needed, try to write into it, and return it; this command has it until `release`.
 
-    Raises ConfigError with the reason, also if another command has it.
+    Raises ConfigError with the reason, also if another command has it, and the option that names another one.
     """
     from ...cosim.errors import ConfigError
     from ...cosim.results.folder_lock import FolderLock
@@ -38,7 +38,7 @@ def output_folder(folder: Path) -> Path:
     try:
         _held.append(FolderLock(folder))
     except ConfigError as error:
-        raise ConfigError(f"{error}; --output names another one") from error
+        raise ConfigError(f"{error}; {option} names another one") from error
     return folder
 
 

@@ -17,13 +17,17 @@ _KEY = "settings"
 
 
 def study_folder(
-    wanted: Path | None, names: tuple[str, ...], data: str, settings: Mapping[str, Any]
+    wanted: Path | None,
+    names: tuple[str, ...],
+    data: str,
+    settings: Mapping[str, Any],
+    option: str = "--output",
 ) -> tuple[Path, list[str]]:
     """Make and lock the folder of a study, and return it with remarks on the choice.
 
-    `wanted` is the one that the user names (None: that of the `names`), `data` the name of the JSON file in
-    which a study keeps its `settings`. Raises ConfigError where the folder cannot be written, or another
-    command has it.
+    `wanted` is the one that the user names by `option` (None: that of the `names`), `data` the name of the
+    JSON file in which a study keeps its `settings`. Raises ConfigError where the folder cannot be written, or
+    another command has it.
     """
     from ...cosim.errors import ConfigError
 
@@ -32,8 +36,8 @@ def study_folder(
         kept = _settings_in(folder / data)
         if kept is None or kept == json.loads(json.dumps(settings, default=str)):
             moved = f"{first} has results of other settings; these are in {folder}"
-            return output_folder(folder), [moved] if folder != first else []
-    raise ConfigError(f"output folder {first}: there are too many with a number; name another one")
+            return output_folder(folder, option), [moved] if folder != first else []
+    raise ConfigError(f"output folder {first}: there are too many with a number; {option} names another one")
 
 
 def _settings_in(path: Path) -> Any:

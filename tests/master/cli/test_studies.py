@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+from evcosim import ConfigError
+from evcosim.cosim.results.folder_lock import FolderLock
 from evcosim.master.cli import outputs
 from evcosim.master.cli.studies import study_folder, with_settings
 
@@ -45,6 +47,20 @@ def test_a_file_that_is_not_of_a_study_is_replaced(
     Path("results/car-hill-budget").mkdir(parents=True)
     Path("results/car-hill-budget/budget.json").write_text(text, encoding="utf-8")
     assert chosen({"options": {}})[0] == "results/car-hill-budget"
+
+
+def test_a_folder_that_another_command_has_is_refused_with_the_option_that_names_one(
+    evcosim: Any, tmp_path: Path
+) -> None:
+    sweep = ("--sweep", "0.05,1", "--duration", "150", "--no-plot")
+    with FolderLock(tmp_path / "mine"):
+        answer = evcosim("identify", "scooter", *sweep, "--output-folder", str(tmp_path / "mine"))
+        assert answer.code == 2
+        assert answer.err.endswith(
+            "is writing into it; wait for its end; --output-folder names another one\n"
+        )
+        with pytest.raises(ConfigError, match="; --output names another one"):
+            chosen({"options": {}}, tmp_path / "mine")
 
 
 def test_what_identify_switches_off_is_said(evcosim: Any) -> None:
