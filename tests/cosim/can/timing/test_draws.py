@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import types
-
-import numba
 import numpy as np
 
 from evcosim.cosim.can.timing import draws
 from evcosim.cosim.can.timing.draws import drawn, mixed
+from support.compiled import in_machine_code
 
 
 def sample(**changed: int) -> list[float]:
@@ -38,12 +36,10 @@ def test_neighbours_are_not_correlated() -> None:
 
 
 def test_machine_code_draws_the_same() -> None:
-    scope: dict[str, object] = {"_LOW": draws._LOW}
-    for name in ("mixed", "drawn"):
-        scope[name] = numba.njit(types.FunctionType(getattr(draws, name).__code__, scope))
+    machine = in_machine_code(draws)["drawn"]
     for seed in (0, 1, 2**31, 2**62, -5):
         for instance in (0, 1, 10**9, 2**40):
-            assert scope["drawn"](seed, 0, 31, instance, 4) == drawn(seed, 0, 31, instance, 4)  # type: ignore[operator] # compiled
+            assert machine(seed, 0, 31, instance, 4) == drawn(seed, 0, 31, instance, 4)
 
 
 def test_the_finalizer_is_that_of_murmurhash3() -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import random
-import types
 
-import numba
 import numpy as np
 import pytest
 
@@ -21,6 +19,7 @@ from evcosim.cosim.can.timing.lengths import (
     most_bits,
 )
 from support.can_bits import FormError, Frame, random_frame, read, wire
+from support.compiled import in_machine_code
 
 
 def counted(frame: Frame) -> int:
@@ -121,17 +120,13 @@ def test_dlc_and_padding() -> None:
 
 
 def test_machine_code_counts_the_same() -> None:
-    scope = {name: getattr(lengths, name) for name in dir(lengths) if name.startswith("_")}
-    for name in ("stuffed", "fd_code", "classic_bits", "fd_bits"):
-        function = getattr(lengths, name)
-        scope |= {n: getattr(lengths, n) for n in ("INTERFRAME", "FD_LENGTHS")}
-        scope[name] = numba.njit(types.FunctionType(function.__code__, scope))
+    machine = in_machine_code(lengths)
     draw = random.Random(15)
     for _ in range(200):
         frame = random_frame(draw)
         data = np.frombuffer(b"\x99" + frame.data, dtype=np.uint8).astype(np.int64)
         arguments = (frame.identifier, int(frame.extended), data, 1, len(frame.data))
         if frame.fd:
-            assert sum(scope["fd_bits"](*arguments, int(frame.switch))) == counted(frame)
+            assert sum(machine["fd_bits"](*arguments, int(frame.switch))) == counted(frame)
         else:
-            assert scope["classic_bits"](*arguments) == counted(frame)
+            assert machine["classic_bits"](*arguments) == counted(frame)

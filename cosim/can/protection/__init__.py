@@ -1,0 +1,1 @@
+"""Protection of messages end to end: checksums and counters, and what a receiver makes of them."""

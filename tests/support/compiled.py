@@ -1,0 +1,24 @@
+"""Functions of a module as numba compiles them: what the python engine runs, in machine code."""
+
+from __future__ import annotations
+
+import types
+from types import ModuleType
+from typing import Any
+
+import numba
+
+
+def in_machine_code(*modules: ModuleType) -> dict[str, Any]:
+    """Return the functions of modules that know each other's, compiled, by name."""
+    scope: dict[str, Any] = {}
+    functions: dict[str, types.FunctionType] = {}
+    for module in modules:
+        for name, value in vars(module).items():
+            if isinstance(value, types.FunctionType):
+                functions[name] = value
+            elif not name.startswith("__"):
+                scope[name] = value
+    for name, function in functions.items():
+        scope[name] = numba.njit(types.FunctionType(function.__code__, scope, name))
+    return {name: scope[name] for name in functions}
