@@ -7,7 +7,7 @@ import functools
 import itertools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from ..clock import Clock
 from ..csv_numbers import CsvFile
@@ -26,6 +26,7 @@ from .connections import Network, connect
 from .events import scheduled
 from .given_values import all_parameters, all_starts, by_kind
 from .plan import Drive, InputPlan, Plan
+from .recorded import Record
 from .slots import Slots, allot
 from .steps import steps_in
 from .unit_maps import End, unit_map
@@ -65,8 +66,8 @@ def resolve(
     """
     experiment, algorithm = _experiment(system, scenario, options)
     entries = participating(system, scenario)
-    place, record = _record_of(system, scenario, options)
-    slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect}, place)
+    record = _record_of(system, scenario, options)
+    slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect})
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     experiment = experiment.model_copy(update={"stop_time": clock.stop})
@@ -139,8 +140,8 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
     )
 
 
-def _record_of(system: System, scenario: Scenario, options: RunOptions) -> tuple[str, Sequence[str]]:
-    """Return the patterns of what is recorded, and the file that they stand in ("": the option).
+def _record_of(system: System, scenario: Scenario, options: RunOptions) -> Record:
+    """Return the patterns of what is recorded.
 
     An option that only leaves out, as `!battery.*`, leaves that out of what the files record.
     """
@@ -148,10 +149,11 @@ def _record_of(system: System, scenario: Scenario, options: RunOptions) -> tuple
         place, patterns = str(scenario.path), scenario.file.record
     else:
         place, patterns = str(system.path), system.file.record
+    changed = {*system.swaps, *(options.get("fmus") or {}), *scenario.file.leave_out}
     given = list(options.get("record") or [])
     if all(pattern.startswith("!") for pattern in given):
-        return place, [*patterns, *given]
-    return "", given
+        return Record(place, patterns, given, changed)
+    return Record("", given)
 
 
 def _experiment(system: System, scenario: Scenario, options: RunOptions) -> tuple[Experiment, Algorithm]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 
-from ..errors import ConfigError, nearest
-from ..interface import UnitInterface, VariableInfo, fitting
+from ..interface import UnitInterface, VariableInfo
+from .recorded import Record, recorded_names
 from .unit_plan import SlotGroup
 
 
@@ -39,14 +39,14 @@ class Slots:
 
 
 def allot(
-    interfaces: Mapping[str, UnitInterface], record: Iterable[str], needed: set[str], place: str
+    interfaces: Mapping[str, UnitInterface], record: Record, needed: set[str]
 ) -> tuple[Slots, list[tuple[str, VariableInfo]]]:
     """Return slots for every input, and every recorded or `needed` (connected) output; and what is recorded.
 
-    The second are pairs of a unit's name and a variable, in the units' order. Raises ConfigError, which
-    starts with `place` if there is one, when a pattern of `record` fits no variable.
+    The second are pairs of a unit's name and a variable, in the units' order. Raises ConfigError as
+    `recorded_names` does.
     """
-    recorded = _recorded(interfaces, tuple(record), place)
+    recorded = recorded_names(interfaces, record)
     slots = Slots()
     variables = {unit: _slotted(unit, interface, recorded | needed) for unit, interface in interfaces.items()}
     for unit, (inputs, outputs) in variables.items():
@@ -66,40 +66,6 @@ def allot(
         if f"{unit}.{v.name}" in recorded
     ]
     return slots, columns
-
-
-def _recorded(interfaces: Mapping[str, UnitInterface], patterns: tuple[str, ...], place: str) -> set[str]:
-    """Return the names that fit a pattern. Raises ConfigError for a pattern that fits no variable."""
-    shown = {
-        f"{unit}.{v.name}": v.causality
-        for unit, interface in interfaces.items()
-        for v in interface.variables.values()
-        if v.causality in ("input", "output", "local")
-    }
-    public = [name for name, causality in shown.items() if causality != "local"]
-    start, recorded = f"{place}: " if place else "", set[str]()
-    out = [pattern[1:] for pattern in patterns if pattern.startswith("!")]
-    for pattern in patterns:
-        if pattern.startswith("!"):
-            continue  # it may fit nothing, as where an FMU that was put in has no such variable
-        # a pattern means inputs and outputs; a local variable is recorded where it is named in full
-        fits = {pattern} if pattern in shown else set(fitting(pattern, public))
-        if not fits and pattern != "*":
-            why = _why_not(interfaces, pattern) or f"fits no variable{nearest(pattern, shown)}"
-            raise ConfigError(f"{start}record: '{pattern}' {why}")
-        recorded |= fits
-    return recorded.difference(*(fitting(pattern, recorded) for pattern in out))
-
-
-def _why_not(interfaces: Mapping[str, UnitInterface], name: str) -> str:
-    """Return why a variable that there is cannot be recorded ("": there is none of this name)."""
-    unit, _, variable = name.partition(".")
-    if unit not in interfaces:
-        return ""
-    found = interfaces[unit].variables.get(variable)
-    if found is None:
-        return interfaces[unit].unusable.get(variable, "")
-    return f"is of causality {found.causality}, not input, output or local"
 
 
 def _slotted(

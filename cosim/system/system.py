@@ -290,7 +290,8 @@ class SystemFile(FileModel):
 
     record: list[str] = ["*"]
     """Patterns of variables that are recorded, as `vehicle.*`; `*` stands for all inputs and outputs, a local
-    variable is named in full. A pattern that begins with `!` leaves out what it fits."""
+    variable is named in full. A pattern that begins with `!` leaves out what it fits. One that fits nothing
+    is refused, and so are patterns that leave nothing."""
 
     figure: FigureSpec | None = None
     """The figure of a run; without it evcosim chooses one."""

@@ -2,52 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
-
-from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import UnitInterface, VariableInfo
+from evcosim.cosim.plan.recorded import Record
 from evcosim.cosim.plan.slots import Slots, allot
-from support.car import car, ecu, plan
+from support.car import car, ecu
 from support.mocks import real
 
 INTERFACES = {"ecu": ecu().interface, "car": car().interface}
-
-
-def test_what_is_recorded():
-    names = [c.name for c in plan([], record=["car.*"]).columns]
-    assert names == ["car.throttle", "car.grade", "car.speed", "car.force", "car.gear"]
-    assert [c.name for c in plan([], record=["*.speed"]).columns] == ["ecu.speed", "car.speed"]
-
-
-def test_a_pattern_with_an_exclamation_mark_leaves_out_wherever_it_stands():
-    for record in (["car.*", "!*.grade"], ["!car.grade", "car.*"], ["car.*", "!*.grade", "!car.nothing"]):
-        names = [c.name for c in plan([], record=record).columns]
-        assert names == ["car.throttle", "car.speed", "car.force", "car.gear"]
-    assert not plan([], record=["car.*", "!*"]).columns
-
-
-BRACKETS = UnitInterface(
-    "u.fmu",
-    {
-        name: VariableInfo(name, causality=causality)
-        for name, causality in [("x[1]", "output"), ("x[2]", "output"), ("l[1]", "local"), ("x1", "output")]
-    },
-)
-
-
-@pytest.mark.parametrize(
-    ("record", "names"),
-    [
-        (["u.x[1]", "u.l[1]"], ["x[1]", "l[1]"]),
-        (["u.x[12]"], ["x1"]),
-        (["u.x[*]"], ["x[1]", "x[2]"]),
-        (["*", "!u.x[1]"], ["x[2]", "x1"]),
-        (["*", "!u.x[*]"], ["x1"]),
-    ],
-)
-def test_a_name_with_brackets_is_that_name_first(record: list[str], names: list[str]) -> None:
-    _, columns = allot({"u": BRACKETS}, record, set(), "here")
-    assert [v.name for _, v in columns] == names
 
 
 def test_each_group_counts_its_own_variables_that_feed_through() -> None:
@@ -57,7 +18,7 @@ def test_each_group_counts_its_own_variables_that_feed_through() -> None:
         for i, kind in enumerate(kinds)
     ]
     variables = {v.name: v for v in [VariableInfo("u", causality="input"), *outputs]}
-    slots, _ = allot({"a": UnitInterface("a.fmu", variables)}, ["*"], set(), "here")
+    slots, _ = allot({"a": UnitInterface("a.fmu", variables)}, Record("here", ["*"]), set())
     assert [(g.type, [v.name for v in g.variables], g.feedthrough) for g in slots.groups["a"]] == [
         ("Real", ["u"], 0),
         ("Real", ["y1", "y3"], 2),
@@ -68,26 +29,26 @@ def test_each_group_counts_its_own_variables_that_feed_through() -> None:
 
 
 def test_no_two_values_share_a_slot():
-    slots, _ = allot(INTERFACES, ["*"], set(), "here")
+    slots, _ = allot(INTERFACES, Record("here", ["*"]), set())
     taken = [*slots.valid.values(), *slots.latest.values()]
     assert sorted(taken) == list(range(slots.size))
 
 
 def test_recorded_values_stand_before_those_after_a_step():
-    slots, columns = allot(INTERFACES, ["*"], set(), "here")
+    slots, columns = allot(INTERFACES, Record("here", ["*"]), set())
     recorded = [slots.valid[unit, v.name] for unit, v in columns]
     assert sorted(recorded) == list(range(len(recorded)))
     assert min(slots.latest.values()) >= len(recorded)
 
 
 def test_a_continuous_output_has_two_slots_and_the_others_one():
-    slots, _ = allot(INTERFACES, ["*"], set(), "here")
+    slots, _ = allot(INTERFACES, Record("here", ["*"]), set())
     assert set(slots.latest) == {("car", "speed"), ("car", "force")}
     assert set(slots.valid) > set(slots.latest)
 
 
 def test_a_group_is_one_kind_and_type_in_consecutive_slots():
-    slots, _ = allot(INTERFACES, ["*"], set(), "here")
+    slots, _ = allot(INTERFACES, Record("here", ["*"]), set())
     for unit, groups in slots.groups.items():
         for group in groups:
             first = range(group.slot, group.slot + len(group.variables))
@@ -110,46 +71,24 @@ def test_what_feeds_through_comes_first():
             )
         },
     )
-    slots, _ = allot({"u": unit}, ["*"], set(), "here")
+    slots, _ = allot({"u": unit}, Record("here", ["*"]), set())
     (group,) = [g for g in slots.groups["u"] if g.kind == "continuous"]
     assert group.names == ("fast", "slow", "other")
     assert group.feedthrough == 1
 
 
 def test_a_receiver_reads_ahead_only_within_a_step():
-    slots, _ = allot(INTERFACES, ["*"], set(), "here")
+    slots, _ = allot(INTERFACES, Record("here", ["*"]), set())
     assert slots.source("car", "speed", 1) == slots.latest["car", "speed"]
     assert slots.source("car", "speed", 2) == slots.valid["car", "speed"]
     assert slots.source("car", "gear", 1) == slots.source("car", "gear", 2) == slots.valid["car", "gear"]
 
 
 def test_only_what_is_recorded_or_connected_has_a_slot():
-    slots, columns = allot(INTERFACES, ["car.force"], {"car.gear"}, "here")
+    slots, columns = allot(INTERFACES, Record("here", ["car.force"]), {"car.gear"})
     outputs = {name for name in slots.valid if INTERFACES[name[0]].variables[name[1]].causality == "output"}
     assert outputs == {("car", "force"), ("car", "gear")}
     assert [(unit, v.name) for unit, v in columns] == [("car", "force")]
-
-
-def test_a_local_variable_is_recorded_where_it_is_named_in_full():
-    unit = UnitInterface("u.fmu", {"inner": VariableInfo("inner"), "y": real("y", "output")})
-    for patterns, names in ((["*"], ["y"]), (["u.*"], ["y"]), (["u.inner"], ["inner"])):
-        _, columns = allot({"u": unit}, patterns, set(), "here")
-        assert [v.name for _, v in columns] == names
-
-
-@pytest.mark.parametrize(
-    ("pattern", "said"),
-    [
-        ("car.mass", "is of causality parameter, not input, output or local"),
-        ("car.spee", "fits no variable (did you mean 'car.speed'?)"),
-        ("car.wide", "has two dimensions"),
-    ],
-)
-def test_what_cannot_be_recorded_is_said(pattern, said):
-    unit = UnitInterface("car.fmu", INTERFACES["car"].variables, unusable={"wide": "has two dimensions"})
-    with pytest.raises(ConfigError) as caught:
-        allot({"car": unit}, [pattern], set(), "here")
-    assert str(caught.value) == f"here: record: '{pattern}' {said}"
 
 
 def test_slots_are_taken_in_order():
