@@ -107,6 +107,11 @@ class Clock:
         return np.where(same, points, times)
 
 
+def picoseconds(time: float) -> int:
+    """Return a time [s] in whole picoseconds, in which times on a bus count."""
+    return round(_decimal(time) * 10**12)
+
+
 def nearest_step(time: float, start: float, step: float) -> tuple[int, bool]:
     """Return the k with start + k * step nearest to `time`, and True if only rounding is between them.
 

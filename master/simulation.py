@@ -20,7 +20,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Unpack
 
-from ..cosim.can.frames import BusLog, write_can_log
+from ..cosim.can.frames import write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest, short
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
@@ -310,10 +310,7 @@ class Simulation:
             raise ConfigError(
                 "the frames of this run were not kept; make the simulation with log_frames=True"
             )
-        logs = [
-            BusLog(bus, [s.channel.log for s in self._engine.senders if s.plan.bus == bus])
-            for bus in self.system.file.buses
-        ]
+        logs = [self._engine.frames.log_of(bus) for bus in self.system.file.buses]
         return write_can_log(path, logs, self.plan.clock)
 
     def manifest(self) -> dict[str, Any]:

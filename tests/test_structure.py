@@ -18,6 +18,7 @@ PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), ROOT / "pyproject.t
 LINES, FUNCTION_LINES = 400, 60
 UNTESTED = {
     "master/machine/tables.py",  # constants alone; what they mean is tested with kernel and program
+    "cosim/can/wire/tables.py",  # constants alone; what they mean is tested with the functions that use them
 }
 BEGINNING = re.compile(r"(What|Whether|How|Where|See)\b")
 DOTTED = re.compile(r"\bevcosim\.(?:models|fmus|cosim|master)(?:\.[A-Za-z_]\w*)+")

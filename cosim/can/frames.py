@@ -14,25 +14,28 @@ import contextlib
 import dataclasses
 import heapq
 import io
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from ..clock import Clock
+from ..clock import Clock, picoseconds
 from ..errors import ConfigError
 from ..writing import replacing
 from .database import Message, Signal
-from .transmissions import RawLog
+from .timing.arbitration import arbitration_key
+from .transmissions import FrameLog, RawLog
 
 _ASC_DATE = "Thu Jan 01 00:00:00.000 1970"
 
 
 @dataclasses.dataclass(frozen=True)
 class BusLog:
-    """The transmissions of one bus' messages (`MessageChannel.log`)."""
+    """The transmissions of one bus' messages (`MessageChannel.log`), and those that were made as frames."""
 
     bus: str
     messages: Sequence[RawLog]
+    frames: FrameLog | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,19 +75,37 @@ def check_suffix(path: str | Path) -> None:
 
 def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
     """Yield the frames of all buses in the order of time, those of one instant by frame id; times in s."""
-    streams = [_payloads(channel, log) for channel, bus_log in enumerate(logs) for log in bus_log.messages]
-    for k, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
-        yield Frame(clock.at(k), channel, logs[channel].bus, message, data)
+    streams = [
+        _payloads(channel, log, clock) for channel, bus_log in enumerate(logs) for log in bus_log.messages
+    ]
+    streams += [
+        _made(channel, bus_log.frames, clock)
+        for channel, bus_log in enumerate(logs)
+        if bus_log.frames is not None
+    ]
+    for time, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
+        yield Frame(time, channel, logs[channel].bus, message, data)
 
 
-_Payload = tuple[int, int, int, Message, bytes]
+_Payload = tuple[float, int, int, Message, bytes]
 
 
-def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
-    """Yield step, arbitration order, channel, message and payload of each transmission of one message."""
-    message = log.message
-    # an extended frame loses against a standard one with the same leading 11 bits
-    order = message.frame_id * 2 + 1 if message.extended else message.frame_id << 19
+def _key(message: Message) -> int:
+    return arbitration_key(message.frame_id, message.extended)
+
+
+def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
+    """Yield time [s], arbitration key, channel, message and payload of the frames of a log."""
+    for instant, group in itertools.groupby(log.frames(), key=lambda frame: frame[:2]):
+        step, since = instant
+        time = clock.at(step) + (since - step * picoseconds(clock.step)) * 1e-12
+        for _, _, message, data in sorted(group, key=lambda frame: _key(frame[2])):
+            yield time, _key(message), channel, message, data
+
+
+def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
+    """Yield time [s], arbitration key, channel, message and payload of each transmission of one message."""
+    message, order = log.message, _key(log.message)
     encode = encoder(message)
     start = {s.name: s.start_raw for s in message.signals.values()}
     before, data = None, b""
@@ -93,7 +114,7 @@ def _payloads(channel: int, log: RawLog) -> Iterator[_Payload]:
         for k, row in zip(steps.tolist(), rows, strict=True):
             if row != before:  # a quantized value often stays
                 before, data = row, encode(start | dict(zip(raws, row, strict=True)))
-            yield k, order, channel, message, data
+            yield clock.at(k), order, channel, message, data
 
 
 def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:

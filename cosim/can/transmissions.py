@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from ..row_store import RowStore, Table
 from .database import Message
+from .wire import tables as T
 
 _MEMORY = 2**20  # bytes of each message that stay in memory
 _STRETCH = 4096  # transmissions that are read at a time
+_FRAMES, _ADVICE = "the frames of a bus", "a run that keeps no frames needs none"
 
 Steps = NDArray[np.int64]
 """Communication steps of n transmissions, shape (n,)."""
@@ -59,8 +61,34 @@ class RawLog:
         return rows[:, 0].view("<i8"), raws
 
 
+@dataclasses.dataclass(frozen=True)
+class FrameLog:
+    """The frames of messages whose payloads were made in the run, in the order of their ends.
+
+    A row of `table`, shape (frames, LOG_WIDTH), has the columns of `wire.tables`' log, each 8 bytes with an
+    int64; the third is the number of a message. Those that are not in `messages` are of other buses.
+    """
+
+    messages: Mapping[int, Message]
+    table: Table
+
+    def frames(self) -> Iterator[tuple[int, int, Message, bytes]]:
+        """Yield of each frame the step in which it was sent, the time of its end [ps], message, payload."""
+        for start in range(0, self.table.shape[0], _STRETCH):
+            rows = self.table.rows(start, start + _STRETCH).view("<i8")
+            payloads = np.ascontiguousarray(rows[:, T.LOG_PAYLOAD :]).view(np.uint8)
+            for row, payload in zip(rows[:, : T.LOG_PAYLOAD].tolist(), payloads, strict=True):
+                message = self.messages.get(row[T.LOG_MESSAGE])
+                if message is not None:
+                    data = payload[: message.length].tobytes()
+                    yield row[T.LOG_STEP], row[T.LOG_TIME], message, data
+
+
+def frame_store() -> RowStore:
+    """Return an empty store for the frames of a FrameLog."""
+    return RowStore(T.LOG_WIDTH, _MEMORY, what=_FRAMES, advice=_ADVICE)
+
+
 def raw_store(signals: int) -> RowStore:
     """Return an empty store for the transmissions of a message with so many signals."""
-    return RowStore(
-        1 + signals, _MEMORY, what="the frames of a bus", advice="a run that keeps no frames needs none"
-    )
+    return RowStore(1 + signals, _MEMORY, what=_FRAMES, advice=_ADVICE)

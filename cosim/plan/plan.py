@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.database import Message
+from ..can.framing import Framing
 from ..clock import Clock
 from ..results.results import ResultVariable
 from ..system.scenario import Event
@@ -68,7 +69,7 @@ class MessagePlan:
 
     With a `delay` of d > 0 steps the routes end in slots of their own, and what a transmission writes there
     reaches the mailboxes d steps later, at the same place in the step: `arrivals` are the pairs (slot,
-    mailbox).
+    mailbox). A message with a `framing` is sent as the bytes of a frame: its routes end in the mailboxes.
     """
 
     bus: str
@@ -81,6 +82,7 @@ class MessagePlan:
     after: int | None
     delay: int = 0
     arrivals: tuple[tuple[int, int], ...] = ()
+    framing: Framing | None = None
 
 
 @dataclasses.dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import math
 import sys
 import time
@@ -17,7 +18,6 @@ from typing import Any, Literal, assert_never, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.can.channel import MessageChannel
 from ...cosim.clock import Clock
 from ...cosim.errors import RunError
 from ...cosim.interface import Value
@@ -29,10 +29,11 @@ from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ...cosim.visible import on_one_line
 from ..unit import Unit, floats
 from .ending import EndedWithin, Ending
+from .frame_path import FramePath
 from .initialization import typed
 from .profile import Profile
 from .schedule import Action, schedule, waiting
-from .sender import Sender
+from .sender import senders_of
 from .text_notes import TextNotes
 
 Act = Callable[[int], None]
@@ -186,10 +187,8 @@ class Engine:
             units[unit_plan.name].bind(self.memory, unit_plan)
         self.ending = Ending()
         self.turns = [Turn(units[p.name], p, self.view, plan.clock, self.ending) for p in plan.units]
-        self.senders = [
-            Sender(m, MessageChannel(m.message, m.routes, m.settings, log_raw), self.view, self.late.get(i))
-            for i, m in enumerate(plan.messages)
-        ]
+        self.senders = senders_of(plan, self.view, self.late, log_raw)
+        self.frames = FramePath(self.senders, self.memory, plan.clock.step, log_raw)
         self._events = list(plan.events)
         self._turn_of_input = {
             group.slot + i: turn
@@ -257,6 +256,7 @@ class Engine:
             self.store.append(rows if done == count else rows[:done].copy())
             for sender in self.senders:
                 sender.channel.flush()
+            self.frames.flush()
         self._adapt(count, done, time.perf_counter() - begin)
 
     def _finish_begun(self) -> None:
@@ -321,12 +321,13 @@ class Engine:
         """Return the function that does an action of a message or a unit."""
         if action.kind == "note":
             return self.text_notes.note
+        if (framed := self.frames.operation(action)) is not None:
+            return functools.partial(self.frames.act, *framed)
         if action.kind in ("send", "deliver"):
             sender = self.senders[action.index]
             return sender.send if action.kind == "send" else sender.deliver
         turn = self.turns[action.index]
-        acts = {"take": turn.take, "begin": turn.begin, "end": turn.end, "publish": turn.publish}
-        return acts[action.kind]
+        return {"take": turn.take, "begin": turn.begin, "end": turn.end, "publish": turn.publish}[action.kind]
 
     # ---- events and results
 

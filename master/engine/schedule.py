@@ -36,7 +36,8 @@ class Action:
     `index` is the place in the plan's drives, messages or units:
 
         drive     write the stimulus' value to its slot
-        deliver   copy the values that the message sampled `delay` steps ago to the mailboxes
+        deliver   copy the values that the message sampled `delay` steps ago to the mailboxes, or unpack the
+                  frame that was sent then
         send      sample the message and write its values to the mailboxes (with a delay: waiting slots too)
         take      write the unit's inputs from their routes
         begin     apply overrides and biases, set the unit's inputs, read the outputs with direct feedthrough,
@@ -145,7 +146,7 @@ def waiting(plan: Plan) -> tuple[dict[int, Waiting], int]:
     """
     found, size = {}, plan.memory_size
     for i, message in enumerate(plan.messages):
-        if message.delay:
+        if message.delay and message.framing is None:
             found[i] = Waiting(size, _under_way(message), len(message.arrivals))
             size += found[i].rows * found[i].width
     return found, size

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ...cosim.can.channel import MessageChannel
 from ...cosim.can.quantization import ChannelError
 from ...cosim.errors import RunError
-from ...cosim.plan.plan import MessagePlan
+from ...cosim.plan.plan import MessagePlan, Plan
 from .schedule import Waiting
 
 
@@ -39,3 +41,22 @@ class Sender:
         row = self.waiting.row((k - self.plan.first - self.plan.delay) // self.plan.every)
         for i, (_, mailbox) in enumerate(self.plan.arrivals, row):
             self.memory[mailbox] = self.memory[i]
+
+
+def senders_of(
+    plan: Plan, memory: memoryview[float], late: Mapping[int, Waiting], log_raw: bool
+) -> list[Sender]:
+    """Return the messages of a plan in the schedule, in their order.
+
+    `late` are the waiting slots of those with a delay; with `log_raw` the channels keep raw values, but for
+    messages whose frames are kept.
+    """
+    return [
+        Sender(
+            m,
+            MessageChannel(m.message, m.routes, m.settings, log_raw and m.framing is None),
+            memory,
+            late.get(i),
+        )
+        for i, m in enumerate(plan.messages)
+    ]

@@ -91,6 +91,12 @@ def call_2(typingctx, function, a, b):
 
 
 @intrinsic
+def call_3(typingctx, function, a, b, c):
+    """Call function(a, b, c)."""
+    return _calling([_LONG] * 3)
+
+
+@intrinsic
 def call_4(typingctx, function, a, b, c, d):
     """Call function(a, b, c, d)."""
     return _calling([_LONG] * 4)
@@ -100,6 +106,16 @@ def call_4(typingctx, function, a, b, c, d):
 def call_6(typingctx, function, a, b, c, d, e, f):
     """Call function(a, b, c, d, e, f)."""
     return _calling([_LONG] * 6)
+
+
+@intrinsic
+def pointer(typingctx, address):
+    """Return an address as a pointer, of which `numba.carray` makes an array."""
+
+    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return builder.inttoptr(values[0], context.get_value_type(types.voidptr))
+
+    return types.voidptr(_LONG), implement
 
 
 @intrinsic

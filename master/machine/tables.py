@@ -8,8 +8,8 @@ from __future__ import annotations
 
 STATE, NUMBERS, MEMORY, OPS, ROUTES, EFFECTS, CALLS, ITEMS, UNITS, SIGNALS, SINKS, RAWS, WAITS = range(13)
 ARRIVALS, COLUMNS, ROWS_OF_RUN, DRIVES, LOGS, LOG, TICKS, TIMES_OF_OPS = range(13, 21)
-HANDS, SPANS, BELL, NAP_TIME = range(21, 25)
-TABLES = 25
+HANDS, SPANS, BELL, NAP_TIME, WIRE = range(21, 26)
+TABLES = 26
 """The tables, in the order of their addresses."""
 
 # ---- operations: the actions of the schedule as primitives that the kernel executes without Python
@@ -31,6 +31,7 @@ KEEP = 9  # the values that the message in row A of WAITS has sent are copied to
 DELIVER = 10  # and from there to the mailboxes
 REQUEST_TURN = 11  # the turn of the isolated unit in row A of HANDS is requested; C: the action
 COLLECT_TURN = 12  # and its outputs are taken when it is done; Python does action C where that takes long
+WIRE_ACT = 14  # action A of the frame path on its row B
 PYTHON_ACT = 13  # calls Python, which does action C as the python engine does, or moves texts
 
 SOURCE, SINK, SCALE, ADD = range(4)
@@ -106,13 +107,16 @@ mailbox)."""
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
 CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP, YIELD, SYSCALL, FUTEX, SEND_BELL, UNLOCK, LOCK = range(9, 20)
-STATE_SIZE = 20
+WIRE_CODE = 20
+STATE_SIZE = 21
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
 of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time; addresses of C functions that
 give the core away, call the system, and send, and the number of the system call futex; functions of Python
-that give its lock back while a side sleeps, and take it (0: the side does not hold it)."""
+that give its lock back while a side sleeps, and take it (0: the side does not hold it); the address of the
+frame path's function, which gets that of the table WIRE: addresses and numbers of rows of its tables, in the
+order of `cosim.can.wire.tables.Wire`."""
 CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1, NAP = range(9)
 NUMBERS_SIZE = 9
 """Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of

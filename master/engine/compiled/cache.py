@@ -26,12 +26,14 @@ from ....cosim import leftovers
 from ...builtin import cache_folder, keep, kept
 from ...fmi import types
 from ...machine import access, calling, flat, handing, serving, slots, tables
-from . import kernel
+from . import frames, kernel
 
 SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types)
 """The modules of this project that the machine code is made of: `kernel` and those that it imports."""
 _SERVING: tuple[ModuleType, ...] = (serving, flat, *SOURCES[1:])
-_made: dict[bool, Any] = {}
+_WIRE = "wire"
+_KERNEL = "int64(int64)"
+_made: dict[bool | str, Any] = {}
 
 
 def compiled(timed: bool = False) -> tuple[int, str]:
@@ -44,8 +46,22 @@ def compiled(timed: bool = False) -> tuple[int, str]:
         function = kernel.run_timed if timed else kernel.run
         _made[timed], reason = _through_the_cache(function, _name(timed))
         if reason:
-            notice = f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
+            notice = _not_kept(reason)
     return int(_made[timed].address), notice
+
+
+def wire() -> tuple[int, str]:
+    """Return the address of the frame path's function and a notice, as `compiled` does."""
+    if _WIRE not in _made:
+        name = f"wire-{_digest(frames.SOURCES, str(frames.__file__).encode())}.zip"
+        _made[_WIRE], reason = _through_the_cache(frames.function(), name, frames.SIGNATURE)
+        if reason:
+            return int(_made[_WIRE].address), _not_kept(reason)
+    return int(_made[_WIRE].address), ""
+
+
+def _not_kept(reason: str) -> str:
+    return f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
 
 
 def served() -> bytes | None:
@@ -79,21 +95,21 @@ def _digest(modules: tuple[ModuleType, ...], *more: bytes) -> str:
     return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
 
 
-def _through_the_cache(function: Any, name: str) -> tuple[Any, str]:
+def _through_the_cache(function: Any, name: str, signature: str = _KERNEL) -> tuple[Any, str]:
     """Return the compiled function, and why it could not be kept, or ""."""
     try:
         with leftovers.temporary() as folder:
             if (packed := kept(name)) is not None:
                 zipfile.ZipFile(io.BytesIO(packed)).extractall(folder)
             with _cached_in(str(folder)):
-                made = _compiled(function, cache=True)
+                made = _compiled(function, signature, cache=True)
             return made, "" if made.cache_hits else keep(name, _packed(folder))
     except OSError as error:  # no temporary folder, or a full disk
-        return _compiled(function, cache=False), error.strerror or str(error)
+        return _compiled(function, signature, cache=False), error.strerror or str(error)
 
 
-def _compiled(function: Any, cache: bool) -> Any:
-    return numba.cfunc("int64(int64)", cache=cache, error_model="numpy")(function)
+def _compiled(function: Any, signature: str, cache: bool) -> Any:
+    return numba.cfunc(signature, cache=cache, error_model="numpy")(function)
 
 
 def _packed(folder: Path) -> bytes:

@@ -17,11 +17,13 @@ from ...machine.hands import HandedOver
 from ...machine.rows import collect_warnings
 from ...machine.surroundings import Surroundings, address
 from ..engine import CHUNK_SECONDS, Engine
-from .cache import compiled, served
+from .cache import compiled, served, wire
+from .frames import wire_table
 from .placement import Placement
 from .program import Program
 
 _Python = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64)
+_Helper = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
 _RELEASING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)  # gives up Python's lock while it runs
 _HOLDING = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
@@ -140,12 +142,24 @@ class CompiledEngine(Engine):
             L.HANDS: program.hands, L.SPANS: program.spans,
         }  # fmt: skip # the others are a chunk's own
         self._addresses = np.zeros(L.TABLES, dtype=np.int64)
+        notice = self._load_wire()
         for place, array in (tables | self._surroundings.tables).items():
             self._addresses[place] = array.ctypes.data
         kind = _HOLDING if program.holds_python else _RELEASING
         function, self.notice = compiled(timed=self.profile is not None)
+        self.notice = self.notice or notice
         self._kernel = kind(function)
         self._quicken()
+
+    def _load_wire(self) -> str:
+        """Load the frame path, where the run has frames; return a notice, or ""."""
+        if not self.frames.senders:
+            return ""
+        self._helper = _Helper(self._help_wire)
+        self._wire_addresses = wire_table(self.frames.arrays, address(self._helper))
+        self._addresses[L.WIRE] = self._wire_addresses.ctypes.data
+        self._state[L.WIRE_CODE], notice = wire()
+        return notice
 
     def _adapt(self, count: int, done: int, seconds: float) -> None:
         super()._adapt(count, done, seconds)
@@ -178,6 +192,14 @@ class CompiledEngine(Engine):
                 return int(self.ending.step != end)
             self._raw_value(-1 - what, k)
             return 0
+        except BaseException as error:  # no exception can pass through the kernel
+            self._raised = error
+            return 1
+
+    def _help_wire(self, what: int, i: int, k: int) -> int:
+        """Do what no table of the frame path holds; return 1 to stop the kernel, else 0."""
+        try:
+            return self.frames.help(what, i, k)
         except BaseException as error:  # no exception can pass through the kernel
             self._raised = error
             return 1

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...machine import tables as L
-from ...machine.access import call_2, number, put_number, put_word, word
+from ...machine.access import call_2, call_4, number, put_number, put_word, word
 from ...machine.calling import call, clock, inlined, step
 from ...machine.handing import collect, request
 
@@ -192,6 +192,9 @@ def operate(t, m, o, s, k, now, time):
     elif kind == L.COLLECT_TURN:
         if not collect(t, o):
             return python_act(t, o, k)
+    elif kind == L.WIRE_ACT:
+        if call_4(word(word(t, L.STATE), L.WIRE_CODE), word(t, L.WIRE), a, b, k) != 0:
+            return L.RAISED
     else:
         return python_act(t, o, k)
     return L.DONE

@@ -124,6 +124,8 @@ class Program:
             self._operation(at, action, L.RECORD, 0, len(self._engine.columns))
         elif action.kind == "note":
             self._operation(at, action, L.PYTHON_ACT, c=at)
+        elif (framed := self._engine.frames.operation(action)) is not None:
+            self._operation(at, action, L.WIRE_ACT, *framed)
         elif action.kind == "deliver":
             self._operation(at, action, L.DELIVER, self._wait(i))
         elif action.kind == "send":

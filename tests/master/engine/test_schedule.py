@@ -11,7 +11,9 @@ from evcosim.master.engine.schedule import Action, Waiting, schedule, waiting
 
 def message(after=None, every=1, first=0, delay=0, width=2):
     arrivals = [(10 + i, 20 + i) for i in range(width if delay else 0)]
-    return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals)
+    return SimpleNamespace(
+        framing=None, after=after, every=every, first=first, delay=delay, arrivals=arrivals
+    )
 
 
 def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0, steps=100, told=True):

@@ -1,0 +1,118 @@
+"""The tables of the frame path, and the meaning of their columns.
+
+The functions of this package (but for `build`) are Python that numba compiles: numbers, 2-D tables and loops.
+The python engine calls them as they are, the compiled engine in machine code, so that both do the same. All
+tables are int64 but for those that are said to be float64. Times are picoseconds since the start of the run.
+
+A raw value stands in two words, its low 32 bits and the rest, so that no number is beyond int64.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+
+class Wire(NamedTuple):
+    """The tables, each a two-dimensional array (for Python a memoryview) but for those in one dimension.
+
+    `reals` and `maps` are float64. In one dimension: `memory`, the run's, float64; `frame`, the bytes of the
+    frame at hand; `single` (float32) with its bits `single_bits` (int32), `double` (float64) with its bits
+    `double_bits`, one number each; `state`. `helper` is what `ask` calls.
+    """
+
+    messages: Any
+    signals: Any
+    reals: Any
+    sinks: Any
+    maps: Any
+    base: Any
+    waiting: Any
+    rings: Any
+    flights: Any
+    buses: Any
+    log: Any
+    memory: Any
+    frame: Any
+    single: Any
+    single_bits: Any
+    double: Any
+    double_bits: Any
+    state: Any
+    helper: Any
+
+
+# ---- columns of messages
+
+(BUS, KEY, LENGTH, EXTENDED, FD, SWITCHED, FIRST_SIGNAL, SIGNALS, RING, EVERY, FIRST, LOGGED) = range(12)
+"""KEY: of two messages the one with the lower key wins the bus; LENGTH in bytes; SWITCHED: 1 if the payload
+has the data bit rate; SIGNALS rows of signals from FIRST_SIGNAL on; RING: the row of rings in which its
+frames are under way, -1 where they arrive when they are sent."""
+(QUEUED, SINCE, SAMPLED, INSTANCE) = range(12, 16)
+"""1 while a frame waits in `waiting`, from which time on it may start, the time of its values, and the number
+of times that the message was sent."""
+(SENT, REPLACED, ARRIVED, LATENCY_LEAST, LATENCY_SUM, LATENCY_MOST, SEEN_LEAST, SEEN_SUM, SEEN_MOST) = range(
+    16, 25
+)
+"""Counts of frames: that were sampled, replaced by a newer one while they waited, and arrived; time from the
+sampling to the end of the frame; and to the communication point at which receivers see it."""
+MESSAGE = 25
+
+# ---- columns of signals
+
+(SOURCE, KIND, SATURATES, FIRST_SINK, SINKS, START, BITS, LITTLE, SIGNED, LOW, HIGH, TIMES, FIRST_TIME) = (
+    range(13)
+)
+"""The sender's slot; the rounding; 1 if a value out of range becomes the raw value BELOW or ABOVE; SINKS rows
+of sinks from FIRST_SINK on; the layout: START is the least significant bit where LITTLE, else the place of
+the most significant one counted from the first bit of the frame; the raw value at hand; the number of values
+out of range, and the step of the first."""
+SIGNAL = 13
+(IN_SCALE, IN_ADD, LEAST, GREATEST, SCALE, OFFSET, OUT_ADD, BELOW, ABOVE) = range(9)
+REAL = 9
+"""Columns of reals, one row a signal: the map to the bus' unit; the range of values; scale and offset of the
+raw value; the offset of decoding, -0.0 where there is none."""
+FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE, EXACT = range(6)
+"""Kinds of a signal: by format or rounding; EXACT: integers that no double holds, which Python computes."""
+
+SLOT = 0
+SINK = 1
+FACTOR, ADDEND = range(2)
+MAP = 2
+"""Columns of sinks, the receiver's slot, and of maps, from the bus' unit to the receiver's."""
+
+BYTES = 64
+"""Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
+the frame that waits."""
+
+# ---- frames under way
+
+(START_ROW, ROWS, HEAD, COUNT) = range(4)
+RING_WIDTH = 4
+"""Columns of rings: a ring has the ROWS rows of flights from START_ROW on; COUNT of them are in use, the
+first is HEAD."""
+(MESSAGE_OF, ARRIVAL, SAMPLE_TIME, PAYLOAD) = range(4)
+FLIGHT = PAYLOAD + BYTES
+"""Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
+
+(FREE_AT, PENDING, DELAY) = range(3)
+BUS_WIDTH = 3
+"""Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
+end of a frame."""
+
+(LOG_STEP, LOG_TIME, LOG_MESSAGE, LOG_PAYLOAD) = range(4)
+LOG_WIDTH = LOG_PAYLOAD + 8
+"""Columns of the log: the step in which the frame was sent, the time of its end, the message, and the
+payload, eight bytes in each word."""
+
+STEP_TIME, LOG_ROWS = range(2)
+STATE = 2
+"""Places in state: the time of a step; rows of the log in use."""
+
+# ---- what Python is asked for, and what comes back
+
+RAW, VALUE, FLUSH = range(3)
+"""The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log."""
+DONE, RAISED = range(2)
+
+SEND, ARRIVE = range(2)
+"""Actions of a step."""

@@ -1,0 +1,119 @@
+"""The messages of a run that are sent as frames: their tables, and what Python does for them.
+
+The steps of a frame are functions of `cosim.can.wire`. The python engine calls them with the tables of this
+module, the compiled engine has them in machine code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...cosim.can.frames import BusLog
+from ...cosim.can.quantization import ChannelError, decode, quantize
+from ...cosim.can.transmissions import FrameLog, frame_store
+from ...cosim.can.wire import medium
+from ...cosim.can.wire import tables as T
+from ...cosim.can.wire.payload import words
+from ...cosim.can.wire.values import set_raw
+from .schedule import Action
+from .sender import Sender
+from .wire_tables import views, wire_arrays
+
+
+class FramePath:
+    """The frames of those messages of `senders`, all of a run, that have a framing.
+
+    `memory` is the run's, shape (size,), `step` [s] its step. With `logs` the frames are kept for `log_of`.
+    """
+
+    def __init__(
+        self, senders: Sequence[Sender], memory: NDArray[np.float64], step: float, logs: bool
+    ) -> None:
+        framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
+        self._all = tuple(senders)
+        self.senders = tuple(senders[i] for i in framed)
+        self._rows = {i: row for row, i in enumerate(framed)}
+        self.arrays = wire_arrays(self.senders, memory, step, logs)
+        self.wire = views(self.arrays, self.help)
+        self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
+        self._kept = frame_store()
+
+    def act(self, what: int, i: int, k: int) -> None:
+        """Do an action of `wire.medium` in step k. Raises RunError for a value that cannot be sent."""
+        medium.act(self.wire, what, i, k)
+
+    def operation(self, action: Action) -> tuple[int, int] | None:
+        """Return an action of the schedule as the first two arguments of `act`; None where it is none."""
+        if action.kind not in ("send", "deliver") or action.index not in self._rows:
+            return None
+        row = self._rows[action.index]
+        if action.kind == "send":
+            return T.SEND, row
+        return T.ARRIVE, int(self.arrays["messages"][row, T.RING])
+
+    def help(self, what: int, i: int, k: int) -> int:
+        """Do what no table holds (see `wire.values.ask`); return DONE.
+
+        Raises RunError for a value that cannot be sent, and when the log's file cannot be written.
+        """
+        if what == T.FLUSH:
+            self.flush()
+        elif what == T.RAW:
+            self._set_raw(i, k)
+        else:
+            self._set_value(i)
+        return T.DONE
+
+    def _set_raw(self, row: int, k: int) -> None:
+        sender, i = self._signals[row]
+        operation, x = sender.channel.operations[i], self.wire.double[0]
+        try:
+            if operation.low <= x <= operation.high:
+                raw = quantize(operation.signal, operation.settings.rounding, x)
+            else:
+                raw = sender.channel.out_of_range(i, x, k)
+        except ChannelError as error:
+            raise sender.failed(error) from error
+        if operation.kind == "exact":
+            self.wire.signals[row, T.LOW], self.wire.signals[row, T.HIGH] = words(int(raw))
+        else:
+            set_raw(self.wire, row, raw)
+
+    def _set_value(self, row: int) -> None:
+        sender, i = self._signals[row]
+        signal = sender.channel.operations[i].signal
+        low, high = self.wire.signals[row, T.LOW], self.wire.signals[row, T.HIGH]
+        raw = low | high << 32
+        if signal.signed and raw >> (signal.length - 1):
+            raw -= 1 << signal.length
+        self.wire.double[0] = decode(signal, raw)
+
+    # ---- what was counted and kept
+
+    def flush(self) -> None:
+        """Hand the log and the counts of values out of range over: after each chunk of steps.
+
+        Raises RunError when the log's temporary file cannot be written.
+        """
+        rows = int(self.arrays["state"][T.LOG_ROWS])
+        if rows:
+            self._kept.append(self.arrays["log"][:rows].copy().view(np.float64))
+            self.arrays["state"][T.LOG_ROWS] = 0
+        table = self.arrays["signals"]
+        for row in np.flatnonzero(table[:, T.TIMES]).tolist():
+            sender, i = self._signals[row]
+            sender.channel.count(i, int(table[row, T.TIMES]), int(table[row, T.FIRST_TIME]))
+        table[:, [T.TIMES, T.FIRST_TIME]] = 0
+
+    def log_of(self, bus: str) -> BusLog:
+        """Return the frames of a bus so far, also of messages without a framing, if they were kept.
+
+        Raises RunError as `flush` does.
+        """
+        self.flush()
+        values = [s.channel.log for s in self._all if s.plan.bus == bus and s.plan.framing is None]
+        messages = {i: s.plan.message for i, s in enumerate(self.senders) if s.plan.bus == bus}
+        return BusLog(bus, values, FrameLog(messages, self._kept.table()))
