@@ -19,7 +19,7 @@ from ..cosim.system.scenario import Scenario, ScenarioFile
 from ..cosim.system.system import System, SystemFile, system_names
 from ..cosim.system.toml import validate
 from .builtin import builtin_names, fmu_file
-from .fmi.fmu import Fmu, read_fmu
+from .fmi.fmu import Fmu, declared_number, declared_step, read_fmu
 
 UNIT = "fmu"
 """The name of the unit in the system of an FMU alone."""
@@ -69,7 +69,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     inputs = _by_name(options.get("inputs") or {}, "input", fmu.interface, path)
     unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
-        "name": _identifier(name),
+        "name": identifier(name),
         "title": fmu.description.description or "",
         "experiment": _experiment(fmu, options),
         "units": {UNIT: unit | {"tolerance": options.get("tolerance")}},
@@ -84,7 +84,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     )
 
 
-def _identifier(name: str) -> str:
+def identifier(name: str) -> str:
     """Return a file's name as a system's, with _ for what no such name has: Tank-2.1 is Tank_2_1."""
     plain = "".join(c if f"a{c}".isidentifier() else "_" for c in name)
     return plain if plain.isidentifier() else f"_{plain}"
@@ -154,11 +154,10 @@ def _experiment(fmu: Fmu, options: RunOptions) -> dict[str, float]:
     doubled until a million are enough.
     """
     declared = fmu.description.defaultExperiment
-    times = {name: _number(getattr(declared, name, None)) for name in ("startTime", "stopTime", "stepSize")}
-    start = times["startTime"] or 0.0
+    start = declared_number(declared, "startTime") or 0.0
     stop = options.get("stop_time")
     if stop is None:
-        stop = times["stopTime"]
+        stop = declared_number(declared, "stopTime")
     if stop is None or (stop <= start and options.get("stop_time") is None):
         stop = start + _DURATION
     if not math.isfinite(stop):
@@ -167,26 +166,16 @@ def _experiment(fmu: Fmu, options: RunOptions) -> dict[str, float]:
     if step is None and 0.0 < stop - start < _SHORTEST:
         raise ConfigError(f"stop_time = {stop:g}: a run from {start:g} s on lasts {_SHORTEST:g} s or more")
     if step is None:
-        step = _whole(
-            stop - start, times["stepSize"] or _number(getattr(fmu.kind, "fixedInternalStepSize", 0))
-        )
+        own = declared_step(declared, "stepSize") or declared_step(fmu.kind, "fixedInternalStepSize")
+        step = _whole(stop - start, own)
     return {"start_time": start, "stop_time": float(stop), "step_size": float(step)}
-
-
-def _number(text: Any) -> float | None:
-    """Return a number of a description; None for one that is not given or not finite."""
-    try:
-        value = float(text)
-    except (TypeError, ValueError):
-        return None
-    return value if math.isfinite(value) else None
 
 
 def _whole(duration: float, step: float | None) -> float:
     """Return the step [s], or the longest shorter one of which the duration [s] is a whole number."""
     if not 0.0 < duration < math.inf:
         return step or _DURATION / _STEPS  # the stop time is refused with its place
-    if step is None or not 0.0 < step <= duration:
+    if step is None or step > duration:
         decade = 10.0 ** math.floor(math.log10(duration / _STEPS))
         step = next(decade * n for n in (5.0, 2.0, 1.0) if duration / (decade * n) >= _STEPS * (1.0 - 1e-12))
     while duration / step > _MOST_STEPS:

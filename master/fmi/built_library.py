@@ -15,11 +15,13 @@ from pathlib import Path
 from ...cosim import leftovers
 
 _TIME = 60.0  # s
-_LOAD = """
-import ctypes, sys
+_FOUND = "evcosim found:"
+_LOAD = f"""
+import ctypes, os, sys
 library = ctypes.CDLL(sys.argv[1])
-print(*(name for name in sys.argv[2:] if hasattr(library, name)))
-"""
+found = [name for name in sys.argv[2:] if hasattr(library, name)]
+os.write(1, " ".join(["\\n{_FOUND}", *found, "\\n"]).encode())
+"""  # the library may print when it is loaded and when it ends, and what it prints may come at the end only
 
 
 def exported(path: Path, names: Collection[str]) -> set[str]:
@@ -34,10 +36,12 @@ def exported(path: Path, names: Collection[str]) -> set[str]:
         raise OSError(f"loading it took more than {_TIME:g} s") from error
     if code < 0:
         raise OSError(f"loading it ended with {signal.Signals(-code).name}")
-    lines = said.strip().splitlines() or ["no reason was given"]
+    lines = said.strip().splitlines()
     if code:
-        raise OSError(_reason(lines[-1].removeprefix("OSError: ").replace(f"{path}: ", "")))
-    return set(lines[-1].split()) & set(names)
+        last = lines[-1] if lines else "no reason was given"
+        raise OSError(_reason(last.removeprefix("OSError: ").replace(f"{path}: ", "")))
+    found = [line.removeprefix(_FOUND) for line in lines if line.startswith(_FOUND)]
+    return set(" ".join(found).split()) & set(names)
 
 
 def _reason(said: str) -> str:

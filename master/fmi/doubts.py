@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from ...cosim.errors import counted
 from ..warned import first_kinds, with_count
-from .fmu import Fmu, is_true
+from .fmu import Fmu, declared_step, is_true
 from .tolerance import takes_tolerance
 
 _SAME = 1e-9  # of a step: what differs by rounding alone
@@ -52,13 +52,13 @@ def _needs_tool(fmu: Fmu) -> list[str]:
 
 def _other_step(fmu: Fmu, step: float) -> list[str]:
     """Return what is said of a step that is not the declared one."""
-    internal = _size(getattr(fmu.kind, "fixedInternalStepSize", None))
+    internal = declared_step(fmu.kind, "fixedInternalStepSize")
     if internal is not None and abs(step / internal - round(step / internal)) > _SAME * step / internal:
         return [
             f"has internal steps of {internal:g} s (fixedInternalStepSize), of which its steps here, "
             f"{step:g} s, are no multiple{_ADVICE}"
         ]
-    declared = _size(getattr(fmu.description.defaultExperiment, "stepSize", None))
+    declared = declared_step(fmu.description.defaultExperiment, "stepSize")
     if internal is not None or declared is None or abs(step - declared) <= _SAME * declared:
         return []
     if is_true(fmu.kind, "canHandleVariableCommunicationStepSize"):
@@ -79,12 +79,3 @@ def _changing_step(fmu: Fmu, steps: Sequence[float]) -> list[str]:
 
 _FIXED = " only (canHandleVariableCommunicationStepSize is not true)"
 _ADVICE = "; `step_size`, `period` and `substeps` make them"
-
-
-def _size(text: object) -> float | None:
-    """Return a declared step size [s]; None for none, and for what is none: FMPy leaves text as it is."""
-    try:
-        size = float(str(text))
-    except ValueError:
-        return None
-    return size if 0.0 < size < math.inf else None

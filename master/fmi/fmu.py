@@ -214,6 +214,24 @@ def is_true(kind: Any, capability: str) -> bool:
     return str(getattr(kind, capability, None)).strip().lower() in ("true", "1")
 
 
+def declared_number(part: Any, name: str) -> float | None:
+    """Return a number that a part of a description declares; None for none, and for one that is not finite.
+
+    FMPy leaves most of them as text.
+    """
+    try:
+        value = float(str(getattr(part, name, None)))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def declared_step(part: Any, name: str) -> float | None:
+    """Return a step size [s] that a part of a description declares; None for none, and for what is none."""
+    step = declared_number(part, name)
+    return step if step is not None and step > 0.0 else None
+
+
 def _interface(fmu: Fmu) -> UnitInterface:
     md = fmu.description
     depends = {u.variable.name: _names(u.dependencies) for u in md.outputs}

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 from typing import Literal
 
-from .fmu import Fmu
+from .fmu import Fmu, declared_number
 
 Origin = Literal["system", "fmu", "default", "none"]
 """Who says the tolerance: the system file, the FMU's DefaultExperiment, our solver, or nobody."""
@@ -28,8 +27,7 @@ def tolerance_of(fmu: Fmu, wanted: float | None) -> tuple[float | None, Origin]:
     if wanted is not None:
         return wanted, "system"
     solved = fmu.interface_type == "model_exchange"
-    with contextlib.suppress(TypeError, ValueError):  # FMPy leaves text as it is
-        declared = float(getattr(fmu.description.defaultExperiment, "tolerance", None))  # type: ignore[arg-type] # None is a TypeError
-        if 0.0 < declared < 1.0:
-            return declared, "fmu"
+    declared = declared_number(fmu.description.defaultExperiment, "tolerance")
+    if declared is not None and 0.0 < declared < 1.0:
+        return declared, "fmu"
     return (_OF_SOLVER, "default") if solved else (None, "none")

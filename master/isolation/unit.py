@@ -267,7 +267,10 @@ class IsolatedUnit:
 
     def save_state(self) -> int:
         """Save the state in its process and return its number (see `fmi.state`)."""
-        return int(self._call("save_state"))
+        match self._call("save_state"):
+            case int() as number:
+                return number
+        raise UnitError(f"unit '{self.name}': its process sent no number of a state")
 
     def restore_state(self, number: int) -> None:
         """Go back to a saved state."""

@@ -31,8 +31,9 @@ from ...cosim.system.scenario import load_scenario
 from ...cosim.system.system import load_system
 from ..prepare import prepare
 from ..simulation import Simulation
+from ..single_fmu import UNIT
 from .identification_run import IdentificationRun, PhaseProgress, longest, real_variable
-from .identification_target import UNIT, default_scenario, held, is_fmu, one_unit_system, spec_of
+from .identification_target import default_scenario, held, is_fmu, one_unit_system, spec_of
 
 _FLAT = 0.2  # periods at an extreme: of a sine it is 0.06, quantized to 20 levels 0.1
 _BEND = 0.12  # of the swing: the scooter at 30 km/h and 20 % has 0.09, at 25 % it meets a limit and has 0.19

@@ -26,7 +26,7 @@ from ...cosim.units.conversion import conversion
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import Affine
 from ..simulation import Simulation
-from .identification_target import UNIT
+from ..single_fmu import UNIT
 
 PhaseProgress = Callable[[str, float], None]
 """Called with the name of the phase and the share of it that is done, 0 to 1."""

@@ -24,15 +24,14 @@ from ...cosim.system.system import (
 )
 from ...cosim.system.toml import validate
 from ..builtin import builtin_names, fmu_file
-from ..fmi.fmu import read_fmu
+from ..fmi.fmu import declared_step, read_fmu
+from ..single_fmu import UNIT, identifier
 
 SCENARIO = "identification"
 """The scenario that a system is identified in if it has one of this name."""
 
 _LOOKS = 10_001  # times at which a stimulus is looked at for a change
-
-UNIT = "fmu"
-"""The name of the unit in the system of an FMU alone."""
+_STEP = 0.01  # s, where the FMU declares none
 
 
 def is_fmu(target: str) -> bool:
@@ -61,12 +60,11 @@ def one_unit_system(target: str, step_size: float | None = None) -> System:
     no step.
     """
     path = fmu_file(target)
-    experiment = getattr(read_fmu(path).description, "defaultExperiment", None)
-    declared = getattr(experiment, "stepSize", None)
-    step = step_size if step_size is not None else float(declared) if declared else 0.01
-    name = path.stem if target.endswith(".fmu") else target
+    step = step_size
+    if step is None:
+        step = declared_step(read_fmu(path).description.defaultExperiment, "stepSize") or _STEP
     file = SystemFile(
-        name=name if name.isidentifier() else UNIT,
+        name=identifier(path.stem if target.endswith(".fmu") else target),
         experiment=validate({"step_size": step}, Experiment, target),
         units={UNIT: UnitEntry(fmu=str(path.resolve()))},
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from evcosim.cosim.errors import ConfigError
         ("t,v".encode("utf-16-be"), "utf-16-be"),
         ("t,v".encode("utf-16"), "utf-16"),
         ("t,v".encode("utf-32"), "utf-32"),
+        (codecs.BOM_UTF32_BE + "t,v".encode("utf-32-be"), "utf-32"),
         ("t,v".encode("utf-8-sig"), "utf-8-sig"),
         (b"x" * ((1 << 20) - 1) + "\N{DEGREE SIGN}".encode(), "utf-8"),  # its bytes stand in two blocks
         (b"x" * (1 << 20) + b"\xc2", "cp1252"),  # a character of UTF-8 that is cut

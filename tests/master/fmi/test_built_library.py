@@ -21,3 +21,16 @@ def test_what_is_no_library(tmp_path: Path) -> None:
     path.write_bytes(b"text")
     with pytest.raises(OSError, match=r"^file too short$|^invalid ELF header$"):
         exported(path, ["fmi2DoStep"])
+
+
+def test_what_a_library_prints_hides_no_name(tmp_path: Path) -> None:
+    source, path = tmp_path / "chatty.c", tmp_path / "chatty.so"
+    source.write_text(
+        """#include <stdio.h>
+        __attribute__((constructor)) void begin(void) { printf("loaded"); fprintf(stderr, "begin"); }
+        __attribute__((destructor)) void end(void) { printf("unloaded\\n"); }
+        void fmi2DoStep(void) {}
+        """
+    )
+    path.write_bytes(compiled(source))
+    assert exported(path, ["fmi2DoStep", "fmi2GetReal"]) == {"fmi2DoStep"}

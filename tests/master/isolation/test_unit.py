@@ -95,3 +95,19 @@ def test_an_error_of_the_unit_is_raised_here_with_its_kind(tmp_path: Path) -> No
         assert unit.get("count") == 0  # it lives on
     finally:
         unit.free()
+
+
+@pytest.mark.parametrize("ask", ["save_state", "get"])
+@pytest.mark.parametrize("answer", [None, ["x"], {}])
+def test_an_answer_of_another_kind_is_an_error_with_the_unit(
+    ask: str, answer: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fmu = read_fmu(mixed_fmu(tmp_path / "mixed.fmu", 2))
+    unit = IsolatedUnit(fmu, "a", fmu.interface, ProcessLimits())
+    try:
+        monkeypatch.setattr(unit, "_call", lambda *_: answer)
+        with pytest.raises(UnitError, match=r"^unit 'a': its process sent no "):
+            getattr(unit, ask)(*["y"] * (ask == "get"))
+    finally:
+        monkeypatch.undo()
+        unit.free()

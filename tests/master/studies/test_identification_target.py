@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.system import load_system
 from evcosim.master.builtin import fmu_file
+from evcosim.master.single_fmu import UNIT
 from evcosim.master.studies.identification_target import (
     SCENARIO,
-    UNIT,
     default_scenario,
     is_fmu,
     one_unit_system,
     spec_of,
 )
+from support.descriptions import changed, described
 
 
 def test_a_system_of_one_fmu_takes_its_step_from_it():
@@ -49,7 +52,14 @@ def test_a_system_of_a_file_has_the_name_of_the_file(tmp_path):
     assert system.file.name == "mine"
     assert list(system.file.units) == [UNIT]
     odd = copy.rename(tmp_path / "my-pack 2.fmu")
-    assert one_unit_system(str(odd)).file.name == UNIT  # no name of a system
+    assert one_unit_system(str(odd)).file.name == "my_pack_2"  # the name that a run of it has
+
+
+@pytest.mark.parametrize("declared", ["0", "-0.1", "1e999"])
+def test_a_step_size_of_an_fmu_that_is_none_counts_for_nothing(declared: str, tmp_path: Path) -> None:
+    changes = ("<ModelVariables>", f'<DefaultExperiment stepSize="{declared}"/><ModelVariables>')
+    path = described(tmp_path, changed(changes))
+    assert one_unit_system(str(path)).file.experiment.step_size == 0.01
 
 
 def test_the_scenario_of_its_name_is_the_default():
