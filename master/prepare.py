@@ -23,7 +23,7 @@ from ..cosim.swap.swap_file import swapped
 from ..cosim.system.outside import read_outside
 from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario
-from ..cosim.system.selection import recorded_alone
+from ..cosim.system.selection import recorded_alone, without_undrawn
 from ..cosim.system.system import System, load_system
 from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
@@ -96,10 +96,12 @@ def prepare(
     doubtful = _doubts(plan, loaded, read)
     warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
     plan = dataclasses.replace(plan, warnings=warnings)
+    names = {v.name for v in (*plan.columns, *plan.text_columns)}
+    unmeasured: tuple[str, ...] = ()
     if options.get("record"):
-        names = {v.name for v in (*plan.columns, *plan.text_columns)}
-        read, driven, undrawn = recorded_alone(read, driven, names)
-        plan = dataclasses.replace(plan, warnings=(*plan.warnings, *undrawn))
+        read, driven, unmeasured = recorded_alone(read, driven, names)
+    read, driven, undrawn = without_undrawn(read, driven, names)
+    plan = dataclasses.replace(plan, warnings=(*plan.warnings, *unmeasured, *undrawn))
     check_specs(read, driven, (*plan.columns, *plan.text_columns))
     ordered_links(plan)  # refuses an algebraic loop
     named = {

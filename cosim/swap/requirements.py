@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 from ..interface import UnitInterface, VariableInfo
+from ..system.figure_spec import FigureSpec
 from ..system.scenario import Scenario
 from ..system.selection import figure_spec, metric_specs
 from ..system.system import Connection, System
@@ -21,7 +22,7 @@ ROLES: tuple[Role, ...] = ("input", "output", "parameter")
 class Requirement:
     """A variable that the system needs: its `role` at the unit, and who gives, takes or sets it (`needed`).
 
-    `optional`: only connections need it that say so, and it may be missing.
+    `optional`: only connections and lines of a figure need it that say so, and it may be missing.
     `variable` is as the unit that is there now declares it: unit of measure, type, range, description.
     """
 
@@ -42,7 +43,7 @@ def requirements(
     found: dict[tuple[Role, str], list[str]] = {}
     for role, name, needed in _uses(system, scenario, unit):
         found.setdefault((role, name), []).append(needed)
-    needed_anyway = {(role, name) for role, name, _ in _uses(_without_optional(system), scenario, unit)}
+    needed_anyway = {(role, name) for role, name, _ in _uses(*_without_optional(system, scenario), unit)}
     return tuple(
         Requirement(
             name,
@@ -66,7 +67,8 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
     """
     own, out = f"{unit}.", set(scenario.file.leave_out)
     used: list[tuple[str, str]] = []
-    for c in _without_optional(system).file.connect:
+    system, scenario = _without_optional(system, scenario)
+    for c in system.file.connect:
         takers = [to for to in c.to if _unit(to) not in out]
         if _unit(c.source) not in out and (takers or c.via):
             used += _ends(c, takers)
@@ -82,10 +84,16 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
     return [f"'{name}' ({'; '.join(dict.fromkeys(needed))})" for name, needed in found.items()]
 
 
-def _without_optional(system: System) -> System:
-    """Return the system with those connections only that cannot be left out."""
+def _without_optional(system: System, scenario: Scenario) -> tuple[System, Scenario]:
+    """Return both with those connections and lines of figures only that cannot be left out."""
     needed = [c for c in system.file.connect if not c.optional]
-    return dataclasses.replace(system, file=system.file.model_copy(update={"connect": needed}))
+    of_system = system.file.model_copy(update={"connect": needed, "figure": _needed(system.file.figure)})
+    of_scenario = scenario.file.model_copy(update={"figure": _needed(scenario.file.figure)})
+    return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario)
+
+
+def _needed(spec: FigureSpec | None) -> FigureSpec | None:
+    return spec and spec.without(spec.optional().__contains__)
 
 
 def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:

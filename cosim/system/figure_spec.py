@@ -30,6 +30,10 @@ class SignalSpec(FiniteModel):
     step: bool | None = None
     """Draw each value held until the next; without it so are inputs and sampled outputs."""
 
+    optional: bool = False
+    """Leave the line out, with a warning, where the variable is not recorded: an FMU in the place of a unit
+    does not have it, or `record` leaves it out."""
+
 
 class PanelSpec(FiniteModel):
     """One panel of the figure, with an axis of its own."""
@@ -89,6 +93,12 @@ class FigureSpec(FileModel):
 
     note: str | None = None
     """A line of text below the figure."""
+
+    def optional(self) -> set[str]:
+        """Return the variables that only lines which are `optional` need."""
+        lines = [s for panel in self.panels for s in panel.signals]
+        needed = {s.name for s in lines if not s.optional} | {self.shade}
+        return {s.name for s in lines} - needed - ({self.until.signal} if self.until else set())
 
     def without(self, gone: Callable[[str], bool]) -> FigureSpec | None:
         """Return the figure without the signals that are `gone`; None when no panel is left."""

@@ -57,5 +57,24 @@ def recorded_alone(
     return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario), said
 
 
+def without_undrawn(
+    system: System, scenario: Scenario, recorded: Collection[str]
+) -> tuple[System, Scenario, tuple[str, ...]]:
+    """Return both without the `optional` lines of figures whose variable is not recorded, and a sentence for
+    each that the run would have drawn."""
+    drawn = figure_spec(system, scenario)
+    gone = sorted(drawn.optional() - set(recorded)) if drawn else []
+    if not gone:
+        return system, scenario, ()
+
+    def left(spec: FigureSpec | None) -> FigureSpec | None:
+        return spec and spec.without(gone.__contains__)
+
+    of_system = system.file.model_copy(update={"figure": left(system.file.figure)})
+    of_scenario = scenario.file.model_copy(update={"figure": left(scenario.file.figure)})
+    said = tuple(f"left out of the figure, since it is not recorded: {name}" for name in gone)
+    return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario), said
+
+
 def _needs(signals: Iterable[str], scenario: Scenario) -> bool:
     return any(name.partition(".")[0] in scenario.file.leave_out for name in signals)

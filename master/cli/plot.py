@@ -68,7 +68,10 @@ def chosen(results: Results, patterns: list[str]) -> Results:
 
 
 def spec_of(results: Results) -> FigureSpec | None:
-    """Return the figure of system and scenario that run.json names; None if it is gone or does not fit."""
+    """Return the figure of system and scenario that run.json names; None if it is gone or does not fit.
+
+    Lines of variables that the results do not have are left out.
+    """
     from ...cosim.errors import ConfigError
     from ...cosim.figures import draw as figures
     from ...cosim.system.scenario import load_scenario
@@ -87,8 +90,11 @@ def spec_of(results: Results) -> FigureSpec | None:
         system = load_system(str(system_name))
         scenario = load_scenario(system, str(scenario_name) if scenario_name else None)
         spec = figure_spec(system, scenario)
+        recorded = {v.name: v for v in results.variables}
+        # as the run left lines out: of what an FMU did not have, or `record` left out
+        spec = spec and spec.without(lambda name: name not in recorded)
         if spec is not None:
-            figures.check(spec, {v.name: v for v in results.variables}, "figure")
+            figures.check(spec, recorded, "figure")
     except ConfigError:
         return None  # moved, renamed or changed since the run: the default figure shows what there is
     return spec

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 
 from ...cosim.figures import draw as figures
-from ...cosim.results.results import Results
-from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
 from . import scooter_bounds
 from .page import Picture
 from .scooter_identification import ScooterIdentification
@@ -26,7 +24,7 @@ def pictures(found: Mapping[str, Any], identified: ScooterIdentification) -> tup
     return (
         *(Picture(stem, _CAPTIONS[stem], figure) for stem, figure in identified.figures().items()),
         *(
-            Picture.over_time(stem, caption, run, _with_acceleration(run))
+            Picture.over_time(stem, caption, run)
             for stem, caption, run in (
                 ("fig8", "Fig. 8: fixed bounds, 30 km/h and 1 m/s²", found["fig8 bus"]),
                 ("fig9", "Fig. 9: bounds that depend on estimated speed and on time", found["fig9 bus"]),
@@ -43,21 +41,6 @@ def pictures(found: Mapping[str, Any], identified: ScooterIdentification) -> tup
             scooter_bounds.figure(found),
         ),
     )
-
-
-def _with_acceleration(results: Results) -> FigureSpec:
-    """Return the figure of a run with the true acceleration below the estimated one."""
-    spec = results.figure
-    if spec is None:
-        raise ValueError("the run has no figure")
-    *others, last = spec.panels
-    lines = [
-        SignalSpec(name="ecu.acceleration_bound", label="bound", style="dashed"),
-        SignalSpec(name="vehicle.acceleration", label="true", style="solid", weight=2.6),
-        SignalSpec(name="ecu.acceleration_estimate", label="estimate", style="solid", weight=0.9),
-    ]
-    panel = PanelSpec(label=last.label, unit=last.unit, signals=lines)
-    return spec.model_copy(update={"panels": [*others, panel]})
 
 
 def _without_observer(found: Mapping[str, Any]) -> Any:

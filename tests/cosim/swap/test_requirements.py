@@ -57,15 +57,15 @@ def test_a_units_own_fmu_lacks_nothing_and_an_empty_one_all_but_parameters(syste
     assert named
 
 
-def test_what_optional_connections_alone_need_may_be_missing() -> None:
+def test_what_optional_connections_and_lines_alone_need_may_be_missing() -> None:
     system, empty = load_system("scooter"), UnitInterface("empty.fmu", {})
     scenario = load_scenario(system, "udds")
-    wheels = ["front_wheel_speed", "rear_wheel_speed"]
-    for unit, optional in (("vehicle", ["available_power", *wheels]), ("battery", ["available_power"])):
+    outputs = ["front_wheel_speed", "rear_wheel_speed", "acceleration"]
+    for unit, optional in (("vehicle", ["available_power", *outputs]), ("battery", ["available_power"])):
         needs = requirements(system, scenario, unit, interface_of("scooter", unit))
         assert [n.name for n in needs if n.optional] == optional
         said = " ".join(lacking(system, scenario, unit, empty))
-        assert not any(name in said for name in optional)
+        assert not any(f"'{name}'" in said for name in optional)
 
 
 def test_units_that_are_left_out_need_nothing() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.system.scenario import Scenario, ScenarioFile, load_scenario, scenario_names
-from evcosim.cosim.system.selection import figure_spec, metric_specs, recorded_alone
+from evcosim.cosim.system.selection import figure_spec, metric_specs, recorded_alone, without_undrawn
 from evcosim.cosim.system.system import System, SystemFile, load_system, system_names
 
 UNITS = {name: {"fmu": "F"} for name in ("a", "b")}
@@ -46,6 +46,31 @@ def test_what_is_not_recorded_takes_metrics_and_lines_along() -> None:
     )
     whole = recorded_alone(SYSTEM, scenario(), {"a.x", "b.x", "b.y"})
     assert (whole[0], whole[2]) == (SYSTEM, ())
+
+
+def optional_in(*panels: list[str]) -> dict:
+    """Return a figure in which the names with a question mark are optional."""
+    signals = [[{"name": n.rstrip("?"), "optional": n.endswith("?")} for n in names] for names in panels]
+    return {"panels": [{"signals": each} for each in signals]}
+
+
+def test_an_optional_line_is_left_out_where_its_variable_is_not_recorded() -> None:
+    own = scenario(figure=optional_in(["a.x", "b.x?"], ["b.y?"], ["b.z?", "b.z"]))
+    system, driven, said = without_undrawn(SYSTEM, own, {"a.x"})
+    figure = figure_spec(system, driven)
+    assert figure is not None
+    # what is needed elsewhere in the figure is refused later, by name
+    assert [[s.name for s in panel.signals] for panel in figure.panels] == [["a.x"], ["b.z", "b.z"]]
+    assert said == tuple(
+        f"left out of the figure, since it is not recorded: {name}" for name in ("b.x", "b.y")
+    )
+    assert without_undrawn(SYSTEM, own, {"a.x", "b.x", "b.y"}) == (SYSTEM, own, ())
+    assert without_undrawn(SYSTEM, scenario(), set()) == (SYSTEM, scenario(), ())
+
+
+def test_a_figure_of_optional_lines_alone_may_be_none() -> None:
+    own = scenario(figure=optional_in(["a.x?"]))
+    assert without_undrawn(SYSTEM, own, set())[1].file.figure is None
 
 
 def test_a_unit_that_is_left_out_takes_its_signals_along() -> None:

@@ -72,7 +72,7 @@ def test_what_stands_in_a_swap_file_stays_when_it_is_written_again(evcosim, tmp_
 fmu = "Vehicle.fmu"
 substeps = 4
 isolation = "process"
-absent = ["available_power", "front_wheel_speed", "rear_wheel_speed", "power"]
+absent = ["available_power", "front_wheel_speed", "rear_wheel_speed", "power", "acceleration"]
 [map.inputs]
 throttle = "pedal"
 brake_force = { variable = "F_brake", invert = true }
