@@ -14,7 +14,11 @@ from pathlib import Path
 
 from ..errors import ConfigError, nearest
 
-_FRAME = 64  # bytes of a CAN FD frame
+LONGEST = 1785
+"""Bytes of the longest message, which several frames transport."""
+FD_LENGTHS = (*range(9), 12, 16, 20, 24, 32, 48, 64)
+"""Bytes that a CAN FD frame can have; a classic one has those up to 8."""
+_FRAME = FD_LENGTHS[-1]
 _FLOAT_MAX = {32: struct.unpack("<f", b"\xff\xff\x7f\x7f")[0], 64: math.ldexp(2.0 - 2.0**-52, 1023)}
 
 
@@ -26,7 +30,11 @@ class Signal:
     significant one. `scale` and `offset` are int where the physical values of all raw values are
     integers, as in cantools. `minimum`, `maximum` are physical, in `unit`; None: no limit. `start_raw` is
     the raw value that is sent until a value is known; `not_available` the raw code that says that there
-    is no value. `multiplexer_ids` is empty unless the signal is multiplexed.
+    is no value. A frame holds a multiplexed signal where the raw value of its `multiplexer` is in one of the
+    `multiplexer_ranges`, both ends included; "" and () for a signal of all frames.
+
+    `problem` is why the signal cannot be used, "" for nothing; `note` what its user should know; `line` is
+    where it stands in the file, 0 where that has no lines.
     """
 
     name: str
@@ -43,9 +51,14 @@ class Signal:
     choices: dict[int, str] = dataclasses.field(default_factory=dict)
     start_raw: float | int = 0
     not_available: int | None = None
-    multiplexer_ids: tuple[int, ...] = ()
+    multiplexer: str = ""
+    multiplexer_ranges: tuple[tuple[int, int], ...] = ()
     is_multiplexer: bool = False
     comment: str = ""
+    receivers: tuple[str, ...] = ()
+    problem: str = ""
+    note: str = dataclasses.field(default="", compare=False)
+    line: int = dataclasses.field(default=0, compare=False)
 
     @property
     def raw_type_range(self) -> tuple[int, int] | tuple[float, float]:
@@ -63,6 +76,11 @@ class Signal:
         return low + (low == self.not_available), high - (high == self.not_available)
 
     @property
+    def has_steps(self) -> bool:
+        """True where scale and offset are numbers with which raw values can be told apart."""
+        return self.scale != 0 and math.isfinite(self.scale) and math.isfinite(self.offset)
+
+    @property
     def bits(self) -> tuple[int, ...]:
         """The bits in the message, least significant first; bit b is bit b % 8 of byte b // 8."""
         if self.little_endian:
@@ -78,7 +96,12 @@ class Message:
     """One message.
 
     `length` is in bytes, `cycle_time` (None: not sent cyclically) and `start_delay` are in s. `file` is
-    where the message stands, for error messages.
+    where the message stands, for error messages. `j1939` is True for a parameter group: more than 8 bytes
+    are several frames then, and no CAN FD. `send_type` is the text of the attribute GenMsgSendType, and
+    `attributes` are the texts of all that the file gives the message itself.
+
+    `problem` and `line` are as those of a signal; `unread` are the names of signals that could not be read,
+    each with the reason.
     """
 
     file: str
@@ -91,12 +114,23 @@ class Message:
     senders: tuple[str, ...] = ()
     signals: dict[str, Signal] = dataclasses.field(default_factory=dict)
     fd: bool = False
+    j1939: bool = False
     comment: str = ""
+    send_type: str = ""
+    attributes: dict[str, str] = dataclasses.field(default_factory=dict)
+    unread: dict[str, str] = dataclasses.field(default_factory=dict)
+    problem: str = ""
+    line: int = dataclasses.field(default=0, compare=False)
 
     @property
     def multiplexed(self) -> bool:
         """True when a signal selects which other signals a frame holds."""
         return any(s.is_multiplexer for s in self.signals.values())
+
+    @property
+    def frame_length(self) -> int:
+        """Bytes of its frame: in CAN FD the next length that there is, where those that are added are 0."""
+        return next((n for n in FD_LENGTHS if n >= self.length), self.length) if self.fd else self.length
 
     def require(self, name: str, place: str = "") -> Signal:
         """Return the signal `name`, fit for a channel.
@@ -104,6 +138,8 @@ class Message:
         Raises ConfigError, which starts with `place` (of the connection), when there is none or it breaks a
         rule of `check_signal`.
         """
+        if name in self.unread:
+            raise ConfigError(f"{prefix(place)}{self.file}: {self.unread[name]}")
         if name not in self.signals:
             raise ConfigError(
                 f"{prefix(place)}{self.file}: message '{self.name}' has no signal '{name}'"
@@ -116,10 +152,12 @@ class Message:
 
 @dataclasses.dataclass(frozen=True)
 class Database:
-    """The messages of a DBC file, by name."""
+    """The messages of a file by name; `warnings` are its flaws, each with file, line and message."""
 
     path: Path
     messages: dict[str, Message]
+    warnings: tuple[str, ...] = ()
+    nodes: tuple[str, ...] = ()
 
     def require(self, name: str, place: str = "") -> Message:
         """Return the message `name`.
@@ -143,28 +181,32 @@ def prefix(place: str) -> str:
 def check_signal(message: Message, signal: Signal, place: str = "") -> None:
     """Raise ConfigError, which starts with `place`, when a receiver could read another value than was sent.
 
-    The rules: the message is not multiplexed, a frame holds it, and its start values are raw values; a finite
-    scale other than 0 and a finite offset, with which all raw values are doubles; floats of 32 or 64 bits;
-    minimum <= maximum, some value between them can be sent, and none of them is sent as the "not available"
-    code.
+    The rules: neither message nor signal has a `problem`, and a frame holds the message; a finite scale other
+    than 0 and a finite offset, with which all raw values are doubles; floats of 32 or 64 bits; minimum <=
+    maximum, some value between them can be sent, and none of them is sent as the "not available" code.
     """
     # each relies on the one before: limits in raw steps need a scale
-    if problem := _message_problem(message) or _unsupported(signal) or _range_problem(signal):
-        raise ConfigError(f"{prefix(place)}{message.file}: {message.name}.{signal.name}: {problem}")
+    if (
+        problem := _message_problem(message)
+        or signal.problem
+        or _unsupported(signal)
+        or _range_problem(signal)
+    ):
+        line = f"line {signal.line}: " if signal.line else ""
+        raise ConfigError(f"{prefix(place)}{message.file}: {line}{message.name}.{signal.name}: {problem}")
 
 
 def _message_problem(message: Message) -> str:
     """Return the rule that the message breaks, with the values; "" for none. So do the next two."""
+    if message.problem:
+        return message.problem
     if message.multiplexed:
         return "the message is multiplexed; a connection needs one whose frames all hold the same signals"
     if message.length > _FRAME:
         return f"the message has {message.length} bytes, and a frame holds {_FRAME} at most"
-    for s in message.signals.values():
-        if problem := _length_problem(s):
-            return f"{s.name} is {problem}"
-        low, high = s.raw_type_range
-        if not low <= s.start_raw <= high or (not s.is_float and s.start_raw != int(s.start_raw)):
-            return f"the start value {s.start_raw} of {s.name} is no raw value of {_bits(s)}"
+    if message.j1939 and message.length > 8:
+        several = "J1939 sends it as several frames of 8 (transport protocol), which is not supported"
+        return f"the message has {message.length} bytes; {several}"
     return ""
 
 
@@ -174,7 +216,8 @@ def _length_problem(signal: Signal) -> str:
     return ""
 
 
-def _bits(signal: Signal) -> str:
+def bits_text(signal: Signal) -> str:
+    """Return the size of a signal in words, as "8 unsigned bits"."""
     if signal.is_float:
         return f"a {signal.length}-bit float"
     return f"{signal.length} {'signed' if signal.signed else 'unsigned'} bits"
@@ -183,14 +226,14 @@ def _bits(signal: Signal) -> str:
 def _unsupported(signal: Signal) -> str:
     if problem := _length_problem(signal):
         return problem
-    if signal.scale == 0 or not math.isfinite(signal.scale) or not math.isfinite(signal.offset):
+    if not signal.has_steps:
         rule = "the scale must be finite and not 0, the offset finite"
         return f"scale {signal.scale:.6g} and offset {signal.offset:.6g}: {rule}"
     if not signal.is_float and not all(
         math.isfinite(_physical(raw, signal)) for raw in signal.raw_type_range
     ):
         ends = f"scale {signal.scale:.6g} and offset {signal.offset:.6g}"
-        return f"{ends}: raw values of {_bits(signal)} are beyond {sys.float_info.max:.3g}"
+        return f"{ends}: raw values of {bits_text(signal)} are beyond {sys.float_info.max:.3g}"
     return ""
 
 
@@ -207,9 +250,9 @@ def _range_problem(signal: Signal) -> str:
         return f"minimum {low} is above maximum {high}"
     if signal.is_float:
         return ""
-    raw_low, raw_high, least, greatest = _raw_limits(signal)
+    raw_low, raw_high, least, greatest = raw_limits(signal)
     if raw_low > raw_high:
-        return f"no value in [{low}, {high}] fits into {_bits(signal)}"
+        return f"no value in [{low}, {high}] fits into {bits_text(signal)}"
     code = signal.not_available
     if code is None or not raw_low <= code <= raw_high:
         return ""
@@ -221,7 +264,7 @@ def _range_problem(signal: Signal) -> str:
     )
 
 
-def _raw_limits(signal: Signal) -> tuple[int, int, float | None, float | None]:
+def raw_limits(signal: Signal) -> tuple[int, int, float | None, float | None]:
     """Return the least and the greatest raw value of any rounding to the nearest.
 
     The other two are minimum and maximum in raw steps, the one that limits the least raw value first; None:

@@ -1,51 +1,52 @@
 """Reading DBC files.
 
-cantools reads the file, strictly: what it refuses is refused here, with the file and the bits in the message.
-Rules on the whole file hold when it is loaded, those on one message or signal later (see `database`).
+A statement that nobody can read, or that contradicts another, stops who uses what it is about, and nobody
+else: it is a warning of the database, and the `problem` of a message or of a signal (see `database`). Only a
+file without any statement of a DBC is refused.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
-import re
 import sys
-from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from ..errors import ConfigError
 from ..reading import content
 from .database import Database, Message, Signal
+from .dbc_entries import Attribute, Entries, Key, MessageEntry, SignalEntry, entries, number, whole
+from .dbc_statements import statements
+from .flaws import GREATEST, code_by_text, database_of
 
 _MILLISECOND = Fraction(1, 1000)
-_LONGEST = 1785  # bytes of a message that several frames transport
-_DIGITS = 400  # of a number; a double has 309 at most
-_STRING = re.compile(r'"(?:\\"|[^"])*"')  # as cantools sees one
-_HUGE = re.compile(rf"(?<![\w.])[-+]?(?:\d{{{_DIGITS},}}|\d+(?:\.\d*)?[eE][+-]?0*[1-9]\d{{3,}})")
-_SIZES = (
-    ("message", re.compile(r"^\s*BO_\s+\d+\s+(\w+)\s*:\s*(\d+)", re.M), _LONGEST, "bytes"),
-    ("signal", re.compile(r"^\s*SG_\s+(\w+)[^:\n]*:\s*(\d+)", re.M), 8 * _LONGEST, "as its start bit"),
-    ("signal", re.compile(r"^\s*SG_\s+(\w+)[^:\n]*:\s*\d+\s*\|\s*(\d+)", re.M), 8 * _LONGEST, "bits"),
-)
-_NOT_AVAILABLE = {"sna", "notavailable", "signalnotavailable"}
+_EXTENDED = 1 << 31
+_FORMATS = [
+    "StandardCAN",
+    "ExtendedCAN",
+    "reserved",
+    "J1939PG",
+    *["reserved"] * 10,
+    "StandardCAN_FD",
+    "ExtendedCAN_FD",
+]
+"""The choices of the attribute VFrameFormat where the file has its numbers only."""
 
 
 def load_dbc(path: str | Path) -> Database:
     """Return the messages of a DBC file in UTF-8 or, where it is no UTF-8, in cp1252, the usual encoding.
 
-    Raises ConfigError when the file cannot be read, is no DBC (with the line), has signals that overlap or
-    do not fit into their message, gives a name or frame id twice, or a size or an attribute that can be none.
+    Raises ConfigError when the file cannot be read, or is no DBC.
     """
     path = Path(path)
-    database = _parse(path, _read(path))
-    messages = [_message(path, m) for m in database.messages]
-    for parsed, message in zip(database.messages, messages, strict=True):
-        _refuse_twice(message, "signal", [s.name for s in parsed.signals])
-        _check_layout(parsed, message)
-    _refuse_twice(path, "message", [m.name for m in messages])
-    _refuse_twice(path, "frame id", [f"{m.frame_id:#x}{' (extended)' * m.extended}" for m in messages])
-    return Database(path, {m.name: m for m in messages})
+    text = _read(path)
+    found = entries(statements(text))
+    if not found.valid:
+        line, said = found.notes[0] if found.notes else (1, "not valid in a DBC file: ''")
+        raise ConfigError(f"{path}: line {line}: {said}")
+    messages = [_Reader(path, found, entry).message() for entry in found.messages]
+    return database_of(path, messages, found.notes, found.nodes)
 
 
 def _read(path: Path) -> str:
@@ -53,174 +54,177 @@ def _read(path: Path) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")  # as cantools does: five bytes have no meaning
+        return data.decode("cp1252", errors="replace")  # five bytes have no meaning
 
 
-def _parse(path: Path, text: str) -> Any:
-    import cantools.database  # 0.2 s, and only a system with a bus needs it
+@dataclasses.dataclass
+class _Reader:
+    """The reading of one message from the entries of a file."""
 
-    _check_sizes(path, text)
-    try:
-        return cantools.database.load_string(text, "dbc", strict=False)
-    except cantools.database.UnsupportedDatabaseFormatError as error:
-        reason = error.e_dbc or error
-        line = getattr(reason, "line", None)
-        if line is None:
-            raise ConfigError(f"{path}: not a valid DBC file: {reason}") from error
-        lines = text.splitlines() or [""]
-        shown = lines[min(line, len(lines)) - 1].strip()
-        raise ConfigError(f"{path}: line {line}: not valid in a DBC file: '{shown[:80]}'") from error
-    except Exception as error:  # cantools raises all kinds for statements that contradict each other
-        raise ConfigError(f"{path}: not a valid DBC file: {type(error).__name__}: {error}") from error
+    path: Path
+    entries: Entries
+    entry: MessageEntry
 
-
-def _check_sizes(path: Path, text: str) -> None:
-    """Raise ConfigError for numbers that no message needs, from which cantools would make texts as long."""
-    bare = _STRING.sub(lambda found: '"' + "\n" * found[0].count("\n") + '"', text)
-    if huge := _HUGE.search(bare):
-        line = bare.count("\n", 0, huge.start()) + 1
-        raise ConfigError(
-            f"{path}: line {line}: the number {huge[0][:40]}... is beyond all that a DBC file needs"
+    def message(self) -> Message:
+        """Return the message with all its signals, whatever is wrong with them."""
+        entry, dbc_id = self.entry, self.entry.dbc_id
+        frame_id, extended = dbc_id & (_EXTENDED - 1), bool(dbc_id & _EXTENDED)
+        if not extended and GREATEST[False] < frame_id <= GREATEST[True]:
+            said = f"the id {dbc_id} has more than 11 bits; it is taken as an extended one"
+            self.entries.notes.append((entry.line, f"message '{entry.name}': {said}"))
+            extended = True
+        frame_format = self._choice((dbc_id, ""), "VFrameFormat", _FORMATS)
+        j1939 = frame_format == "J1939PG" or (extended and self._of_file("ProtocolType") == "J1939")
+        signals: dict[str, Signal] = {}
+        for written in entry.signals:
+            signal = self._signal(written)
+            if first := signals.get(signal.name):
+                lines = f"in the lines {first.line} and {written.line}"
+                signal = dataclasses.replace(first, problem=f"signal {signal.name} is given twice, {lines}")
+            signals[signal.name] = signal
+        senders = [entry.sender, *self.entries.senders.get(dbc_id, [])]
+        return Message(
+            file=str(self.path),
+            name=str(self._own((dbc_id, ""), "SystemMessageLongSymbol") or entry.name),
+            frame_id=frame_id,
+            extended=extended,
+            length=entry.length,
+            cycle_time=self._seconds("GenMsgCycleTime") or None,
+            start_delay=self._seconds("GenMsgStartDelayTime") or 0.0,
+            senders=tuple(dict.fromkeys(sender for sender in senders if sender)),
+            signals=signals,
+            fd=frame_format.endswith("CAN_FD"),
+            j1939=j1939,
+            comment=self.entries.comments.get((dbc_id, ""), ""),
+            send_type=self._choice((dbc_id, ""), "GenMsgSendType", []),
+            attributes={
+                name: value.value for name, value in self.entries.attributes.get((dbc_id, ""), {}).items()
+            },
+            unread=entry.unread,
+            line=entry.line,
         )
-    for kind, pattern, most, what in _SIZES:
-        for found in pattern.finditer(bare):
-            if int(found[2]) > most:
-                line = bare.count("\n", 0, found.start(1)) + 1
-                has = f"{kind} '{found[1]}' has {found[2][:40]} {what}"
-                raise ConfigError(f"{path}: line {line}: {has}; at most {most} are read")
 
+    def _signal(self, s: SignalEntry) -> Signal:
+        key = (self.entry.dbc_id, s.name)
+        multiplexer, ranges, problem = self._selection(s)
+        kind = self.entries.floats.get(key, 0)
+        is_float = kind in (1, 2)
+        scale, offset = _finite(s.scale), _finite(s.offset)
+        if not is_float and float(scale).is_integer() and float(offset).is_integer():
+            scale, offset = int(scale), int(offset)
+        unlimited = s.minimum == s.maximum == "0"
+        signal = Signal(
+            name=str(self._own(key, "SystemSignalLongSymbol") or s.name),
+            start=whole(s.start) or 0,
+            length=whole(s.length) or 0,
+            little_endian=s.order != "0",
+            signed=s.sign == "-",
+            is_float=is_float,
+            scale=scale,
+            offset=offset,
+            minimum=None if unlimited else _finite(s.minimum),
+            maximum=None if unlimited else _finite(s.maximum),
+            unit=s.unit,
+            choices=self.entries.choices.get(key, {}),
+            multiplexer=multiplexer,
+            multiplexer_ranges=ranges,
+            is_multiplexer=s.marker.endswith("M"),
+            comment=self.entries.comments.get(key, ""),
+            receivers=s.receivers,
+            line=s.line,
+            problem=self.entries.broken.get(key, "") or problem,
+        )
+        start = self._number(key, "GenSigStartValue") or 0
+        if not is_float and float(start).is_integer():
+            start = int(start)
+        return dataclasses.replace(signal, start_raw=start, not_available=self._code(key, signal))
 
-def _message(path: Path, parsed: Any) -> Message:
-    place = f"{path}: message '{parsed.name}'"
-    cycle = _number(parsed.cycle_time or 0, f"{place}: GenMsgCycleTime")
-    delay = _number(
-        _attribute(parsed.dbc, "GenMsgStartDelayTime", default=True) or 0, f"{place}: start delay"
-    )
-    return Message(
-        file=str(path),
-        name=parsed.name,
-        frame_id=parsed.frame_id,
-        extended=parsed.is_extended_frame,
-        length=parsed.length,
-        cycle_time=_seconds(cycle) if cycle else None,
-        start_delay=_seconds(delay),
-        senders=tuple(parsed.senders),
-        signals={s.name: _signal(s, f"{place}: signal '{s.name}'") for s in parsed.signals},
-        fd=parsed.is_fd,
-        comment=parsed.comment or "",
-    )
-
-
-def _signal(parsed: Any, place: str) -> Signal:
-    scale, offset = _real(parsed.conversion.scale), _real(parsed.conversion.offset)
-    if not parsed.is_float and float(scale).is_integer() and float(offset).is_integer():
-        scale, offset = int(scale), int(offset)
-    start = _number(parsed.raw_initial or 0, f"{place}: start value")
-    return Signal(
-        name=parsed.name,
-        start=parsed.start,
-        length=parsed.length,
-        little_endian=parsed.byte_order == "little_endian",
-        signed=parsed.is_signed,
-        is_float=parsed.is_float,
-        scale=scale,
-        offset=offset,
-        minimum=parsed.minimum if parsed.minimum is None else _real(parsed.minimum),
-        maximum=parsed.maximum if parsed.maximum is None else _real(parsed.maximum),
-        unit=parsed.unit or "",
-        choices={int(raw): str(text) for raw, text in (parsed.choices or {}).items()},
-        start_raw=int(start) if not parsed.is_float and float(start).is_integer() else start,
-        not_available=_not_available(parsed, place),
-        multiplexer_ids=tuple(parsed.multiplexer_ids or ()),
-        is_multiplexer=parsed.is_multiplexer,
-        comment=parsed.comment or "",
-    )
-
-
-def _real(number: float | int) -> float | int:
-    """Return a number of the file: infinity for an integer beyond all doubles."""
-    if isinstance(number, int) and abs(number) > sys.float_info.max:
-        return math.inf if number > 0 else -math.inf
-    return number
-
-
-def _number(value: Any, place: str) -> float | int:
-    """Return the value of an attribute that is a number. Raises ConfigError, which starts with `place`."""
-    try:
-        number: float | int = value if isinstance(value, int) else float(value)
-        if math.isfinite(number):
-            return number
-    except (TypeError, ValueError, OverflowError):
-        pass  # refused below, as infinity and NaN are
-    raise ConfigError(f"{place}: a finite number is needed, not {str(value)[:40]!r}")
-
-
-def _not_available(parsed: Any, place: str) -> int | None:
-    """Return the raw code of "not available", by GenSigSNA or a description such as "SNA"; None: no code."""
-    if parsed.is_float:
-        return None
-    given = _attribute(parsed.dbc, "GenSigSNA")
-    named = (raw for raw, text in (parsed.choices or {}).items() if _says_not_available(str(text)))
-    if given is None and (given := next(named, None)) is None:
-        return None
-    code = int(_number(given, f"{place}: GenSigSNA"))
-    if parsed.is_signed and code >= 1 << parsed.length - 1:  # written as a bit pattern
-        code -= 1 << parsed.length
-    return code
-
-
-def _says_not_available(text: str) -> bool:
-    return re.sub(r"[\s_-]", "", text).casefold() in _NOT_AVAILABLE
-
-
-def _attribute(specifics: Any, name: str, default: bool = False) -> Any:
-    """Return an attribute's own value; without one, with `default`, the file's default for it; else None."""
-    if specifics is None:
-        return None
-    if name in (specifics.attributes or {}):
-        return specifics.attributes[name].value
-    definition = (specifics.attribute_definitions or {}).get(name) if default else None
-    return definition.default_value if definition is not None else None
-
-
-def _seconds(milliseconds: float) -> float:
-    return float(Fraction(str(milliseconds)) * _MILLISECOND)
-
-
-def _refuse_twice(where: Message | Path, what: str, names: Iterable[str]) -> None:
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            place = f"{where.file}: message '{where.name}'" if isinstance(where, Message) else f"{where}"
-            raise ConfigError(f"{place}: {what} {name} is given twice")
-        seen.add(name)
-
-
-def _check_layout(parsed: Any, message: Message) -> None:
-    import cantools.database
-
-    try:
-        parsed.refresh(strict=True)
-    except cantools.database.Error as error:
-        problem = _layout_problem(message) or str(error)
-        raise ConfigError(f"{message.file}: message '{message.name}': {problem}") from error
-
-
-def _layout_problem(message: Message) -> str:
-    """Return a sentence on the first signal that does not fit, or the first two that overlap; "": none."""
-    taken: list[Signal] = []
-    for signal in message.signals.values():
-        if any(not 0 <= bit < 8 * message.length for bit in signal.bits):
-            return (
-                f"signal '{signal.name}' (start bit {signal.start}, {signal.length} bits) does not fit into "
-                f"{message.length} bytes"
+    def _selection(self, s: SignalEntry) -> tuple[str, tuple[tuple[int, int], ...], str]:
+        """Return the multiplexer of a signal and its raw values, "" and () for all frames; and a problem."""
+        if s.marker in ("", "M"):
+            return "", (), ""
+        number_of = s.marker[1:].removesuffix("M")
+        if not (s.marker.startswith("m") and number_of.isdigit()):
+            return "", (), f"line {s.line}: '{s.marker}' is no multiplexer's mark: M, m3 or m3M"
+        if found := self.entries.selectors.get((self.entry.dbc_id, s.name)):
+            return *found, ""
+        multiplexers = [other.name for other in self.entry.signals if other.marker.endswith("M")]
+        roots = [other.name for other in self.entry.signals if other.marker == "M"]
+        if s.marker.endswith("M") or len(multiplexers) != 1 or roots != multiplexers:
+            said = (
+                f"{' and '.join(multiplexers) or 'no signal'} could select it, and no SG_MUL_VAL_ says which"
             )
-        for other in taken:
-            alternatives = other.multiplexer_ids and signal.multiplexer_ids
-            if alternatives and set(other.multiplexer_ids).isdisjoint(signal.multiplexer_ids):
-                continue
-            if shared := sorted(set(other.bits) & set(signal.bits)):
-                bits = f"bits {shared[0]} to {shared[-1]}"
-                return f"signals '{other.name}' and '{signal.name}' overlap in {bits}"
-        taken.append(signal)
-    return ""
+            return "", (), f"line {s.line}: '{s.marker}': {said}"
+        return roots[0], ((int(number_of), int(number_of)),), ""
+
+    def _code(self, key: Key, signal: Signal) -> int | None:
+        """Return the raw code of "not available", by GenSigSNA or a description; None: no code."""
+        if signal.is_float:
+            return None
+        code = code_by_text(signal.choices)
+        if self.entries.attribute(key, "GenSigSNA") is not None:
+            given = self._number(key, "GenSigSNA", default=False)
+            code = code if given is None else int(given)
+        if code is not None and signal.signed and 0 < signal.length <= 64 and code >= 1 << signal.length - 1:
+            code -= 1 << signal.length  # written as a bit pattern
+        return code
+
+    # ---- attributes
+
+    def _of_file(self, name: str) -> str:
+        found = self.entries.of_file.get(name, self.entries.defaults.get(name))
+        return found.value if found else ""
+
+    def _own(self, key: Key, name: str) -> str:
+        found = self.entries.attribute(key, name)
+        return found.value if found else ""
+
+    def _found(self, key: Key, name: str) -> Attribute | None:
+        """Return an attribute's own value, else the file's default for it."""
+        return self.entries.attribute(key, name) or self.entries.defaults.get(name)
+
+    def _number(self, key: Key, name: str, default: bool = True) -> int | float | None:
+        """Return an attribute that is a number; None, with a note, for what is none."""
+        found = self._found(key, name) if default else self.entries.attribute(key, name)
+        if found is None:
+            return None
+        value = number(found.value)
+        if value is None and found.value:
+            about = f"message '{self.entry.name}'{f': signal {key[1]}' if key[1] else ''}"
+            said = f'{about}: {name}: a finite number is needed, not "{found.value[:40]}"; it is left out'
+            self.entries.notes.append((found.line or self.entry.line, said))
+        return value
+
+    def _seconds(self, name: str) -> float | None:
+        milliseconds = self._number((self.entry.dbc_id, ""), name)
+        if milliseconds is None:
+            return None
+        if milliseconds < 0:
+            said = f"message '{self.entry.name}': {name}: {milliseconds} ms is no time; it is left out"
+            self.entries.notes.append((self.entry.line, said))
+            return None
+        return float(Fraction(str(milliseconds)) * _MILLISECOND)
+
+    def _choice(self, key: Key, name: str, usual: list[str]) -> str:
+        """Return the text of an attribute that is one of several: of its number or its text; "" for none."""
+        found = self._found(key, name)
+        if found is None:
+            return ""
+        definition = self.entries.definitions.get(name)
+        choices = list(definition.choices) if definition and definition.choices else usual
+        index = whole(found.value)
+        if index is None:
+            return found.value
+        if not 0 <= index < len(choices):
+            said = f"message '{self.entry.name}': {name}: {found.value} is none of its {len(choices)} choices"
+            self.entries.notes.append((found.line or self.entry.line, said))
+            return ""
+        return choices[index]
+
+
+def _finite(text: str) -> int | float:
+    """Return a number of the file: infinity for one beyond all doubles."""
+    found = number(text)
+    if found is None or abs(found) > sys.float_info.max:
+        return -math.inf if text.startswith("-") else math.inf
+    return found

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
-from ..can.dbc import load_dbc
 from ..can.resolution import with_resolution
 from ..can.send_steps import send_steps, with_times
 from ..clock import Clock
@@ -15,15 +14,15 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, System
-from ..system.toml import data_file
 from ..system.values import as_double, of_type
 from ..texts import Texts
 from ..units.measure import Affine
+from .buses import open_buses
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
 from .type_rules import check_boolean, check_no_text, check_types
-from .unit_maps import Definitions, End, check_texts, converts, scaled_map, with_unit
+from .unit_maps import Definitions, End, converts, scaled_map, with_unit
 from .unit_plan import Route
 
 
@@ -104,13 +103,7 @@ def connect(
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
     """
     work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), every, ideal)
-    for name, entry in system.file.buses.items():
-        database = load_dbc(data_file(entry.dbc, system.path, f"{system.path}: buses.{name}.dbc"))
-        work.databases[name] = database
-        texts = {signal.unit for message in database.messages.values() for signal in message.signals.values()}
-        work.network.warnings += check_texts(entry.units, texts, f"{system.path}: buses.{name}.units")
-        for message in entry.messages:
-            database.require(message, f"{system.path}: buses.{name}.messages")
+    work.databases.update(open_buses(system, work.network.warnings))
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)
@@ -290,7 +283,10 @@ def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signa
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
     message = work.databases[bus].require(message_name, place)
-    return message, with_unit(message.require(signal_name, place), work.system.file.buses[bus].units)
+    signal = message.require(signal_name, place)
+    if signal.note:
+        work.network.warnings.append(f"{message.file}: line {signal.line}: {via}: {signal.note}")
+    return message, with_unit(signal, work.system.file.buses[bus].units)
 
 
 def _message(
@@ -325,7 +321,7 @@ def _message(
     return MessagePlan(
         bus=bus,
         message=dataclasses.replace(
-            message, signals=message.signals | {route.signal.name: route.signal for route in routes}
+            message, signals=_fit(message) | {route.signal.name: route.signal for route in routes}
         ),
         settings=settings,
         routes=tuple(routes),
@@ -336,6 +332,11 @@ def _message(
         delay=delay,
         arrivals=tuple(arrivals),
     )
+
+
+def _fit(message: Message) -> dict[str, Signal]:
+    """Return the signals that frames can hold: the bits of the others stay 0."""
+    return {name: signal for name, signal in message.signals.items() if not signal.problem}
 
 
 def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:

@@ -69,18 +69,25 @@ def test_unknown_names_have_the_nearest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("signal", "says"),
+    ("signal", "code", "says"),
     [
-        ('S : 0|8@1+ (1,0) [0|255] "" B', "sent as raw 0 to 255, but raw 255 means not available"),
-        ('S : 0|8@1+ (1,0) [0|300] "" B', "sent as raw 0 to 255, but raw 255 means not available"),
-        ('S : 0|8@1+ (0.4,0) [0|101.9] "%" B', "values in [0, 101.9] are sent as raw 0 to 255"),
-        ('S : 0|8@1+ (-1,255) [0|100] "" B', "raw 155 to 255"),
-        ('S : 0|9@1+ (1,0) [0|0] "" B', "raw 0 to 511, but raw 255 means not available"),
+        (
+            'S : 0|9@1+ (1,0) [0|0] "" B',
+            255,
+            "values in [None, None] are sent as raw 0 to 511, but raw 255 means",
+        ),
+        (
+            'S : 0|8@1+ (1,0) [0|255] "" B',
+            254,
+            "values in [0, 255] are sent as raw 0 to 255, but raw 254 means",
+        ),
+        ('S : 0|8@1+ (0.5,-10) [0|100] "" B', 99, "values in [0, 100] are sent as raw 20 to 220, but raw 99"),
     ],
 )
-def test_a_value_that_would_be_sent_as_not_available(tmp_path: Path, signal: str, says: str) -> None:
-    message = refusal(write(tmp_path, signal, tail='BA_ "GenSigSNA" SG_ 1 S 255;\n'))
-    assert message.startswith("scooter.toml: ") and "test.dbc: M.S: " in message and says in message
+def test_a_code_in_the_middle_of_the_range(tmp_path: Path, signal: str, code: int, says: str) -> None:
+    message = refusal(write(tmp_path, signal, tail=f'BA_ "GenSigSNA" SG_ 1 S {code};\n'))
+    assert message.startswith("scooter.toml: ") and "test.dbc: line 7: M.S: " in message and says in message
+    assert f"give the signal a minimum and maximum that leave {code} out" in message
 
 
 def test_a_range_that_was_not_written_ends_before_the_code(tmp_path: Path) -> None:
@@ -111,12 +118,12 @@ def test_a_message_that_no_frame_holds_stops_who_asks_for_it(tmp_path: Path) -> 
     assert "the message has 1785 bytes, and a frame holds 64 at most" in refusal(path)
     assert load_dbc(path).messages["M"].length == 1785
     too_long = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', length=1786)
-    assert "line 6: message 'M' has 1786 bytes; at most 1785 are read" in refusal(too_long)
+    assert "line 7: M.S: the message has 1786 bytes; at most 1785 are read" in refusal(too_long)
 
 
 def test_a_start_value_that_does_not_fit(tmp_path: Path) -> None:
     path = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', tail='BA_ "GenSigStartValue" SG_ 1 S 256;\n')
-    assert "the start value 256 of S is no raw value of 8 unsigned bits" in refusal(path)
+    assert "M.S: the start value 256 is no raw value of 8 unsigned bits" in refusal(path)
 
 
 def test_a_message_nobody_asks_for_stops_nothing(tmp_path: Path) -> None:

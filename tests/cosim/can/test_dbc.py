@@ -81,7 +81,7 @@ class TestReading:
         assert load_dbc(path).require("M").require("S") == Signal(
             name="S", start=7, length=12, little_endian=False, signed=True, scale=0.5, offset=-40,
             minimum=-100, maximum=100.5, unit="°C", choices={3: "Three"}, start_raw=-5,
-            not_available=-2048, comment="Oil",
+            not_available=-2048, comment="Oil", receivers=("B",),
         )  # fmt: skip # one line a group
 
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252"])
@@ -130,27 +130,142 @@ class TestRefusals:
         with pytest.raises(ConfigError, match=r"test\.dbc: line 1: not valid in a DBC file"):
             load_dbc(path)
 
-    def test_a_wrong_line_is_named_and_shown(self, tmp_path: Path) -> None:
-        message = refusal(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', 'T : eight|8@1+ (1,0) [0|0] "" B'))
-        assert "test.dbc: line 8: not valid in a DBC file: 'SG_ T : eight|8@1+" in message
+    def test_a_wrong_line_is_named_and_shown_to_who_uses_its_signal(self, tmp_path: Path) -> None:
+        path = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', 'T : eight|8@1+ (1,0) [0|0] "" B')
+        said = "test.dbc: line 8: not valid in a DBC file: 'SG_ T : eight|8@1+"
+        assert said in refusal(path, "T")
+        database = load_dbc(path)
+        assert database.require("M").require("S").length == 8
+        assert [warning for warning in database.warnings if said in warning] == list(database.warnings)
 
-    def test_overlapping_signals(self, tmp_path: Path) -> None:
-        message = refusal(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', 'T : 6|8@1+ (1,0) [0|0] "" B'))
-        assert message.endswith("test.dbc: message 'M': signals 'S' and 'T' overlap in bits 6 to 7")
 
-    def test_a_signal_that_does_not_fit(self, tmp_path: Path) -> None:
-        message = refusal(write(tmp_path, 'S : 4|16@1+ (1,0) [0|0] "" B', length=2))
-        assert "message 'M': signal 'S' (start bit 4, 16 bits) does not fit into 2 bytes" in message
+S = 'S : 0|8@1+ (1,0) [0|0] "" B'
+OK = 'Fine : 56|8@1+ (1,0) [0|0] "" B'
 
-    def test_a_signal_given_twice(self, tmp_path: Path) -> None:
-        message = refusal(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" B', 'S : 8|8@1+ (1,0) [0|0] "" B'))
-        assert "message 'M': signal S is given twice" in message
+
+class TestFlaws:
+    """A contradiction stops who uses what it is about; for all others it is a warning with its line."""
 
     @pytest.mark.parametrize(
-        ("second", "what"), [("BO_ 1 N: 8 A", "frame id 0x1"), ("BO_ 2 M: 8 A", "message M")]
+        ("signals", "tail", "used", "line", "said"),
+        [
+            ([S, 'T : 6|8@1+ (1,0) [0|0] "" B'], "", "S", 7, "'S' and 'T' overlap in bits 6 to 7"),
+            ([S, 'T : 6|8@1+ (1,0) [0|0] "" B'], "", "T", 8, "'S' and 'T' overlap in bits 6 to 7"),
+            (['S : 60|16@1+ (1,0) [0|0] "" B'], "", "S", 7, "start bit 60, 16 bits: it does not fit into 8"),
+            (['S : 0|65536@1+ (1,0) [0|0] "" B'], "", "S", 7, "65536 bits from bit 0 on are no signal"),
+            (['S : 0|0@1+ (1,0) [0|0] "" B'], "", "S", 7, "0 bits from bit 0 on are no signal"),
+            ([S, 'S : 8|8@1+ (1,0) [0|0] "" B'], "", "S", 7, "signal S is given twice, in the lines 7 and 8"),
+            ([S], 'BA_ "GenSigStartValue" SG_ 1 S 256;\n', "S", 7, "the start value 256 is no raw value"),
+            ([S], 'BA_ "GenSigStartValue" SG_ 1 S 0.5;\n', "S", 7, "the start value 0.5 is no raw value"),
+            ([S], "SIG_VALTYPE_ 1 S : one;\n", "S", 7, "not valid in a DBC file: 'SIG_VALTYPE_ 1 S : one'"),
+            (['S m : 0|8@1+ (1,0) [0|0] "" B'], "", "S", 7, "'m' is no multiplexer's mark: M, m3 or m3M"),
+            (['S m0 : 0|8@1+ (1,0) [0|0] "" B'], "", "S", 7, "'m0': no signal could select it, and no"),
+        ],
     )
-    def test_a_message_given_twice(self, tmp_path: Path, second: str, what: str) -> None:
+    def test_of_a_signal(self, tmp_path: Path, signals, tail, used, line, said) -> None:
+        path = write(tmp_path, *signals, OK, tail=tail)
+        database = load_dbc(path)
+        flaws = {s.name: s.problem for s in database.messages["M"].signals.values()}
+        assert said in flaws[used] and not flaws["Fine"]
+        assert any(
+            f"test.dbc: line {line}: message 'M': signal '{used}'" in w and said in w
+            for w in database.warnings
+        )
+        if not database.messages["M"].multiplexed:
+            assert f"test.dbc: line {line}: M.{used}: " in refusal(path, used) and said in refusal(path, used)
+            database.require("M").require("Fine")
+
+    @pytest.mark.parametrize(
+        ("second", "said"),
+        [
+            ("BO_ 1 N: 8 A", "frame id 0x1 is given twice, to M and N, in the lines 6 and 10"),
+            ("BO_ 2 M: 8 A", "the name is given twice, in the lines 6 and 10"),
+        ],
+    )
+    def test_of_a_message_that_is_given_twice(self, tmp_path: Path, second: str, said: str) -> None:
         path = tmp_path / "test.dbc"
-        path.write_text(f"{HEAD}\nBO_ 1 M: 8 A\n\n{second}\n\n")
-        with pytest.raises(ConfigError, match=f"{what} is given twice"):
-            load_dbc(path)
+        path.write_text(f"{HEAD}\nBO_ 1 M: 8 A\n SG_ {S}\n\n\n{second}\n\nBO_ 3 K: 8 A\n SG_ {S}\n")
+        assert said in refusal(path)
+        database = load_dbc(path)
+        assert f"{path}: line 6: message 'M' cannot be used: {said}" in database.warnings
+        database.require("K").require("S")
+
+    @pytest.mark.parametrize(
+        ("line", "said"),
+        [
+            ('VAL_ 9 S 0 "Off" ;', "VAL_ for a message with the id 9, which there is not"),
+            ('VAL_ 1 T 0 "Off" ;', "VAL_ for a signal 'T' in message 'M', which there is not"),
+            ("SIG_VALTYPE_ 9 S : 1;", "SIG_VALTYPE_ for a message with the id 9"),
+            ("SIG_VALTYPE_ 1 T : 1;", "SIG_VALTYPE_ for a signal 'T' in message 'M'"),
+            ("SG_MUL_VAL_ 1 T S 0-1;", "SG_MUL_VAL_ for a signal 'T'"),
+            ("BO_TX_BU_ 9 : A,B;", "BO_TX_BU_ for a message with the id 9"),
+            ('CM_ BO_ 9 "text";', "CM_ for a message with the id 9"),
+            ('CM_ SG_ 1 T "text";', "CM_ for a signal 'T'"),
+            ('BA_ "GenMsgCycleTime" BO_ 9 10;', "BA_ for a message with the id 9"),
+            ('BA_ "GenSigSNA" SG_ 1 T 10;', "BA_ for a signal 'T'"),
+            ('BA_ "Mystery" BO_ 1 10;', 'the attribute "Mystery" is not defined'),
+            ('BA_ "GenMsgCycleTime" BO_ 1 "often";', "'M': GenMsgCycleTime: a finite number is needed"),
+            ('BA_ "GenMsgCycleTime" BO_ 1 1e999;', "'M': GenMsgCycleTime: a finite number is needed"),
+            ('BA_ "GenMsgCycleTime" BO_ 1 -5;', "message 'M': GenMsgCycleTime: -5 ms is no time"),
+            ('BA_ "GenSigSNA" SG_ 1 S "?";', "message 'M': signal S: GenSigSNA: a finite number is needed"),
+            ('CM_ 1 "no keyword";', "not valid in a DBC file: 'CM_ 1 \"no keyword\"'"),
+            ("nonsense ;", "not valid in a DBC file: 'nonsense'"),
+            ("BO_ nine N: 8 A", "not valid in a DBC file: 'BO_ nine N: 8 A'"),
+            (f"BO_ 9 N: {'9' * 500} A", "is beyond all that a DBC file needs"),
+        ],
+    )
+    def test_of_an_entry(self, tmp_path: Path, line: str, said: str) -> None:
+        path = write(tmp_path, S, tail=f"{line}\n")
+        number = path.read_text().splitlines().index(line) + 1
+        database = load_dbc(path)
+        (warning,) = database.warnings
+        assert warning.startswith(f"{path}: line ") and said in warning
+        assert f"line {number}: " in warning or "-5 ms" in warning  # which is of the message
+        database.require("M").require("S")
+
+    def test_a_flaw_of_a_message_names_it(self, tmp_path: Path) -> None:
+        path = tmp_path / "test.dbc"
+        path.write_text(f"{HEAD}\nBO_ 4294967295 M: 8 A\n SG_ {S}\nBO_ 2 Long: 1786 A\n SG_ {S}\n")
+        assert "M.S: frame id 0x7fffffff is beyond 0x1fffffff, the greatest of an extended frame" in refusal(
+            path
+        )
+        first, second = load_dbc(path).warnings
+        assert "line 6: message 'M' cannot be used" in first
+        assert "line 8: message 'Long' cannot be used: the message has 1786 bytes; at most 1785" in second
+
+    def test_an_id_of_more_than_11_bits_is_an_extended_one(self, tmp_path: Path) -> None:
+        path = tmp_path / "test.dbc"
+        path.write_text(f"{HEAD}\nBO_ 2048 M: 8 A\n SG_ {S}\nBO_ 2047 N: 8 A\n SG_ {S}\n")
+        database = load_dbc(path)
+        assert [(m.frame_id, m.extended) for m in database.messages.values()] == [(2048, True), (2047, False)]
+        (warning,) = database.warnings
+        assert "line 6: message 'M': the id 2048 has more than 11 bits; it is taken as an extended" in warning
+
+    def test_a_statement_without_its_semicolon_leaves_the_next(self, tmp_path: Path) -> None:
+        path = write(
+            tmp_path, S, tail='CM_ SG_ 1 S "one"\nVAL_ 1 S 3 "Three" ;\nBA_ "GenMsgCycleTime" BO_ 1 20\n'
+        )
+        message = load_dbc(path).messages["M"]
+        assert (message.signals["S"].comment, message.signals["S"].choices) == ("one", {3: "Three"})
+        assert message.cycle_time == 0.02
+
+    def test_sections_that_are_missing(self, tmp_path: Path) -> None:
+        path = tmp_path / "test.dbc"
+        path.write_text(f'VERSION ""\n\nNS_ :\n  NS_DESC_\n  CM_\n\nBO_ 256 M: 8 A\n SG_ {S}\n')
+        database = load_dbc(path)
+        assert database.require("M").require("S").line == 8
+        assert database.warnings == ()
+
+    def test_a_file_that_ends_in_the_middle(self, tmp_path: Path) -> None:
+        text = write(tmp_path, S, OK, tail='CM_ SG_ 1 S "a comment";\nVAL_ 1 S 3 "Three" ;\n').read_text()
+        path = tmp_path / "cut.dbc"
+        for end in range(text.index(" SG_ Fine"), len(text), 7):
+            path.write_text(text[:end])
+            load_dbc(path).require("M").require("S")
+
+    def test_keywords_in_a_comment_are_text(self, tmp_path: Path) -> None:
+        comment = 'BO_ 7 X: 8 A;\n SG_ Y : 0|1@1+ (1,0) [0|0] \\"\\" B\nVAL_ 1 S 4 //'
+        path = write(tmp_path, S, tail=f'CM_ BO_ 1 "{comment}";// CM_ BO_ 1 "no";\n')
+        database = load_dbc(path)
+        assert list(database.messages) == ["M"] and database.warnings == ()
+        assert database.messages["M"].comment == comment.replace('\\"', '"')
