@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,10 @@ from ..interface import Value, VariableInfo
 from ..units.measure import Affine
 from .scenario import StimulusEntry
 from .stimuli import Rows, TimeFunction, check_times, csv_of, held, read_times, stimulus
-from .values import of_type
+from .values import WHOLE, of_type
 
 ToDouble = Callable[[Value, str], float]
 """(value, place): the double in which a run keeps a value of the input's type."""
-
-_WHOLE = re.compile(r"[+-]?\d{1,400}")  # of more digits Python makes no integer, and a double none either
 
 
 def held_stimulus(
@@ -127,7 +124,7 @@ def _value(text: str, variable: VariableInfo, separator: str) -> Value:
         return text
     if variable.type == "Boolean" and text.lower() in ("true", "false"):
         return text.lower() == "true"
-    if _WHOLE.fullmatch(text):
+    if WHOLE.fullmatch(text):
         return int(text)
     number = number_in(text, separator)
     return text if number is None else number

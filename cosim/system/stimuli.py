@@ -18,7 +18,7 @@ from ..errors import ConfigError, nearest
 from ..interface import VariableInfo
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
 from .toml import data_file
-from .values import of_type
+from .values import WHOLE, check_whole, of_type
 
 TimeFunction = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Values, shape (n,), of a stimulus at the times [s], shape (n,)."""
@@ -47,7 +47,20 @@ def stimulus(
         return _table(clock.on_points(times), np.array(values), entry.interpolation, rows)
     file, rows = csv_of(entry, place, beside)
     table = file.numbers((rows.time, rows.value), empty_lines=True)
+    _check_whole(table[:, 1], variable, rows)
     return _table(clock.on_points(table[:, 0]), table[:, 1].copy(), entry.interpolation, rows)
+
+
+def _check_whole(values: NDArray[np.float64], variable: VariableInfo, rows: Rows) -> None:
+    """Raise ConfigError naming the row of a whole number that was rounded: values, shape (n,), as read."""
+    large = np.flatnonzero(np.abs(values) >= (2**24 if variable.limits else 2**53))
+    texts = rows.texts() if len(large) else []
+    for k in large:
+        if WHOLE.fullmatch(texts[k]):
+            try:
+                check_whole(int(texts[k]), variable, "")
+            except ConfigError:  # only then the file is read again for the line
+                check_whole(int(texts[k]), variable, rows.at(int(k), 1))
 
 
 def _sine(sine: Sine, clock: Clock) -> TimeFunction:
@@ -98,6 +111,10 @@ class Rows:
             return f"{self.place}: row {row + 1}"
         name = self._file.names[(self.time, self.value)[column]]
         return f"{self._file.path}: line {self._file.line_of(row)}, column '{name}'"
+
+    def texts(self) -> list[str]:
+        """Return the cells of the column of values."""
+        return [] if self._file is None else self._file.texts(self.value)
 
 
 def _table(

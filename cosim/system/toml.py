@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import sys
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import (
     BaseModel,
@@ -49,10 +50,32 @@ class FileModel(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _numbers_of_numpy(cls, data: Any) -> Any:
-        """Return numbers and arrays of numpy, which Python code may give, as Python's own."""
-        if isinstance(data, Mapping):
-            return {key: _of_python(value) for key, value in data.items()}
-        return data
+        """Return numbers and arrays of numpy, which Python code may give, as Python's own.
+
+        Raises ValueError for a whole number that would be rounded to a double.
+        """
+        if not isinstance(data, Mapping):
+            return data
+        own = {key: _of_python(value) for key, value in data.items()}
+        for key, value in own.items():
+            whole = isinstance(value, int) and 2**53 < abs(value) <= sys.float_info.max
+            if whole and int(float(value)) != value and _takes_doubles(cls, key):
+                near = short(int(float(value)))
+                raise ValueError(
+                    f"{key} = {short(value)} is no number that a double holds exactly, as {near} is"
+                )
+        return own
+
+
+@functools.cache
+def _takes_doubles(model: type[BaseModel], field: str) -> bool:
+    """Return True for a key whose number is a double: of a `Value` the variable says it."""
+
+    def kinds(kind: Any) -> set[Any]:
+        return {kind}.union(*map(kinds, get_args(kind)))
+
+    found = kinds(model.model_fields[field].annotation) if field in model.model_fields else set()
+    return float in found and int not in found
 
 
 def _of_python(value: Any) -> Any:

@@ -7,6 +7,7 @@ double holds exactly is refused, never rounded.
 from __future__ import annotations
 
 import math
+import re
 import sys
 from typing import Any
 
@@ -16,6 +17,9 @@ from ..errors import ConfigError, nearest
 from ..interface import Value, VariableInfo
 from ..texts import Texts
 from .problems import brief
+
+WHOLE = re.compile(r"[+-]?\d{1,400}")
+"""A whole number as a text: of more digits Python makes no integer, and a double holds none either."""
 
 _SHOWN_ITEMS = 12
 
@@ -68,9 +72,36 @@ def of_type(value: Any, variable: VariableInfo, place: str) -> Value:
     low, high = variable.limits or (-math.inf, math.inf)
     if not low <= found <= high:
         raise ConfigError(f"{place}: {brief(found)} is beyond the numbers of {name}, {low} to {high}")
+    if variable.type == "Real" and isinstance(value, int):
+        check_whole(value, variable, place)
     if variable.items and found not in [number for number, _ in variable.items]:
         raise ConfigError(f"{place}: {brief(found)} is no item of {name}: {_items(variable)}")
     return found
+
+
+def check_whole(value: int, variable: VariableInfo, place: str) -> None:
+    """Raise ConfigError, which starts with `place`, for a whole number that no value of a Real is.
+
+    It names the two nearest. Of a decimal number, as 0.1, the nearest double is what is meant.
+    """
+    single = variable.limits is not None  # FMI 3.0's Float32: a double has no least and no greatest number
+    held = float(np.float32(value)) if single else float(value)
+    if int(held) != value:
+        holder = "Float32" if single else "double"
+        raise ConfigError(
+            f"{place}: {variable.name} = {brief(value)} is no number that a {holder} holds exactly: "
+            f"{_nearest(value, held, single)}"
+        )
+
+
+def _nearest(value: int, held: float, single: bool = False) -> str:
+    """Return the two nearest numbers in words: `held`, and the one on the other side of `value`."""
+    toward = math.inf if int(held) < value else -math.inf
+    if single:
+        other = float(np.nextafter(np.float32(held), np.float32(toward)))
+    else:
+        other = math.nextafter(held, toward)
+    return f"the nearest are {' and '.join(brief(int(x)) for x in sorted((held, other)) if math.isfinite(x))}"
 
 
 def _item(name: str, variable: VariableInfo, place: str) -> int:
@@ -99,6 +130,6 @@ def as_double(variable: VariableInfo, value: Value, place: str, texts: Texts) ->
     if isinstance(value, int) and int(number) != value:
         raise ConfigError(
             f"{place}: {variable.name} = {value} is more than a double, in which a run keeps its values, "
-            "holds exactly (2^53)"
+            f"holds exactly (2^53): {_nearest(value, number)}"
         )
     return number

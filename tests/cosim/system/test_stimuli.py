@@ -208,3 +208,22 @@ def test_what_stands_beside_the_wanted_columns_counts_for_nothing(tmp_path):
 def test_exactly_one_kind(entry):
     with pytest.raises(ConfigError):
         validate({"to": "u.x"} | entry, StimulusEntry, "s.toml")
+
+
+def test_a_whole_number_that_no_double_holds_is_refused_and_a_decimal_one_is_not(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("time,v\n0,1\n\n1,9007199254740993\n")
+    said = (
+        r"= 9007199254740993 is no number that a double holds exactly: the nearest are 9007199254740992 and"
+    )
+    with pytest.raises(ConfigError, match=rf"x.csv: line 4, column 'v': .* {said}"):
+        values([0], csv=str(path))
+    for row in range(2):
+        table = [[0.0, 1], [1.0, 1]]
+        table[row][1] = 2**53 + 1
+        with pytest.raises(ConfigError, match=rf"here.table: row {row + 1}: .* {said}"):
+            values([0], table=table)
+    with pytest.raises(ConfigError, match=rf"here.constant: .* {said}"):
+        values([0], constant=2**53 + 1)
+    path.write_text("time,v\n0,9007199254740993.0\n1,9007199254740994\n")
+    assert list(values([0, 1], csv=str(path))) == [2.0**53, 2.0**53 + 2]

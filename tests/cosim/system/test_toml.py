@@ -161,3 +161,13 @@ def test_the_data_of_evcosim_is_built_in(tmp_path: Path) -> None:
     assert is_built_in(DATA / "systems" / "scooter.toml")
     assert not is_built_in(tmp_path / "scooter.toml")
     assert not is_built_in(DATA)
+
+
+def test_a_whole_number_that_a_double_rounds_is_refused_for_a_key_of_doubles() -> None:
+    assert Numbers(x=2**53).x == 2.0**53
+    assert Numbers(x=2**53 + 2).x == 2.0**53 + 2.0
+    assert Numbers(x=9007199254740993.0).x == 2.0**53
+    with pytest.raises(
+        ValidationError, match="x = 9007199254740993 is no number that a double holds exactly"
+    ):
+        Numbers(x=2**53 + 1)

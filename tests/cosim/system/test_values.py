@@ -103,3 +103,47 @@ def test_a_text_is_kept_as_its_number() -> None:
     texts = Texts()
     number = as_double(STRING, of_type("a", STRING, "here"), "here", texts)
     assert texts.text(number) == "a"
+
+
+SINGLE = VariableInfo("f", limits=(-(2.0 - 2.0**-23) * 2.0**127, (2.0 - 2.0**-23) * 2.0**127))
+DOUBLE = VariableInfo("x")
+
+
+@given(st.integers(-(10**20), 10**20), st.sampled_from([SINGLE, DOUBLE]))
+def test_a_whole_number_is_a_real_exactly_or_refused(number: int, variable: VariableInfo) -> None:
+    try:
+        found = of_type(number, variable, "here")
+    except ConfigError as error:
+        below, above = map(int, str(error).partition("the nearest are ")[2].split(" and "))
+        assert below < number < above
+        for near in (below, above):
+            assert of_type(near, variable, "here") == near
+    else:
+        assert int(found) == number
+        assert of_type(float(number), variable, "here") == number
+
+
+@pytest.mark.parametrize(
+    ("variable", "number", "said"),
+    [
+        (DOUBLE, 2**53 + 1, "double holds exactly: the nearest are 9007199254740992 and 9007199254740994"),
+        (
+            DOUBLE,
+            -(2**53) - 1,
+            "double holds exactly: the nearest are -9007199254740994 and -9007199254740992",
+        ),
+        (SINGLE, 2**24 + 1, "Float32 holds exactly: the nearest are 16777216 and 16777218"),
+    ],
+)
+def test_a_whole_number_that_no_real_is_is_named_with_the_nearest(
+    variable: VariableInfo, number: int, said: str
+) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        of_type(number, variable, "here")
+    assert str(refusal.value) == f"here: {variable.name} = {number} is no number that a {said}"
+
+
+def test_a_decimal_number_means_the_nearest_double() -> None:
+    for number in (0.1, 9007199254740993.5, 1e23, 2**53, 10**22):
+        assert of_type(number, DOUBLE, "here") == number
+    assert of_type(0.1, SINGLE, "here") == 0.1
