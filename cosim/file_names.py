@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from .errors import ConfigError, short
+from .errors import ConfigError, nearest, short
 
 _LONGEST_NAME, _LONGEST_PATH = 255, 4095
 """Bytes of a file's or a folder's name, and of a path, on Linux; those of other systems are near."""
@@ -45,3 +45,14 @@ def _begin(name: str) -> str:
 
 def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
+
+
+def near_file(path: str | os.PathLike[str]) -> str:
+    """Return ` (did you mean 'x'?)` for the most similar name in the folder of a file that is not there."""
+    missing = Path(path)
+    try:
+        there = [found.name for found in missing.parent.iterdir()]
+    except OSError:  # there is no such folder either
+        return ""
+    close = nearest(missing.name, there)
+    return close.replace("'", f"'{missing.parent}{os.sep}", 1) if close and missing.parent.parts else close

@@ -7,7 +7,7 @@ import stat
 from pathlib import Path
 
 from .errors import ConfigError
-from .file_names import check_name, flaw_of_name
+from .file_names import check_name, flaw_of_name, near_file
 
 LARGEST = 64 << 20
 """Bytes of a file that is read whole: a system, a scenario, a swap or a CAN database."""
@@ -22,6 +22,8 @@ def require_file(path: Path, about: str = "") -> os.stat_result:
     start = f"{path}: {about}"
     try:
         found = path.stat()
+    except FileNotFoundError as error:
+        raise ConfigError(f"{start}cannot be read: {error.strerror}{near_file(path)}") from error
     except OSError as error:
         raise ConfigError(f"{start}cannot be read: {error.strerror or error}") from error
     if stat.S_ISDIR(found.st_mode):

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 from . import cache, runtime
 from .catalog import CATALOG, Experiment, model_file
-from .sources import Source, collect, file_of, rewritten
+from .sources import Source, collect, file_of, own_roots, rewritten
 
 _OWN_LICENSE = "MIT"
 _HERE = Path(__file__).parent
@@ -137,7 +137,8 @@ def build_model(
     recipe = _recipe(model.__qualname__, module, file, experiment or Experiment(), version, license)
     content = _content(recipe, model)
     path = cache.write(Path(folder) / f"{recipe.name}.fmu", content)
-    cache.keep(_record(hashlib.sha256(content).hexdigest()), f"{recipe.name}\n".encode())
+    noted = f"{recipe.name}\n{own_roots(module, file).folder}\n"
+    cache.keep(_record(hashlib.sha256(content).hexdigest()), noted.encode("utf-8", "surrogateescape"))
     return path
 
 
@@ -148,6 +149,12 @@ def is_own(digest: str) -> bool:
     be used there is none, and the FMU counts as anybody's.
     """
     return cache.load(_record(digest)) is not None
+
+
+def folder_of(digest: str) -> list[Path]:
+    """Return the folder of the files of which `build_model` made the FMU of a SHA-256, if it is known."""
+    noted = (cache.load(_record(digest)) or b"").decode("utf-8", "surrogateescape").split("\n")
+    return [Path(noted[1])] if len(noted) > 1 and noted[1] else []
 
 
 def _record(digest: str) -> str:

@@ -12,6 +12,7 @@ from types import ModuleType
 
 from .build import build_model
 from .catalog import CATALOG, Experiment, model_file
+from .outdated import carried_model
 
 
 def build_file(path: Path, folder: Path | None = None) -> list[Path]:
@@ -33,7 +34,20 @@ def build_file(path: Path, folder: Path | None = None) -> list[Path]:
         if not own:
             raise ValueError("defines no model: a model derives from evcosim.models.base.Model")
         where = folder or path.parent
+        for each in own:
+            _check_free(where / f"{each.__name__}.fmu", path)
         return [build_model(each, where, experiment=_experiment(each.__name__)) for each in own]
+
+
+def _check_free(fmu: Path, path: Path) -> None:
+    """Raise ValueError where the FMU is that of another file, which has a model of the same name."""
+    module = carried_model(fmu)
+    other = path.with_name(f"{module}.py")
+    if module and module != path.stem and other.is_file():
+        raise ValueError(
+            f"{fmu.name} is there already, of {other.name}: give one of the two models another name, or "
+            "build it elsewhere (--output)"
+        )
 
 
 def _experiment(name: str) -> Experiment | None:

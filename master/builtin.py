@@ -5,12 +5,13 @@ This is the one module of the master that knows the package of FMUs.
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest, short
-from ..cosim.file_names import check_name
+from ..cosim.file_names import check_name, near_file
 from ..cosim.reading import is_file
-from ..cosim.system.kinds import kind_of
+from ..cosim.system.kinds import kind_of, other_file
 from ..cosim.writing import reason
 
 
@@ -72,6 +73,30 @@ def is_ours(name: str, path: Path, digest: str) -> bool:
     return is_builtin(name, path) or build.is_own(digest)
 
 
+def outdated(path: Path, digest: str) -> str:
+    """Return a sentence on an FMU whose Python files have been changed since it was built; "" for any other.
+
+    `digest` is the SHA-256 of its file.
+    """
+    from ..fmus.outdated import changed_source
+
+    found = changed_source(path, digest)
+    if found is None:
+        return ""
+    changed, model = found
+    said = f"{path} was built before {_as_typed(changed)} was changed"
+    if path.resolve().parent == model.parent:
+        return f"{said}: 'evcosim build {shlex.quote(_as_typed(model))}' builds it anew"
+    into = shlex.quote(str(path.parent))
+    return f"{said}: 'evcosim build {shlex.quote(_as_typed(model))} -o {into}' builds it anew"
+
+
+def _as_typed(file: Path) -> str:
+    """Return a path from the working folder if it lies there, else in full."""
+    here = Path.cwd()
+    return str(file.relative_to(here) if file.is_relative_to(here) else file)
+
+
 def build_fmu(name: str, folder: Path | None = None) -> Path:
     """Build a built-in FMU into a folder (default: the cache, anew) and return its file.
 
@@ -101,7 +126,7 @@ def build_models(path: Path, folder: Path | None = None) -> list[Path]:
     from ..fmus import from_file
 
     if not is_file(path):
-        raise ConfigError(f"{path}: there is no such file")
+        raise ConfigError(f"{path}: there is no such file{near_file(path)}")
     try:
         return from_file.build_file(path, folder)
     except ValueError as error:
@@ -131,11 +156,14 @@ def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
         if is_file(path):
+            if path.suffix.lower() == ".toml" and (said := other_file(path)):
+                raise ConfigError(f"{start}{said}")
             if path.suffix.lower() not in (".fmu", ".zip") and (said := kind_of(path, "FMU")):
                 raise ConfigError(f"{start}{said}")
             return path
     if name.endswith(".fmu") or "/" in name or "\\" in name:
-        raise ConfigError(f"{start}{name[:200]}: there is no such FMU file")
+        sought = beside.parent / name if beside is not None else Path(name)
+        raise ConfigError(f"{start}{name[:200]}: there is no such FMU file{near_file(sought)}")
     raise ConfigError(
         f"{start}there is no built-in FMU {short(name)}{nearest(name, build.names())}; "
         f"built in: {', '.join(build.names())}"

@@ -11,6 +11,7 @@ from ..cosim.can.bus_settings import BusVariation
 from ..cosim.errors import ConfigError, nearest
 from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
+from ..cosim.plan.needed import check_needed
 from ..cosim.plan.plan import Plan
 from ..cosim.plan.resolve import participating, resolve, step_size_of
 from ..cosim.plan.steps import steps_in
@@ -22,12 +23,12 @@ from ..cosim.swap.sampled import inherited, sampled_in, told, untold
 from ..cosim.swap.swap_file import swapped
 from ..cosim.system.outside import read_outside
 from ..cosim.system.run_options import RunOptions, check_options
-from ..cosim.system.scenario import Scenario, load_scenario
+from ..cosim.system.scenario import Scenario, load_scenario, scenario_names
 from ..cosim.system.selection import recorded_alone, without_undrawn
 from ..cosim.system.system import System, load_system
 from ..cosim.system.toml import is_built_in
 from ..cosim.system.variation import varied
-from .builtin import builtin_names, fmu_file
+from .builtin import builtin_names, cache_folder, fmu_file, outdated
 from .engine.initialization import ordered_links
 from .fmi.doubts import doubts
 from .fmi.fmu import Fmu, check_runnable, read_fmu, reading_once
@@ -92,9 +93,9 @@ def prepare(
     read, untaken = without_untaken(read, interfaces)
     # the plan, and the figures and metrics that name its columns
     plan = _advised(read, driven, interfaces, options)
-    undriven = _undriven(plan, opened)
-    doubtful = _doubts(plan, loaded, read)
-    warnings = (*left_out, *undriven, *untaken, *sampling, *doubtful, *plan.warnings)
+    check_needed(original, plan, driven, {*fmus, *read.swaps})
+    said_before = (*_outdated(loaded), *left_out, *_undriven(plan, opened), *untaken, *sampling)
+    warnings = (*said_before, *_doubts(plan, loaded, read), *plan.warnings)
     plan = dataclasses.replace(plan, warnings=warnings)
     names = {v.name for v in (*plan.columns, *plan.text_columns)}
     unmeasured: tuple[str, ...] = ()
@@ -115,6 +116,13 @@ def prepare(
 def _is_a_name(system: System, unit: str) -> bool:
     """Return True for a unit whose FMU is built in, and named so."""
     return system.file.units[unit].fmu in builtin_names()
+
+
+def _outdated(fmus: Mapping[str, Fmu]) -> list[str]:
+    """Return a sentence for each FMU of the user's own whose model was changed since it was built."""
+    cache = cache_folder().resolve()  # what is in it, is of the sources that there are
+    own = [fmu for fmu in fmus.values() if fmu.holds_python and not fmu.path.resolve().is_relative_to(cache)]
+    return list(dict.fromkeys(said for fmu in own if (said := outdated(fmu.path, fmu.digest))))
 
 
 def _doubts(plan: Plan, fmus: Mapping[str, Fmu], system: System) -> list[str]:
@@ -216,14 +224,16 @@ def _check_complete(
     """Raise ConfigError that names every variable that a swapped unit lacks."""
     if missing := lacking(system, scenario, unit, interface):
         first, *lines = (f"unit '{unit}' has no variable {name}" for name in missing)
-        advice = f"map them, or declare them absent; {_advice(system, unit, path)}"
+        advice = f"map them, or declare them absent; {_advice(system, scenario, unit, path)}"
         raise ConfigError(f"{path}: {first}", *lines, advice)
 
 
-def _advice(system: System, unit: str, path: str | Path) -> str:
-    """Return the command that checks a swap file against the place of the unit."""
+def _advice(system: System, scenario: Scenario, unit: str, path: str | Path) -> str:
+    """Return the command that checks a swap file against the place of the unit in a scenario."""
     name = system.file.name if is_built_in(system.path) else system.path
-    return f"'evcosim check {path} --as {name}.{unit}' shows what the system needs and what fits"
+    known = scenario.name != system.file.scenario and scenario.name in scenario_names(system)
+    in_it = f" --scenario {scenario.name}" if known else ""
+    return f"'evcosim check {path} --as {name}.{unit}{in_it}' shows what the system needs and what fits"
 
 
 def _advised(
@@ -243,13 +253,13 @@ def _advised(
             raise ConfigError(f"step_size = {step:g} s, where the files have {files:g} s: {error}") from error
         if swaps:
             unit, path = next(iter(swaps.items()))
-            raise ConfigError(*error.lines, _advice(system, unit, path)) from error
+            raise ConfigError(*error.lines, _advice(system, scenario, unit, path)) from error
         for unit, path in fmus.items():
             if lacking(system, scenario, unit, interfaces[unit]):
                 raise ConfigError(
                     *error.lines,
-                    f"{_advice(system, unit, path)}; with --write it makes a swap file for an FMU with other "
-                    f"names: --swap {unit}=FILE, or in Python `swaps`",
+                    f"{_advice(system, scenario, unit, path)}; with --write it makes a swap file for an FMU "
+                    f"with other names: --swap {unit}=FILE, or in Python `swaps`",
                 ) from error
         raise
 

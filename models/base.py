@@ -134,7 +134,13 @@ def _put_new(made: type, function: Callable[..., Any]) -> None:
 
 
 def variables(record_type: type) -> tuple[Variable, ...]:
-    """Return the declared variables of a record, in the order of their declaration."""
+    """Return the declared variables of a record, in the order of their declaration.
+
+    Raises TypeError for a field that `var` does not declare.
+    """
+    for f in dataclasses.fields(record_type):
+        if _KEY not in f.metadata:
+            raise TypeError(f"{record_type.__qualname__}.{f.name}: write var(start, unit, description)")
     return tuple(
         Variable(name=f.name, type=_fmi_type(f.default), start=f.default, **f.metadata[_KEY])
         for f in dataclasses.fields(record_type)
@@ -202,13 +208,32 @@ class Model:
         return len(inspect.signature(cls.outputs).parameters) == 3
 
 
+_RECORDS = ("Parameters", "Inputs", "State", "Outputs")
+_FUNCTIONS = ("initial(p, u)", "step(p, x, u, dt)", "outputs(p, x)")
+
+
+def _check_parts(model: type[Model]) -> None:
+    """Raise TypeError for a model that lacks a record or a function."""
+    for part in _RECORDS:
+        if not dataclasses.is_dataclass(getattr(model, part, None)):
+            lacks = f"{part} lacks its '@record'" if hasattr(model, part) else f"there is no record {part}"
+            raise TypeError(f"{model.__name__}: {lacks}; a record without variables says 'pass'")
+    for function in _FUNCTIONS:
+        if not hasattr(model, function.partition("(")[0]):
+            raise TypeError(f"{model.__name__}: there is no function {function}")
+
+
 def _check_declaration(model: type[Model]) -> None:
-    names: set[str] = set()
-    for part in (model.Parameters, model.Inputs, model.Outputs):
-        for v in variables(part):
+    _check_parts(model)
+    names: dict[str, str] = {}
+    for part in ("Parameters", "Inputs", "Outputs"):
+        for v in variables(getattr(model, part)):
             if v.name in names:
-                raise TypeError(f"{model.__name__}: {v.name} is declared twice")
-            names.add(v.name)
+                raise TypeError(
+                    f"{model.__name__}: {v.name} is declared twice, in {names[v.name]} and in {part}: an FMU "
+                    "has one variable of a name, parameter, input or output"
+                )
+            names[v.name] = part
     inputs = {v.name for v in variables(model.Inputs)}
     outputs = variables(model.Outputs)
     for v in outputs:

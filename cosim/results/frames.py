@@ -87,8 +87,8 @@ def _library(name: str, method: str) -> Any:
     except ImportError as error:
         raise ConfigError(
             f"Results.{method} needs {name}, which cannot be imported here ({error}); "
-            'install it: pip install "evcosim[data]"'
-        ) from error
+            f"install it in this Python: pip install {name}"
+        ) from None
 
 
 def _chosen(results: Columns, names: Sequence[str] | None) -> Iterator[ResultVariable]:

@@ -86,6 +86,11 @@ class Metrics(list[Metric]):
             raise ConfigError(f"the run has no metric '{place}'{nearest(place, named)}; there are: {known}")
         return named[place]
 
+    def __str__(self) -> str:
+        """Return a line for each: its name and its value."""
+        width = max((len(metric.name) for metric in self), default=0)
+        return "\n".join(f"{metric.name.ljust(width)}  {metric.text}" for metric in self) or "no metrics"
+
     def _repr_html_(self) -> str:
         """Return a table, which a notebook shows."""
         rows = "".join(f"<tr>{_cell(metric.name)}{_cell(metric.text)}</tr>" for metric in self)

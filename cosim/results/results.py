@@ -323,7 +323,7 @@ class Results:
         """Return the variables, or some of them, as a pandas.DataFrame over the time in s.
 
         `attrs["units"]` has the units of measure by column; enumerations are categories, named by their
-        states. Raises ConfigError without pandas (`pip install "evcosim[data]"`) and as `variable` does.
+        states. Raises ConfigError without pandas (`pip install pandas`) and as `variable` does.
         """
         return frames.to_dataframe(self, names)
 
@@ -331,7 +331,7 @@ class Results:
         """Return the variables, or some of them, as an xarray.Dataset over the time in s.
 
         Each has its unit of measure as the attribute `units`; enumerations are numbers with `flag_values` and
-        `flag_meanings`. Raises ConfigError without xarray (`pip install "evcosim[data]"`) and as `variable`.
+        `flag_meanings`. Raises ConfigError without xarray (`pip install pandas`) and as `variable`.
         """
         return frames.to_xarray(self, names)
 

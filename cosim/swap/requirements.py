@@ -85,8 +85,17 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
 
 
 def _without_optional(system: System, scenario: Scenario) -> tuple[System, Scenario]:
-    """Return both with those connections and lines of figures only that cannot be left out."""
-    needed = [c for c in system.file.connect if not c.optional]
+    """Return both with those connections and lines of figures only that cannot be left out.
+
+    A connection can where no value in the files needs it.
+    """
+    tables = ({u: entry.parameters for u, entry in system.file.units.items()}, scenario.file.parameters)
+    given = {f"{unit}.{name}": x for table in tables for unit, xs in table.items() for name, x in xs.items()}
+
+    def is_needed(c: Connection) -> bool:
+        return not c.optional or any(given.get(name) == value for name, value in c.needed_where.items())
+
+    needed = [c for c in system.file.connect if is_needed(c)]
     of_system = system.file.model_copy(update={"connect": needed, "figure": _needed(system.file.figure)})
     of_scenario = scenario.file.model_copy(update={"figure": _needed(scenario.file.figure)})
     return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario)

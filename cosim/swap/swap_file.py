@@ -13,6 +13,7 @@ from pydantic import Field
 
 from ..errors import ConfigError, nearest
 from ..reading import is_file
+from ..system.kinds import kind_of
 from ..system.system import MapEntry, MapTables, System, UnitEntry
 from ..system.toml import read_toml
 from ..visible import visible, visible_toml
@@ -55,12 +56,24 @@ def swapped(system: System, swaps: Mapping[str, str | Path]) -> System:
                 f"--swap {unit}={path}: there is no unit '{unit}' in system '{system.file.name}'"
                 f"{nearest(unit, units)}: {', '.join(units)}"
             )
+        _check_kind(path, unit, f"{system.file.name}.{unit}")
         units[unit] = _entry(read_toml(path, SwapFile), path, f"{system.file.name}.{unit}", units[unit])
     return dataclasses.replace(
         system,
         file=system.file.model_copy(update={"units": units}),
         swaps={**system.swaps, **{unit: Path(name) for unit, name in swaps.items()}},
     )
+
+
+def _check_kind(path: Path, unit: str, place: str) -> None:
+    """Raise ConfigError for a file or folder that is no swap file, with what is done with it."""
+    if path.suffix.lower() == ".fmu" and path.is_file():
+        raise ConfigError(
+            f"--swap {unit}={path}: is an FMU, not a swap file; 'evcosim check {path} --as {place} --write "
+            f"swap.toml' writes one for it, and --fmu {unit}={path} puts it in with its own names"
+        )
+    if said := kind_of(path, "swap file"):
+        raise ConfigError(f"--swap {unit}={said}")
 
 
 def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEntry:

@@ -14,6 +14,7 @@ _LIBRARY = (
     "an FMU (.fmu) holds one, with its description: give the FMU, and `evcosim info FILE.fmu` shows it",
 )
 _MATLAB = ("a file of MATLAB or Simulink", "export an FMU from there, and give that")
+_C = ("C code", "a description beside it and `evcosim compile` make an FMU of it (docs/how-to/c-vehicle.md)")
 _CAN_LOG = ("a log of CAN frames", "`evcosim run SYSTEM --can-log` writes one; none is read")
 _TABLE = (
     "a table of numbers",
@@ -33,7 +34,7 @@ _BY_SUFFIX = {
     ".pdf": _PICTURE,
     ".py": ("Python code", "`evcosim build FILE.py` makes an FMU of each model in it"),
     ".mo": ("Modelica code", "a Modelica tool makes an FMU of it (docs/how-to/vehicle.md)"),
-    ".c": ("C code", "a C compiler and a description make an FMU of it (docs/how-to/vehicle.md)"),
+    ".c": _C, ".cc": _C, ".cpp": _C, ".h": _C,
     ".slx": _MATLAB, ".mdl": _MATLAB, ".mat": _MATLAB, ".m": _MATLAB,
     ".log": _CAN_LOG, ".blf": _CAN_LOG, ".asc": _CAN_LOG,
     ".json": ("a JSON file", "`evcosim plot` and `compare` read the folder of a run by its run.json"),

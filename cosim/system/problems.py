@@ -54,6 +54,8 @@ def _sentence(problem: Any, data: Any, model: type[BaseModel]) -> str:
         return f"{path}: {rule.replace('Dictionary', 'Table')}"  # which says how many there are
     if kind == "value_error" and isinstance(value, Mapping):
         return f"{path}: {rule}"  # a rule between keys, which names them itself
+    if kind in ("list_type", "tuple_type") and isinstance(value, str):
+        rule += f", as in {place[-1]} = [{brief(value)}]"
     near = _nearest(value, problem["ctx"]["expected"]) if kind == "literal_error" else ""
     return f"{path}: {rule}, not {brief(value)}{near}"
 

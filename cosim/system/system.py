@@ -235,6 +235,10 @@ class _Ends(FiniteModel):
     """Leave it out, with a warning, where an FMU in the place of a unit does not have the variable: the
     receivers keep their start values."""
 
+    needed_where: dict[VariableName, GivenValue] = Field(default={}, examples=[{"ecu.source": "wheels"}])
+    """Values of parameters with which a run is refused where nothing drives an input that it would: one that
+    is `optional`, or whose sender the scenario leaves out."""
+
     model_config = ConfigDict(json_schema_extra={"dependentRequired": {"initial": ["via"]}})
 
     @model_validator(mode="after")

@@ -22,6 +22,7 @@ from pydantic import (
 )
 
 from ..errors import ConfigError, nearest, short
+from ..file_names import near_file
 from ..interface import Value
 from ..reading import content, is_file
 from .kinds import kind_of
@@ -183,7 +184,7 @@ def find(name: str, folders: list[Path], kind: str, owner: str = "") -> Path:
         if said := kind_of(path, kind):
             raise ConfigError(said)
         if not is_file(path):
-            raise ConfigError(f"{path}: there is no such {kind} file")
+            raise ConfigError(f"{path}: there is no such {kind} file{near_file(path)}")
         return path
     for folder in folders:
         if is_file(folder / f"{name}.toml"):

@@ -34,6 +34,7 @@ def build(
     Without a Python file the engine is compiled too, for later runs.
     """
     from ...cosim.errors import ConfigError, nearest
+    from ...cosim.system.kinds import kind_of
     from ..builtin import build_fmu, build_models, builtin_names
     from ..engine.selection import compile_engine
     from .failures import complain
@@ -42,6 +43,8 @@ def build(
     own = [name for name in names or () if name.endswith(".py")]
     for name in names or ():
         if name not in known and name not in own:
+            if said := kind_of(Path(name), "model"):
+                raise ConfigError(f"{said}; a model is Python code (.py)")
             raise ConfigError(
                 f"there is no built-in FMU '{name}'{nearest(name, known)}; there are {', '.join(known)}; a "
                 "model of your own is a Python file (.py)"

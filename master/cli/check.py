@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ...cosim.system.scenario import Scenario
     from ...cosim.system.system import System, UnitEntry
     from ..fmi.fmu import Fmu
+    from ..studies.trial.probes import Finding
     from ..studies.trial.trial import Trial
 
 
@@ -77,7 +78,7 @@ def check(
     if as_json:
         print_json(_as_data(checked, complete, tried))
     else:
-        _conclude(complete, checked, file, write, tried, likeness)
+        _conclude(complete, checked, file, scenario, write, tried, likeness)
     return 0 if complete and (tried is None or tried.passed) else 1
 
 
@@ -265,6 +266,7 @@ def _conclude(
     complete: bool,
     checked: _Checked,
     file: str,
+    scenario: str | None,
     write: Path | None,
     tried: Trial | None,
     likeness: float,
@@ -280,22 +282,48 @@ def _conclude(
     remaining = [f"{counted(left, 'row')} to decide"] if left else []
     remaining += [counted(len(problems), "problem")] if problems else []
     system, _, unit = checked.place.rpartition(".")
+    in_it = f" --scenario {scenario}" if scenario else ""
     print(", ".join(f"{n} {verdict}" for verdict, n in counts.items()))
     # not wrapped: the commands can be copied
     conclusion = " and ".join(remaining) or "it fits"
     if write is not None:
         left_open = open_names(checked.matches, likeness)
         allowed = (" --allow-open" if left_open else "") + _trust(checked, write)
-        print(f"{conclusion}; written: {write}; then: evcosim run {system} --swap {unit}={write}{allowed}")
-        if left_open:
-            print(f"open, each with its guess as a comment in {write}: {', '.join(left_open)}")
+        run = f"evcosim run {system}{in_it} --swap {unit}={write}{allowed}"
+        if not remaining:
+            print(f"{conclusion}; written: {write}; then: {run}")
+            return
+        print(f"{conclusion}; written: {write}")
+        to_do = _to_do(checked, write, left_open, problems)
+        print("\n".join(f"{'' if i else 'first':5}  {line}" for i, line in enumerate(to_do)))
+        tried_again = f" --try {tried.duration:g}s" if tried else ""
+        print(f"then   evcosim check {write} --as {checked.place}{in_it}{tried_again}\n       {run}")
     elif problems and file.endswith(".toml"):
-        again = f"evcosim check {file} --as {checked.place} --try {tried.duration:g}s" if tried else ""
+        again = f"evcosim check {file} --as {checked.place}{in_it} --try {tried.duration:g}s" if tried else ""
         print(f"{conclusion}: {again} --write {file} writes what the trial proposes")
     elif complete and file.endswith(".toml"):
-        print(f"{conclusion}: evcosim run {system} --swap {unit}={file}{_trust(checked, Path(file))}")
+        run = f"evcosim run {system}{in_it} --swap {unit}={file}"
+        print(f"{conclusion}: {run}{_trust(checked, Path(file))}")
     else:
-        print(f"{conclusion}: evcosim check {file} --as {checked.place} --write swap.toml writes the mapping")
+        again = f"evcosim check {file} --as {checked.place}{in_it} --write swap.toml"
+        print(f"{conclusion}: {again} writes the mapping")
+
+
+def _to_do(checked: _Checked, swap: Path, left_open: list[str], problems: Sequence[Finding]) -> list[str]:
+    """Return a sentence on each kind of thing to solve before a run with a swap file that was written."""
+    missing = [m.need or m.variable or "" for m in checked.matches if m.verdict == "missing"]
+    chosen = [m.need or "" for m in checked.matches if m.verdict == "your choice" and m.need not in left_open]
+    found = [finding.what for finding in problems]
+    return [
+        text + ", ".join(names)
+        for names, text in (
+            (missing, f"map what {swap} leaves out as absent, or run without it: "),
+            (left_open, f"choose in {swap}, where each guess stands as a comment: "),
+            (chosen, f"look in {swap} whether the choice is right: "),
+            (found, f"solve what the trial found, for which {swap} has what it proposes: "),
+        )
+        if names
+    ]
 
 
 def _trust(checked: _Checked, swap: Path) -> str:

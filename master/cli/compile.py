@@ -16,6 +16,10 @@ def compile_(
     ] = None,
 ) -> None:
     """Compile the C sources that an FMU brings, for this machine, with $CC or cc."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.system.kinds import kind_of
     from ..fmi.compilation import compile_fmu
 
+    if not fmu.is_dir() and fmu.suffix.lower() not in (".fmu", ".zip") and (said := kind_of(fmu, "FMU")):
+        raise ConfigError(said)
     print(compile_fmu(fmu, output))

@@ -60,9 +60,8 @@ def chosen(results: Results, patterns: list[str]) -> Results:
     for pattern in patterns:
         fits = fitting(pattern, names)
         if not fits:
-            raise ConfigError(
-                f"--signals {pattern}: the results have no such variable{nearest(pattern, names)}"
-            )
+            near = nearest(pattern, [*names, *(f"{name.partition('.')[0]}.*" for name in names)])
+            raise ConfigError(f"--signals {pattern}: the results have no such variable{near}")
         found.update(fits)
     return results.part(slice(None), [name for name in names if name in found])
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.file_names import check_name, flaw_of_name, short_path
+from evcosim.cosim.file_names import check_name, flaw_of_name, near_file, short_path
 
 LONG = "a" * 256
 DEEP = "/".join(["b" * 100] * 41)
@@ -47,3 +47,14 @@ def test_the_system_agrees(tmp_path):
 def test_a_long_path_is_cut_in_a_message():
     assert short_path(Path("a/b")) == "a/b"
     assert len(short_path(DEEP)) <= 80
+
+
+def test_the_nearest_file_of_the_folder_is_named(tmp_path, monkeypatch):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "pack.fmu").touch()
+    (tmp_path / "ideal").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert near_file("idael") == " (did you mean 'ideal'?)"
+    assert near_file(Path("parts/pak.fmu")) == " (did you mean 'parts/pack.fmu'?)"
+    assert near_file(tmp_path / "idael") == f" (did you mean '{tmp_path / 'ideal'}'?)"
+    assert near_file("something else") == near_file("nowhere/pack.fmu") == ""

@@ -101,3 +101,18 @@ def test_the_source_of_a_built_in_model_stands_alone(name):
     assert file == f"{CATALOG[name].module}.py"
     assert "\nfrom ." not in text and f"class {name}(Model)" in text
     assert "from evcosim.models.base import" in text
+
+
+def test_two_files_with_a_model_of_one_name_do_not_write_over_each_other(file, tmp_path):
+    (made,) = build_file(file)
+    first = made.read_bytes()
+    other = file.with_name("my_other.py")
+    other.write_text(TWICE, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"Twice\.fmu is there already, of my_twice\.py"):
+        build_file(other)
+    assert made.read_bytes() == first
+    (tmp_path / "there").mkdir()
+    build_file(other, tmp_path / "there")
+    file.unlink()  # it has got another name
+    build_file(other)
+    assert made.read_bytes() != first

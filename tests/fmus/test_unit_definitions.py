@@ -13,6 +13,7 @@ NAMES = [
     "kg", "m", "s", "A", "K", "mol", "rad", "N", "W", "Wh", "kWh", "V", "ohm", "Hz", "J", "Pa", "C",
     "F", "H", "T", "Wb", "km", "h", "min", "deg", "g", "cm", "mm", "kN", "kW", "mA", "mV", "bar", "rpm",
     "ms", "%", "1", "m/s", "km/h", "m/s2", "m/s3", "rad/s", "rad/s2", "A.h", "kg/m3", "m2", "N.s/m",
+    "l/min", "L", "t", "us", "kPa", "MPa", "kJ", "MJ", "MW", "kV", "Ah",
     "N.m", "N.m/A", "Wh/km", "kg.m2", "%.s/m", "%/s", "1/s", "km/(h.%)", "km.s/h", "V.s/rad",
 ]
 # fmt: on

@@ -73,3 +73,9 @@ def test_a_cache_that_does_not_last(tmp_path, monkeypatch):
         ConfigError, match=r"Battery\.fmu cannot be kept there; --output DIR builds elsewhere"
     ):
         build_fmu("Battery")
+
+
+def test_a_swap_file_is_no_fmu(tmp_path):
+    (tmp_path / "swap.toml").write_text('fmu = "V.fmu"\n')
+    with pytest.raises(ConfigError, match=r"^fmus\.vehicle: .*swap\.toml: is a swap file: .*--swap"):
+        fmu_file(str(tmp_path / "swap.toml"), place="fmus.vehicle")

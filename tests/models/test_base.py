@@ -78,6 +78,9 @@ class Direct:
     position: float = var(0.0, "m", "A position", depends=("force",))
 
 
+UNDECLARED = dataclasses.make_dataclass("Outputs", [("speed", float, 0.0)])
+
+
 def held(p: Any, x: Any) -> Any:
     """Outputs without inputs."""
     return Position()
@@ -95,6 +98,8 @@ def declare(**changed: Any) -> type[Model]:
         "Inputs": In,
         "State": Nothing,
         "Outputs": Position,
+        "initial": staticmethod(held),
+        "step": staticmethod(held),
         "outputs": staticmethod(held),
     }
     return type("Toy", (Model,), {**parts, **changed})
@@ -161,7 +166,13 @@ def test_feedthrough_is_read_from_outputs() -> None:
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"Outputs": In}, "force is declared twice"),
+        ({"Outputs": In}, "force is declared twice, in Inputs and in Outputs"),
+        ({"Outputs": object}, "Outputs lacks its '@record'"),
+        ({"State": None}, "State lacks its '@record'"),
+        (
+            {"Outputs": UNDECLARED},
+            r"Outputs\.speed: write var",
+        ),
         (
             {"Outputs": Direct, "outputs": staticmethod(direct), "Inputs": Nothing},
             "depends on force, which is no input",
@@ -174,3 +185,11 @@ def test_feedthrough_is_read_from_outputs() -> None:
 def test_contradictions_are_refused(changed: dict[str, Any], message: str) -> None:
     with pytest.raises(TypeError, match=message):
         declare(**changed)
+
+
+@pytest.mark.parametrize("name", ["Parameters", "Inputs", "State", "Outputs", "initial", "step", "outputs"])
+def test_a_part_that_is_not_there_is_named(name: str) -> None:
+    parts = {key: value for key, value in vars(declare()).items() if not key.startswith("__")}
+    del parts[name]
+    with pytest.raises(TypeError, match=rf"Bare: there is no (record|function) {name}"):
+        type("Bare", (Model,), parts)

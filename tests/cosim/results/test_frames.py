@@ -109,7 +109,7 @@ def test_no_row_and_no_variable_are_tables_too():
 @pytest.mark.parametrize(("method", "library"), [("to_dataframe", "pandas"), ("to_xarray", "xarray")])
 def test_a_library_that_is_missing_is_named_with_the_extra(results, method, library, monkeypatch):
     monkeypatch.setitem(sys.modules, library, None)  # as Python marks what it cannot import
-    with pytest.raises(ConfigError, match=rf"{method} needs {library}.*pip install \"evcosim\[data\]\""):
+    with pytest.raises(ConfigError, match=rf"{method} needs {library}.*pip install {library}"):
         getattr(results, method)()
 
 

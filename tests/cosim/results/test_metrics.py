@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as arrays
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results import results as results_module
-from evcosim.cosim.results.metrics import check, evaluate
+from evcosim.cosim.results.metrics import Metric, Metrics, check, evaluate
 from evcosim.cosim.results.results import Results, ResultVariable
 from evcosim.cosim.system.metric_spec import MetricSpec
 
@@ -313,3 +313,9 @@ def test_the_metrics_of_a_run_are_there_by_name_place_and_call():
         results.metrics["topp"]
     none = Results([0.0], [[1.0]], [ResultVariable("a.x")]).metrics
     assert (none, none._repr_html_()) == ([], "<p>no metrics</p>")
+
+
+def test_metrics_are_printed_as_lines() -> None:
+    found = Metrics([Metric("distance", 12.5, "m", ""), Metric("n", 3.0, "1", "")])
+    assert str(found).splitlines() == ["distance  12.5 m", "n         3"]
+    assert str(Metrics()) == "no metrics"

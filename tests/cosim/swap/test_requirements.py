@@ -75,3 +75,12 @@ def test_units_that_are_left_out_need_nothing() -> None:
     no_rider = " ".join(lacking(system, load_scenario(system, "fig8"), "vehicle", empty))
     assert "'brake_force' (from rider.brake_force" in all_units
     assert "brake_force" not in no_rider
+
+
+def test_what_the_values_of_a_scenario_need_is_not_optional() -> None:
+    system, interface = load_system("scooter"), interface_of("scooter", "vehicle")
+    for name, optional in (("fig8", True), ("fig8_wheels", False)):
+        needs = requirements(system, load_scenario(system, name), "vehicle", interface)
+        found = {need.name: need.optional for need in needs}
+        assert found["front_wheel_speed"] == found["rear_wheel_speed"] == optional
+        assert found["available_power"]

@@ -227,3 +227,23 @@ def test_a_guess_of_a_low_likeness_stands_as_a_comment(tmp_path: Path) -> None:
         write(path, "V.fmu", "scooter.vehicle", found, None, None, likeness)
         assert read_toml(path, SwapFile).open == names
     assert list(entry_of("V.fmu", found).map.inputs) == ["throttle", "brake_force"]  # a trial tries them
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        (
+            "V.fmu",
+            "is an FMU, not a swap file; 'evcosim check {path} --as scooter.vehicle --write swap.toml'",
+        ),
+        ("v.c", "is C code, not a swap file"),
+        (".", "is a folder"),
+    ],
+)
+def test_another_file_is_told_from_a_swap_file(tmp_path: Path, name: str, said: str) -> None:
+    path = tmp_path / name
+    if not path.exists():
+        path.write_bytes(b"PK")
+    with pytest.raises(ConfigError) as refused:
+        swapped(load_system("scooter"), {"vehicle": path})
+    assert said.format(path=path) in str(refused.value)

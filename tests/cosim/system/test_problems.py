@@ -46,7 +46,7 @@ BROKEN = [
     ("system", HEAD + "[connect]\nfrom = 'a.b'\n", "connect: a list is needed, not { from = 'a.b' }"),
     ("system", HEAD + "[[connect]]\nto = ['a.b']\n", "connect 1.from: this key is needed"),
     ("system", HEAD + "[[connect]]\nfrom = 'a'\n", "connect 1.from: a variable is written unit.variable, not 'a'"),
-    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nto = 'a.c'\n", "connect 1.to: a list is needed, not 'a.c'"),
+    ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nto = 'a.c'\n", "connect 1.to: a list is needed, as in to = ['a.c'], not 'a.c'"),
     ("system", HEAD + "[[connect]]\nfrom = 'a.b'\n[[connect]]\nfrom = 'a.b'\nto = ['a.c', 'd']\n", "connect 2.to 2: a variable is written unit.variable, not 'd'"),
     ("system", HEAD + "[[connect]]\nfrom = 'a.b'\nvia = 'can0.M'\n", "connect 1.via: a signal is written bus.message.signal, not 'can0.M'"),
     ("system", HEAD + "[[connect]]\nfrom = 'a.b'\ninitial = 1\n", "connect 1: 'initial' is what is there before the first message: it needs a 'via'"),

@@ -45,3 +45,19 @@ def test_build_of_a_file_of_ones_own(evcosim, tmp_path):
     refused(evcosim("build", "none.py"), "none.py: defines no model")
     refused(evcosim("build", "gone.py"), "gone.py: there is no such file")
     refused(evcosim("build", "Batery"), "(did you mean 'Battery'?)", "is a Python file")
+    (tmp_path / "model.c").write_text("int x;\n")
+    refused(evcosim("build", "model.c"), "model.c: is C code, not a model", "docs/how-to/c-vehicle.md")
+
+
+def test_a_run_warns_of_an_fmu_that_is_older_than_its_model(evcosim, tmp_path):
+    """The command that the warning names ends it."""
+    assert evcosim("new", "car").code == 0
+    run = ("run", "car/car.toml", "--stop-time", "1", "--no-plot", "--no-report", "-o", "out")
+    assert "was built before" not in evcosim(*run).out
+    model = tmp_path / "car" / "models" / "vehicle.py"
+    model.write_text(model.read_text(encoding="utf-8").replace("var(40.0", "var(50.0"), encoding="utf-8")
+    said = " ".join(evcosim(*run).out.split())
+    command = "evcosim build car/models/vehicle.py"
+    assert f"car/models/Vehicle.fmu was built before car/models/vehicle.py was changed: '{command}'" in said
+    assert evcosim(*command.split()[1:]).code == 0
+    assert "was built before" not in evcosim(*run).out

@@ -28,7 +28,11 @@ def test_from_a_stranger_to_a_run(evcosim, tmp_path: Path) -> None:
     found = check(evcosim, fmu, "--as", "scooter.vehicle", "--write", swap)
     assert found.code == 1
     assert "declares no unit of measure" in " ".join(found.out.split())
-    assert f"evcosim run scooter --swap vehicle={swap}" in found.out
+    *_, written, first, then, run = found.out.splitlines()
+    assert written == f"1 row to decide; written: {swap}"
+    assert first == f"first  look in {swap} whether the choice is right: speed"
+    assert then == f"then   evcosim check {swap} --as scooter.vehicle"
+    assert run.strip() == f"evcosim run scooter --swap vehicle={swap}"
     again = check(evcosim, swap, "--as", "scooter.vehicle")
     assert (again.code, "it fits: evcosim run scooter" in again.out) == (0, True), again
     options = ("--stop-time", "3", "-o", tmp_path / "out", "--no-plot")
@@ -45,6 +49,9 @@ def test_a_trial_proposes_what_makes_the_next_one_pass(evcosim, tmp_path: Path) 
     assert first.code == 1
     assert "reacts to the other sign only" in " ".join(first.out.split())
     assert "1 row to decide and 4 problems" in first.out
+    *_, solve, then, _ = first.out.splitlines()
+    assert "solve what the trial found" in solve and "brake_force -> speed" in solve
+    assert then == f"then   evcosim check {swap} --as scooter.vehicle --try 1s"
     written = swap.read_text()
     assert 'brake_force = { variable = "F_brake", invert = true }  # [N]; proposed:' in written
     assert "# problem: brake_force -> speed: reacts to the other sign only" in written
@@ -277,7 +284,7 @@ def test_a_swap_with_open_rows_runs_only_where_that_is_allowed(evcosim, tmp_path
     entry = read_toml(swap, SwapFile)
     assert (entry.open, list(entry.map.inputs)) == (["brake_force"], ["throttle"])
     assert f"--swap vehicle={swap} --allow-open" in written.out
-    assert "open, each with its guess as a comment in" in written.out
+    assert f"choose in {swap}, where each guess stands as a comment: brake_force" in written.out
     options = ("--swap", f"vehicle={swap}", "--stop-time", "1", "-o", tmp_path / "out", "--no-plot")
     refused = evcosim("run", "scooter", *options)
     assert refused.code == 2

@@ -24,3 +24,8 @@ def test_an_fmu_that_needs_none(evcosim):
     refused(
         evcosim("compile", builtin.fmu_file("Battery")), "has a binary for this machine already: binaries/"
     )
+
+
+def test_c_code_is_no_fmu(evcosim, tmp_path):
+    (tmp_path / "model.c").write_text("int x;\n")
+    refused(evcosim("compile", "model.c"), "model.c: is C code, not an FMU", "docs/how-to/c-vehicle.md")

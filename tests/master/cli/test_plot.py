@@ -13,6 +13,7 @@ def test_plot(evcosim, two_runs):
     assert "<svg" in svg
     nothing = evcosim("plot", "a", "--signals", "vehicle.sped")
     assert (nothing.code, "did you mean 'vehicle.speed'" in nothing.err) == (2, True)
+    assert "did you mean 'vehicle.*'" in evcosim("plot", "a", "--signals", "vehcle.*").err
     assert evcosim("plot", "a", "-o", "figure.txt").code == 2
 
 
