@@ -48,8 +48,9 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> Affine:
     if variable.unit in ("", unit):
         return Affine()
     try:
-        kinds = (variable.difference, variable.difference)
-        return conversion(defined(variable.unit), defined(unit), kinds)
+        own = defined(variable.unit)
+        difference = variable.difference or own.difference
+        return conversion(own, defined(unit), (difference, difference))
     except ConfigError as error:
         signal = f"{place}: '{variable.name}' [{variable.unit}]"
         if not unit:

@@ -16,6 +16,7 @@ from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, System
 from ..system.values import as_double, of_type
 from ..texts import Texts
+from ..units.definition import names_difference
 from ..units.measure import Affine
 from .buses import open_buses
 from .plan import InputPlan, Link, MessagePlan
@@ -190,7 +191,8 @@ def _bus_maps(
     """
     sender = _end(work, source)
     bus = str(connection.via).split(".")[0]
-    on_bus = End(connection.via or "", signal.unit, difference=sender.difference, bus=bus)
+    difference = sender.difference or names_difference(sender.unit)
+    on_bus = End(connection.via or "", signal.unit, difference=difference, bus=bus)
     before, after = Scaling(), Scaling()
     if not sinks or not converts(sender, on_bus, _definitions(work)):
         before = connection

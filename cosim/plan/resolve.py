@@ -21,7 +21,8 @@ from ..system.stimuli import Rows, csv_of, stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..system.values import as_double
 from ..texts import Texts
-from ..units.measure import Affine
+from ..units.definition import names_difference
+from ..units.measure import Affine, DifferenceError
 from .connections import Network, connect
 from .events import scheduled
 from .given_values import all_parameters, all_starts, by_kind
@@ -136,7 +137,7 @@ def result_variable(unit: str, v: VariableInfo) -> ResultVariable:
         variability="discrete" if v.sampled else v.variability,  # it holds until the next point
         description=v.description,
         items=v.items,
-        difference=v.difference,
+        difference=v.difference or names_difference(v.unit),
     )
 
 
@@ -269,13 +270,16 @@ def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, where: str, 
     if said is None or target.bare:
         return
     try:
-        map_ = unit_map(dataclasses.replace(target, unit=said[1]), target, (), "", [])
-    except ConfigError:
-        return  # it is no unit of measure, or of another quantity
-    if not map_.identity:
+        map_: Affine | None = unit_map(dataclasses.replace(target, unit=said[1]), target, (), "", [])
+        then = f'`unit = "{said[1]}"` in {where} converts them'
+    except ConfigError as error:
+        if not isinstance(error.__cause__, DifferenceError):
+            return  # it is no unit of measure, or of another quantity
+        map_, then = None, str(error.__cause__)
+    if map_ != Affine():
         warnings.append(
             f"{file.path}: column '{name}': its values are taken in [{target.unit}], the unit of "
-            f'{target.name}; `unit = "{said[1]}"` in {where} converts them'
+            f"{target.name}; {then}"
         )
 
 

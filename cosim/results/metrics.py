@@ -36,7 +36,7 @@ from ..errors import ConfigError, nearest
 from ..row_store import Array
 from ..system.metric_spec import MetricSpec, Reduction
 from ..units.conversion import conversion
-from ..units.definition import defined
+from ..units.definition import defined, names_difference
 from ..units.measure import BASE_UNITS, Affine, UnitOfMeasure
 from ..visible import flowing
 from .recording import Recording
@@ -185,12 +185,12 @@ def _scale(spec: MetricSpec, variables: Mapping[str, ResultVariable]) -> Affine:
         _to_signal(spec, variables)  # raises where they measure different quantities
         return Affine()  # nothing to convert, so the unit may be one that nobody defines
     source, target = _outcome(spec, variables), defined(spec.unit)
+    difference = False  # of temperatures: 0 of it is 0 in every unit
     if spec.per is not None:
         source = _quotient(source, _outcome(spec.per, variables))
-    elif spec.minus is not None or spec.reduce == "range" or variables[spec.signal].difference:
-        # a difference of temperatures: 0 of it is 0 in every unit
-        source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
-    convert = conversion(source, target)
+    else:
+        difference = spec.minus is not None or spec.reduce == "range" or _is_difference(spec, variables)
+    convert = conversion(source, target, (difference, difference))
     if convert.offset and spec.reduce == "rms":
         raise ConfigError(f"an rms in [{source.name}] cannot be given in [{target.name}]: their zeros differ")
     return convert
@@ -209,7 +209,7 @@ def _outcome(part: Reduction, variables: Mapping[str, ResultVariable]) -> UnitOf
         return defined("s")
     unit = _unit(variables[part.signal])
     if part.reduce in ("integral", "integral_above"):
-        if unit.offset and not variables[part.signal].difference:
+        if unit.offset and not _is_difference(part, variables):
             raise ConfigError(f"an integral of [{unit.name}] has no meaning: its zero is arbitrary")
         return _combined(f"{unit.name}.s", unit, defined("s"), 1)
     return unit
@@ -223,11 +223,17 @@ def _to_signal(part: Reduction, variables: Mapping[str, ResultVariable]) -> tupl
         minus = variables[part.minus]
         other = conversion(_unit(minus), _unit(signal), (minus.difference, signal.difference))
     if part.threshold_unit is not None and part.threshold_unit != signal.unit:
+        # a threshold of a difference has no zero of its own
+        difference = part.minus is not None or _is_difference(part, variables)
         source, target = defined(part.threshold_unit), _unit(signal)
-        if part.minus is not None or signal.difference:  # a threshold of a difference has no zero of its own
-            source, target = (dataclasses.replace(u, offset=0.0) for u in (source, target))
-        threshold = conversion(source, target)(threshold)
+        threshold = conversion(source, target, (difference, difference))(threshold)
     return other, threshold
+
+
+def _is_difference(part: Reduction, variables: Mapping[str, ResultVariable]) -> bool:
+    """Return True where a signal is a difference of temperatures, as its description or its unit says."""
+    signal = variables[part.signal]
+    return signal.difference or names_difference(signal.unit)
 
 
 def _quotient(a: UnitOfMeasure, b: UnitOfMeasure) -> UnitOfMeasure:

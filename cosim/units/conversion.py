@@ -5,7 +5,7 @@ Units convert when their exponents are equal, that of rad too. Two more rules:
 - A plain rate (1/s) is taken as cycles where the other unit counts cycles and says so (Hz, 1/min), and is
   refused where it is a rotation (rad/s, rpm): it may be radians or turns.
 - An offset (degC) is for absolute quantities. Between two differences it is left out; between a difference
-  and an absolute quantity there is no conversion.
+  and an absolute quantity there is no conversion. A text may say that it is for differences (delta_degC).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from ..errors import ConfigError
 from .definition import defined
-from .measure import BASE_UNITS, Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure
+from .measure import BASE_UNITS, Affine, DifferenceError, DifferentQuantityError, OpenUnitError, UnitOfMeasure
 
 _TURNING = tuple({"s": -1, "rad": 1}.get(base, 0) for base in BASE_UNITS)
 _SAME = 1e-3  # relative: definitions of one name that differ by less differ in digits
@@ -27,8 +27,9 @@ def conversion(
 ) -> Affine:
     """Return the map from values in `source` to values in `target`.
 
-    `relative` says of each whether its values are differences (FMI: relativeQuantity). Raises ConfigError
-    when they do not measure the same quantity, or when it stays open which conversion is meant.
+    `relative` says of each whether its values are differences (FMI: relativeQuantity); a unit may say it too.
+    Raises ConfigError when they do not measure the same quantity, or when it stays open which conversion is
+    meant.
     """
     if source.name == target.name:
         return _of_one_name(source, target, relative)
@@ -103,15 +104,18 @@ def _without_offset(
     map_: Affine, pair: tuple[UnitOfMeasure, UnitOfMeasure], relative: tuple[bool, bool]
 ) -> Affine:
     """Return the map for what is converted. Raises ConfigError for a difference at one end alone."""
-    if not any(reading.offset for unit in pair for reading in unit.readings) or relative == _ABSOLUTE:
+    named = any(unit.difference for unit in pair)
+    if not (named or any(reading.offset for unit in pair for reading in unit.readings)):
         return map_
-    if relative == (True, True):
-        return Affine(map_.scale)
-    kinds = ["a difference" if each else "an absolute quantity" for each in relative]
-    raise ConfigError(
-        f"[{pair[0].name}] is {kinds[0]} and [{pair[1].name}] {kinds[1]} (FMI: relativeQuantity): the zero "
-        "of the one means nothing to the other"
-    )
+    first, second = (said or unit.difference for said, unit in zip(relative, pair, strict=True))
+    if first != second:
+        kinds = ["a difference" if each else "an absolute quantity" for each in (first, second)]
+        by = "" if named else " (FMI: relativeQuantity)"
+        raise DifferenceError(
+            f"[{pair[0].name}] is {kinds[0]} and [{pair[1].name}] {kinds[1]}{by}: the zero of the one means "
+            "nothing to the other"
+        )
+    return Affine(map_.scale) if first else map_
 
 
 def _checked(map_: Affine, source: UnitOfMeasure, target: UnitOfMeasure) -> Affine:

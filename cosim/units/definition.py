@@ -10,6 +10,7 @@ import dataclasses
 import functools
 import itertools
 import math
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 
@@ -21,6 +22,8 @@ from .symbols import Size, is_level, symbol
 _NONE: Exponents = (0,) * len(BASE_UNITS)
 _RAD = BASE_UNITS.index("rad")
 _A_MINUTE: Powers = (("min", Fraction(-1)),)
+_TEMPERATURE: Exponents = tuple(1 if base == "K" else 0 for base in BASE_UNITS)
+_DELTA = re.compile(r"(?:[Dd]elta[ _]?|Δ[ _]?)(.+)")
 _FITS = 1e-3  # relative: tools write a factor with as few as four digits
 
 
@@ -56,6 +59,8 @@ def by_text(text: str) -> UnitOfMeasure | None:
         name = name[1:-1].strip()
     if is_level(name) and len(name) <= LONGEST:
         return UnitOfMeasure(text, logarithmic=True)
+    if (warming := _difference(name)) is not None:
+        return UnitOfMeasure(text, warming[1], float(warming[0]), difference=True)
     found = {}
     for meaning in meanings(name) or (name,):
         for powers in parse(meaning):
@@ -63,6 +68,27 @@ def by_text(text: str) -> UnitOfMeasure | None:
                 found[dataclasses.replace(unit, cycles=False)] = unit
     readings = list(found.values())
     return dataclasses.replace(readings[0], also=tuple(readings[1:])) if readings else None
+
+
+def names_difference(text: str) -> bool:
+    """Return True for the text of a unit of differences of temperatures, as delta_degC."""
+    unit = by_text(text)
+    return unit is not None and unit.difference
+
+
+def _difference(name: str) -> Size | None:
+    """Return the size of the unit of differences that a name stands for, without an offset; None for another.
+
+    It is a unit of temperature behind `delta_`, as pint writes it, `delta ` or the letter: delta_degC, ΔK.
+    """
+    found = _DELTA.fullmatch(name) if len(name) <= LONGEST else None
+    if found is None:
+        return None
+    absolute = by_text(found[1])
+    for unit in absolute.readings if absolute else ():
+        if unit.exponents == _TEMPERATURE and not unit.difference:
+            return Fraction(unit.factor).limit_denominator(1_000_000), _TEMPERATURE, Fraction(0)
+    return None
 
 
 def as_named(unit: UnitOfMeasure) -> UnitOfMeasure:
@@ -79,7 +105,7 @@ def as_named(unit: UnitOfMeasure) -> UnitOfMeasure:
         return named
     for reading in named.readings:
         if unit.exponents == reading.exponents and _alike(unit.factor, reading.factor):
-            return dataclasses.replace(unit, cycles=reading.cycles)
+            return dataclasses.replace(unit, cycles=reading.cycles, difference=reading.difference)
         if unit.exponents == _without_angle(reading.exponents) != reading.exponents:
             in_cycles = reading.factor / (2.0 * math.pi) ** float((reading.exponents or _NONE)[_RAD])
             if _alike(unit.factor, reading.factor) or _alike(unit.factor, in_cycles):
@@ -157,7 +183,7 @@ def _sizes(name: str, strict: bool) -> tuple[Size, ...]:
         return tuple(
             (Fraction(u.factor), u.exponents, Fraction(u.offset)) for u in units if u.exponents is not None
         )
-    known = symbol(name) or _by_pint(name)
+    known = symbol(name) or _difference(name) or _by_pint(name)
     return () if known is None else (known,)
 
 

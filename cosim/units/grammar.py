@@ -27,6 +27,7 @@ _TOKEN = re.compile(r"\s*(?:(\*\*|[*./^()+-])|(\d+)|((?:[^\W\d_]|[%°])(?:[^\W\d
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
 _SAME = {"º": "°", "˚": "°", "\u2212": "-", "·": "*", "⋅": "*", "∙": "*", "\u00d7": "*"}  # minus, times
+_SAME |= {"\u2206": "Δ"}  # the sign of an increment
 _TWICE_ENCODED = re.compile("Â(?=[°²³·µ])")  # UTF-8 that was read as cp1252
 
 

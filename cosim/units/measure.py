@@ -26,6 +26,10 @@ class DifferentQuantityError(ConfigError):
     """Two units that measure different quantities."""
 
 
+class DifferenceError(ConfigError):
+    """Two units of which one is for differences, as a warming, and the other for absolute quantities."""
+
+
 class OpenUnitError(ConfigError):
     """Two units between which several conversions could be meant."""
 
@@ -67,7 +71,8 @@ class UnitOfMeasure:
     """A unit: `exponents` over BASE_UNITS (None: the name is declared, its definition is not).
 
     `cycles`: a frequency in cycles (Hz, 1/min), which a plain rate (1/s) may be too. `logarithmic`: a level
-    (dB), which no factor converts. `also` are the other readings of a text that has several.
+    (dB), which no factor converts. `difference`: it is for differences of temperatures (delta_degC). `also`
+    are the other readings of a text that has several.
     """
 
     name: str
@@ -76,6 +81,7 @@ class UnitOfMeasure:
     offset: float = 0.0
     cycles: bool = False
     logarithmic: bool = False
+    difference: bool = False
     also: tuple[UnitOfMeasure, ...] = ()
 
     @property

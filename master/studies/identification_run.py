@@ -118,8 +118,9 @@ class IdentificationRun:
         owner = self.output.partition(".")[0]
         known = next(u for u in self.simulation.plan.units if u.name == owner).interface.units_of_measure
         try:
-            kinds = (shown.difference, shown.difference)
-            return conversion(defined(shown.unit, known), defined(unit, known), kinds)
+            given = defined(shown.unit, known)
+            difference = shown.difference or given.difference
+            return conversion(given, defined(unit, known), (difference, difference))
         except ConfigError as error:
             raise ConfigError(f"{self.spec.output} in unit {unit}: {error}") from error
 

@@ -69,6 +69,9 @@ def test_the_unit_of_a_panel_is_that_of_its_lines() -> None:
     kelvin = ResultVariable("a.t", "K")
     assert panel_conversion(kelvin, "degC", "here")(273.15) == pytest.approx(0.0)
     assert panel_conversion(dataclasses.replace(kelvin, difference=True), "degC", "here").identity
+    assert panel_conversion(ResultVariable("a.t", "delta_degC"), "K", "here").identity
+    with pytest.raises(ConfigError, match=r"'a.t' \[K\] in \[delta_degC\]: .* means nothing to the other"):
+        panel_conversion(kelvin, "delta_degC", "here")
 
 
 @pytest.mark.parametrize("name", system_names())

@@ -231,6 +231,42 @@ def test_a_difference_stays_one_over_the_bus(tmp_path):
     assert absolute[1] == Affine(1.0, 273.15)
 
 
+@pytest.mark.parametrize(
+    ("source", "signal", "target"),
+    [
+        ("delta_degC", "degC", "K"),
+        ("delta_degC", "delta_degC", "degC"),
+        ("K", "delta_degC", "degC"),
+        ("degC", "delta_degC", "delta_K"),
+        ("degC", "K", "delta_K"),
+        ("delta_K", "degC", "degC"),
+    ],
+)
+def test_a_unit_of_differences_meets_no_absolute_one_over_the_bus(tmp_path, source, signal, target):
+    with pytest.raises(ConfigError, match=r"cannot feed .* the zero of the one means nothing to the other"):
+        over(tmp_path, signal, real("y", "output", unit=source), real("u", "input", unit=target))
+    by_name = {"units": {"Temp": signal}}
+    with pytest.raises(ConfigError, match=r"cannot feed .* the zero of the one means nothing to the other"):
+        over(tmp_path, "Temp", real("y", "output", unit=source), real("u", "input", unit=target), **by_name)
+    for plain in ("degC", "delta_degC"):  # a signal is what its sender is
+        to_bus, from_bus, _ = over(
+            tmp_path, plain, real("y", "output", unit="delta_K"), real("u", "input", unit="delta_degF")
+        )
+        assert (to_bus, from_bus) == (Affine(), Affine(1.8))
+
+
+def test_a_unit_of_differences_meets_no_absolute_one_directly():
+    for units in (("delta_degC", "K"), ("degC", "delta_degC")):
+        ends = [
+            real(*end, unit=unit) for end, unit in zip((("y", "output"), ("u", "input")), units, strict=True)
+        ]
+        with pytest.raises(ConfigError, match=r"a.y \[.*\] cannot feed b.u .* means nothing to the other"):
+            plan_of(
+                [MockUnit(n, [v]) for n, v in zip("ab", ends, strict=True)],
+                {"connect": [{"from": "a.y", "to": ["b.u"]}]},
+            )
+
+
 def test_an_unknown_unit_between_bare_numbers_is_a_warning(tmp_path):
     to_bus, to_receiver, warnings = over(
         tmp_path, "raw", real("y", "output", unit="1"), real("u", "input", unit="1")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.units.measure import Affine
 from support.car import plan
+from support.mocks import MockUnit, plan_of, real
 
 
 @pytest.mark.parametrize(
@@ -113,3 +115,20 @@ def test_a_column_that_says_another_unit_than_its_input_is_a_warning(tmp_path, c
     entry = {"to": "ecu.speed", "csv": str(tmp_path / "v.csv")} | ({"unit": unit} if unit else {})
     warnings = " ".join(plan([], {"stimulus": [entry]}).warnings)
     assert (f"column '{column}': its values are taken in [km/h], the unit of ecu.speed" in warnings) == said
+
+
+@pytest.mark.parametrize(("own", "given"), [("degC", "delta_degC"), ("K", "delta_K"), ("delta_degC", "degC")])
+def test_a_stimulus_in_a_unit_of_differences_drives_no_absolute_input(tmp_path, own, given):
+    unit = MockUnit("a", [real("t", "input", unit=own)])
+    (tmp_path / "t.csv").write_text(f"time,t [{given}]\n0,1\n1,2\n")
+    for value in ({"constant": 5.0}, {"csv": str(tmp_path / "t.csv")}, {"table": [[0.0, 5.0]]}):
+        with pytest.raises(ConfigError, match=r"stimulus 1.unit: .* cannot feed a.t .* means nothing to the"):
+            plan_of([unit], {}, {"stimulus": [{"to": "a.t", "unit": given} | value]})
+    made = plan_of([unit], {}, {"stimulus": [{"to": "a.t", "csv": str(tmp_path / "t.csv")}]})
+    assert f"its values are taken in [{own}], the unit of a.t; [{given}] is a" in made.warnings[0]
+    if given.startswith("delta"):
+        warming = MockUnit("a", [real("t", "input", unit="K", difference=True)])
+        (drive,) = plan_of(
+            [warming], {}, {"stimulus": [{"to": "a.t", "unit": given, "constant": 5.0}]}
+        ).drives
+        assert drive.map == Affine()

@@ -293,6 +293,20 @@ def test_a_difference_of_temperatures_has_no_zero_to_convert() -> None:
     assert metric(warming, signal="cell.warming", **above).value == pytest.approx(5.0, abs=1.0)
 
 
+def test_a_unit_of_differences_gives_no_absolute_temperature() -> None:
+    t = np.linspace(0.0, 10.0, 11)
+    warming = Results(t, t[:, None], (ResultVariable("cell.warming", "delta_degC"),))
+    absolute = Results(t, t[:, None], (ResultVariable("cell.warming", "degC"),))
+    for unit in ("K", "degC", "delta_K"):
+        assert metric(warming, signal="cell.warming", unit=unit).value == 10.0
+        above = {"reduce": "time_above", "threshold": 5.5, "threshold_unit": unit, "unit": "s"}
+        assert metric(warming, signal="cell.warming", **above).value == pytest.approx(4.5, abs=1.0)
+    assert metric(warming, signal="cell.warming", unit="K.s", reduce="integral").value == 50.0
+    assert metric(absolute, signal="cell.warming", unit="delta_K", reduce="range").value == 10.0
+    with pytest.raises(ConfigError, match=r"\[degC\] is an absolute quantity and \[delta_K\] a difference"):
+        metric(absolute, signal="cell.warming", unit="delta_K")
+
+
 def test_a_level_has_no_integral() -> None:
     t = np.linspace(0.0, 10.0, 11)
     noise = Results(t, t[:, None], (ResultVariable("motor.noise", "dB"),))

@@ -12,7 +12,13 @@ from hypothesis import strategies as st
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units.conversion import between, conversion
 from evcosim.cosim.units.definition import defined
-from evcosim.cosim.units.measure import Affine, OpenUnitError, UnitOfMeasure
+from evcosim.cosim.units.measure import (
+    Affine,
+    DifferenceError,
+    OpenUnitError,
+    UnitOfMeasure,
+    UnknownUnitError,
+)
 from evcosim.cosim.units.spellings import EXACT, WORDS
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
@@ -56,6 +62,9 @@ PLAIN = [
     "K",
     "degC",
     "degF",
+    "delta_K",
+    "delta_degC",
+    "delta_degF",
     "N.m",
     "J",
     "Wh",
@@ -220,6 +229,28 @@ def test_an_offset_is_for_absolute_quantities(source, target):
             conversion(source, target, relative)
     assert conversion(KELVIN, KELVIN, (True, False)).identity  # no zero is in question
     assert conversion(MS, KMH, (True, False)) == Affine(3.6)
+
+
+@pytest.mark.parametrize(
+    "warming", ["delta_degC", "\u0394\u00b0C", "\u2206K", "delta_K", "delta degF", "Delta_C"]
+)
+@pytest.mark.parametrize("absolute", ["K", "degC", "degF", "C", "mK", "Celsius"])
+def test_a_unit_of_differences_is_for_no_absolute_temperature(warming, absolute):
+    for a, b in ((warming, absolute), (absolute, warming)):
+        with pytest.raises(DifferenceError, match=r"the zero of the one means nothing to the other"):
+            between(a, b)
+    ends = defined(warming), defined(absolute)
+    assert not conversion(*ends, (False, True)).offset  # what FMI calls relative is a difference too
+    assert conversion(*reversed(ends), (True, False))(0.0) == 0.0
+    assert between(warming, "delta_K").scale == pytest.approx(5 / 9 if "F" in warming else 1.0)
+
+
+def test_a_unit_of_differences_in_a_product_is_a_factor():
+    assert between("delta_degC/min", "K/s") == Affine(pytest.approx(1 / 60))
+    assert between("W/delta_degF", "W/K").scale == pytest.approx(1.8)
+    for text in ("delta_V", "deltaT", "delta_", "delta_delta_degC"):
+        with pytest.raises(UnknownUnitError):
+            defined(text)
 
 
 def test_two_definitions_of_one_name():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.units.definition import by_text, contradiction, defined
+from evcosim.cosim.units.definition import by_text, contradiction, defined, names_difference
 from evcosim.cosim.units.measure import UnitOfMeasure, UnknownUnitError
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
@@ -111,6 +111,12 @@ def test_a_definition_with_the_angle_stays():
     assert defined("1/min", {"1/min": own}) == dataclasses.replace(own, cycles=True)
     radians = UnitOfMeasure("1/s", TURNING)
     assert defined("1/s", {"1/s": radians}) is radians
+
+
+def test_an_own_definition_of_a_difference_is_one():
+    kelvin = by_text("K").exponents
+    assert defined("delta_degC", {"delta_degC": UnitOfMeasure("delta_degC", kelvin)}).difference
+    assert names_difference("\u0394K") and not names_difference("K") and not names_difference("?")
 
 
 def test_an_empty_definition_is_none():
