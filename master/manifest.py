@@ -131,14 +131,18 @@ def _scaled(system: System) -> list[dict[str, Any]]:
 
 def saturations(engine: Engine) -> dict[str, dict[str, float]]:
     """Return `count` and `first_time` [s] of each bus signal that was saturated, by bus.message.signal."""
-    found = {}
+    found: dict[str, dict[str, float]] = {}
     for sender in engine.senders:
         for signal, saturation in sender.channel.saturations.items():
-            if saturation.count:
-                found[f"{sender.plan.bus}.{sender.plan.message.name}.{signal}"] = {
-                    "count": saturation.count,
-                    "first_time": engine.time_at(saturation.first_step),
-                }
+            if not saturation.count:
+                continue
+            name = f"{sender.plan.bus}.{sender.plan.message.name}.{signal}"
+            first = engine.time_at(saturation.first_step)
+            page = found.get(name, {"count": 0, "first_time": first})  # of several, which hold it too
+            found[name] = {
+                "count": page["count"] + saturation.count,
+                "first_time": min(page["first_time"], first),
+            }
     return found
 
 

@@ -65,6 +65,10 @@ class BusSettings(BaseModel):
     cycle_time: float | None = Field(default=None, gt=0.0, le=SLOWEST)
     """Cycle time in s of all messages for which neither the database nor `messages` has one."""
 
+    fd: bool | None = None
+    """Send all messages as CAN FD frames (true) or as classic ones (false); without it those are CAN FD that
+    the database marks or that have more than 8 bytes. A parameter group of J1939 never is."""
+
     messages: dict[str, MessageSettings] = {}
     """Settings of single messages by name: a table `[buses.NAME.messages.NAME]` for each."""
 

@@ -200,8 +200,6 @@ def _message_problem(message: Message) -> str:
     """Return the rule that the message breaks, with the values; "" for none. So do the next two."""
     if message.problem:
         return message.problem
-    if message.multiplexed:
-        return "the message is multiplexed; a connection needs one whose frames all hold the same signals"
     if message.length > _FRAME:
         return f"the message has {message.length} bytes, and a frame holds {_FRAME} at most"
     if message.j1939 and message.length > 8:

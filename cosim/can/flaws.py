@@ -141,20 +141,20 @@ def _overlapping(signals: Mapping[str, Signal]) -> Iterator[tuple[str, str]]:
 
 def together(signals: Mapping[str, Signal], one: str, other: str) -> bool:
     """Return True where some frame holds both signals: no multiplexer of both selects one or the other."""
-    conditions = dict(_conditions(signals, one))
+    of_one = dict(conditions(signals, one))
     return all(
-        multiplexer not in conditions or _meet(conditions[multiplexer], ranges)
-        for multiplexer, ranges in _conditions(signals, other)
+        multiplexer not in of_one or _meet(of_one[multiplexer], ranges)
+        for multiplexer, ranges in conditions(signals, other)
     )
 
 
 Ranges = tuple[tuple[int, int], ...]
 
 
-def _conditions(signals: Mapping[str, Signal], name: str) -> Iterator[tuple[str, Ranges]]:
+def conditions(signals: Mapping[str, Signal], name: str) -> Iterator[tuple[str, Ranges]]:
     """Yield the multiplexers on the way to a signal with the raw values that select it."""
     signal = signals[name]
-    while signal.multiplexer:
+    while signal.multiplexer in signals:
         yield signal.multiplexer, signal.multiplexer_ranges
         signal = signals[signal.multiplexer]
 

@@ -22,3 +22,6 @@ class MessageSettings(BaseModel):
 
     start_delay: float | None = Field(default=None, ge=0.0, le=SLOWEST)
     """Time of the first transmission after the start in s; without it that of the database, else 0."""
+
+    fd: bool | None = None
+    """Send it as a CAN FD frame (true) or as a classic one (false); without it as the bus' `fd` says."""

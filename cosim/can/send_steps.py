@@ -2,26 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 from ..clock import nearest_step, point, steps_to
 from ..errors import ConfigError
-from .bus_settings import BusSettings
 from .database import Message, prefix
-
-
-def with_times(message: Message, settings: BusSettings) -> Message:
-    """Return the message with the cycle time and the start delay that its bus' settings give it.
-
-    Its own entry in `messages` counts before the database, and that before the bus' `cycle_time`.
-    """
-    own = settings.of_message(message.name)
-    given = (own.cycle_time, message.cycle_time, settings.cycle_time)
-    return dataclasses.replace(
-        message,
-        cycle_time=next((cycle for cycle in given if cycle is not None), None),
-        start_delay=message.start_delay if own.start_delay is None else own.start_delay,
-    )
 
 
 def send_steps(message: Message, step_size: float, place: str = "", bus: str = "NAME") -> tuple[int, int]:

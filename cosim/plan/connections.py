@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
+from ..can.pages import pages
 from ..can.resolution import with_resolution
-from ..can.send_steps import send_steps, with_times
+from ..can.send_steps import send_steps
 from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
@@ -18,7 +20,7 @@ from ..system.values import as_double, of_type
 from ..texts import Texts
 from ..units.definition import names_difference
 from ..units.measure import Affine
-from .buses import open_buses
+from .buses import check_one_sender, foreign_senders, open_buses
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
@@ -110,7 +112,8 @@ def connect(
         _connect(work, connection)
     order = list(interfaces)
     for (bus, message), routes in work.signal_routes.items():
-        work.network.messages.append(_message(work, bus, message, routes, clock.step, algorithm, order))
+        work.network.messages += _message(work, bus, message, routes, clock.step, algorithm, order)
+    work.network.warnings += foreign_senders(work.network.messages, system, work.databases)
     return work.network
 
 
@@ -233,6 +236,8 @@ def _over_bus(
     senders = work.senders.setdefault(key, {})
     if signal.name in senders:
         raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
+    for other, sender in senders.items():
+        check_one_sender(work.system, message, (source[0], sender.split(".")[0]), (signal.name, other), place)
     senders[signal.name] = connection.source
     to_bus, to_receivers = _bus_maps(work, connection, source, sinks, signal, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
@@ -284,7 +289,7 @@ def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signa
     bus, message_name, signal_name = via.split(".")
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
-    message = work.databases[bus].require(message_name, place)
+    message = as_sent(work.databases[bus].require(message_name, place), work.system.file.buses[bus])
     signal = message.require(signal_name, place)
     if signal.note:
         work.network.warnings.append(f"{message.file}: line {signal.line}: {via}: {signal.note}")
@@ -299,18 +304,15 @@ def _message(
     step_size: float,
     algorithm: Algorithm,
     order: list[str],
-) -> MessagePlan:
-    """Return the plan of one message. Raises ConfigError when its times are no multiples of the step.
+) -> Iterator[MessagePlan]:
+    """Yield the plan of each page of a message. Raises ConfigError when its times do not fit the step.
 
     Under `gauss_seidel` it is sent after the last of its senders, by `order`, with a sampled output.
     """
     settings = work.system.file.buses[bus]
-    message = with_times(work.databases[bus].require(name), settings)
+    message = as_sent(work.databases[bus].require(name), settings)
     every, first = send_steps(message, step_size, str(work.system.path), bus)
     delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
-    arrivals: list[tuple[int, int]] = []
-    if delay:
-        routes = [_staged(work.slots, route, arrivals) for route in routes]
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -320,25 +322,28 @@ def _message(
             if work.interfaces[unit].variables[variable].sampled
         ]
         after = max(sampled, default=None)
-    return MessagePlan(
-        bus=bus,
-        message=dataclasses.replace(
-            message, signals=_fit(message) | {route.signal.name: route.signal for route in routes}
-        ),
-        settings=settings,
-        routes=tuple(routes),
-        senders=dict(senders),
-        every=every * settings.cycle,
-        first=first,
-        after=after,
-        delay=delay,
-        arrivals=tuple(arrivals),
-    )
-
-
-def _fit(message: Message) -> dict[str, Signal]:
-    """Return the signals that frames can hold: the bits of the others stay 0."""
-    return {name: signal for name, signal in message.signals.items() if not signal.problem}
+    turns = pages(message, [route.signal.name for route in routes], str(work.system.path))
+    for i, page in enumerate(turns):
+        arrivals: list[tuple[int, int]] = []
+        of_page = [route for route in routes if route.signal.name in page.signals]
+        if delay:
+            of_page = [_staged(work.slots, route, arrivals) for route in of_page]
+        sent = page.of(message)
+        yield MessagePlan(
+            bus=bus,
+            message=dataclasses.replace(
+                sent, signals=sent.signals | {route.signal.name: route.signal for route in of_page}
+            ),
+            settings=settings,
+            routes=tuple(of_page),
+            senders={route.signal.name: senders[route.signal.name] for route in of_page},
+            every=every * settings.cycle * len(turns),
+            first=first + i * every * settings.cycle,
+            after=after,
+            delay=delay,
+            arrivals=tuple(arrivals),
+            page=page.selected,
+        )
 
 
 def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,9 @@ class MessagePlan:
     With a `delay` of d > 0 steps the routes end in slots of their own, and what a transmission writes there
     reaches the mailboxes d steps later, at the same place in the step: `arrivals` are the pairs (slot,
     mailbox). A message with a `framing` is sent as the bytes of a frame: its routes end in the mailboxes.
+
+    A multiplexed message has a plan for each page that is sent; `page` are the raw values of its
+    multiplexers by name.
     """
 
     bus: str
@@ -83,6 +87,7 @@ class MessagePlan:
     delay: int = 0
     arrivals: tuple[tuple[int, int], ...] = ()
     framing: Framing | None = None
+    page: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -61,7 +61,7 @@ def after_stop(
             for place, (begin, _) in _stimuli(scenario, drives)
             if begin >= clock.stop
         ),
-        *(said for each in messages if (said := _message(each, inputs, clock, stop))),
+        *(said for each in messages if (said := _message(each, messages, inputs, clock, stop))),
     ]
 
 
@@ -70,11 +70,20 @@ def _turn(step: int, every: int) -> int:
     return -(-max(step, 0) // every) * every
 
 
-def _message(message: MessagePlan, inputs: Mapping[str, InputPlan], clock: Clock, stop: str) -> str:
+def _message(
+    message: MessagePlan,
+    messages: Sequence[MessagePlan],
+    inputs: Mapping[str, InputPlan],
+    clock: Clock,
+    stop: str,
+) -> str:
     """Return the sentence on a message that never arrives; "" for one that does, or that nobody receives."""
-    ends = {mailbox for _, mailbox in message.arrivals} or {m for r in message.routes for m, _ in r.sinks}
+    if message.first + message.delay < clock.steps:
+        return ""
+    reached = {m for each in messages if each.first + each.delay < clock.steps for m in _mailboxes(each)}
+    ends = _mailboxes(message) - reached  # in another page of the message
     receivers = [name for name, plan in inputs.items() if plan.mailbox in ends]
-    if not receivers or message.first + message.delay < clock.steps:
+    if not receivers:
         return ""
     at = _seconds(point(message.first + message.delay, clock.start, clock.step))
     keep = "keeps its first value" if len(receivers) == 1 else "keep their first values"
@@ -82,6 +91,10 @@ def _message(message: MessagePlan, inputs: Mapping[str, InputPlan], clock: Clock
         f"{message.bus}.{message.message.name} first arrives at {at}, not before {stop}: "
         f"{', '.join(receivers)} {keep}"
     )
+
+
+def _mailboxes(message: MessagePlan) -> set[int]:
+    return {mailbox for _, mailbox in message.arrivals} or {m for r in message.routes for m, _ in r.sinks}
 
 
 def _events(scenario: Scenario) -> list[tuple[str, Event]]:

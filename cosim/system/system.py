@@ -164,6 +164,10 @@ class UnitEntry(FileModel):
     a sampled controller do; true: all that the FMU declares discrete. Without it as the FMU tells (those that
     evcosim built do), or as in the unit whose place it takes."""
 
+    nodes: list[str] = Field(default=[], examples=[["CAM", "IMU"]])
+    """The nodes of the CAN databases whose messages it sends, where it stands for several or their names are
+    others; a message of another node is a warning."""
+
     isolation: Isolation | None = None
     """Run it in a process of its own (process) or in the master's (none); without it FMUs that evcosim did
     not build have a process of their own, and "none" for one of them needs --trust."""

@@ -100,6 +100,7 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
         "id": message.frame_id,
         "cycle_time": whole.clock.length(plan.every),
         "delay": whole.clock.length(plan.delay),
+        "page": dict(plan.page),
         "signals": [
             {"name": route.signal.name, "bits": route.signal.length, "scale": route.signal.scale,
              "offset": route.signal.offset, "minimum": route.signal.minimum,
@@ -164,7 +165,8 @@ def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for i, signal in enumerate(message["signals"]):
         delay = f"{message['delay']:g}" if message["delay"] else ""
-        name = f"{message['bus']}.{message['name']}"
+        page = ", ".join(f"{name} {raw}" for name, raw in message["page"].items())
+        name = f"{message['bus']}.{message['name']}{f' ({page})' if page else ''}"
         head = (name, f"0x{message['id']:X}", f"{message['cycle_time']:g}", delay)
         unit = f" {signal['unit']}" if signal["unit"] else ""
         ends = [

@@ -76,6 +76,10 @@ INFO_SYSTEM = record(
                     "id": whole("Its identifier."),
                     "cycle_time": number("Time from one to the next [s]."),
                     "delay": number("Time from sending to receiving [s]."),
+                    "page": by_name(
+                        "The multiplexers' values; a multiplexed message has an entry for each page.",
+                        whole("Its raw value."),
+                    ),
                     "signals": listed(
                         "Its signals that are connected.",
                         record(

@@ -240,13 +240,6 @@ def test_routes_must_be_of_the_message() -> None:
         MessageChannel(message(SPEED), routes * 2)
 
 
-def test_a_multiplexed_message_is_refused() -> None:
-    page = Signal("Page", 0, 4, is_multiplexer=True)
-    value = Signal("Value", 8, 8, multiplexer="Page", multiplexer_ranges=((1, 1),))
-    with pytest.raises(ConfigError, match="multiplexed"):
-        MessageChannel(message(page, value), [SignalRoute(value, 0, Affine(), ())])
-
-
 # ---- the generated code against the definition
 
 

@@ -25,14 +25,12 @@ class TestEv:
         assert all(message.comment for message in database.messages)
         assert {message.name for message in database.messages} == set(load_dbc(EV).messages)
 
-    def test_every_signal_can_carry_a_connection_except_the_multiplexed(self) -> None:
-        for message in load_dbc(EV).messages.values():
+    def test_every_signal_can_carry_a_connection(self) -> None:
+        database = load_dbc(EV)
+        assert database.warnings == ()
+        for message in database.messages.values():
             for name in message.signals:
-                if message.multiplexed:
-                    with pytest.raises(ConfigError, match="multiplexed"):
-                        message.require(name)
-                else:
-                    message.require(name)
+                message.require(name)
 
     def test_no_signal_can_be_sent_as_its_not_available_code(self) -> None:
         coded = [

@@ -8,10 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.database import Message
-from evcosim.cosim.can.message_settings import MessageSettings
-from evcosim.cosim.can.send_steps import send_steps, with_times
+from evcosim.cosim.can.send_steps import send_steps
 from evcosim.cosim.errors import ConfigError
 
 
@@ -49,29 +47,6 @@ def test_no_multiple() -> None:
         send_steps(message(10), 0.02)
     with pytest.raises(ConfigError, match=r"the nearest are 0\.01 s and 0\.02 s"):
         send_steps(message(17), 0.01)
-
-
-@pytest.mark.parametrize(
-    ("given_ms", "bus", "own", "seconds"),
-    [
-        (20, None, None, 0.02),
-        (20, 0.05, None, 0.02),
-        (None, 0.05, None, 0.05),
-        (20, 0.05, 0.1, 0.1),
-        (None, None, 0.1, 0.1),
-        (None, None, None, None),
-    ],
-)
-def test_the_settings_give_what_the_database_has_not(given_ms, bus, own, seconds) -> None:
-    messages = {"M": MessageSettings(cycle_time=own), "Other": MessageSettings(cycle_time=9.0)}
-    timed = with_times(message(given_ms, 30), BusSettings(cycle_time=bus, messages=messages))
-    assert (timed.cycle_time, timed.start_delay) == (seconds, 0.03)
-
-
-@pytest.mark.parametrize("delay", [0.0, 0.07])
-def test_a_start_delay_of_the_settings_counts(delay: float) -> None:
-    settings = BusSettings(messages={"M": MessageSettings(start_delay=delay)})
-    assert with_times(message(20, 30), settings).start_delay == delay
 
 
 def test_no_cycle_time() -> None:

@@ -9,7 +9,7 @@ from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.system import BusEntry
 from evcosim.cosim.units.measure import Affine
 from support.car import BUS, SENT, car, ecu, plan, unit
-from support.mocks import MockUnit, plan_of, real
+from support.mocks import MockUnit, column, plan_of, real, started
 
 
 def test_a_direct_connection_converts_units():
@@ -63,12 +63,16 @@ def test_ideal_leaves_the_bus_out():
         ([SENT | {"via": "can0.EMD_Status.EMD_Speed"}], "no signal 'EMD_Speed'"),
         ([SENT | {"from": "car.force"}], r"car.force \[N\] cannot feed .* \[km/h\]"),
         ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed"),
+        (
+            [SENT, {"from": "ecu.throttle", "via": "can0.EMD_Status.EMD_Power", "factor": 1.0}],
+            r"EMD_Status.EMD_Power is sent by unit 'ecu', and EMD_Status.EMD_VehicleSpeed by 'car': one node",
+        ),
     ],
 )
 def test_a_wrong_connection_is_named(connect, said):
     for ideal in (False, True):
-        if ideal and "sent already" in said:
-            continue  # without the bus there is no signal to send twice
+        if ideal and ("sent already" in said or "one node" in said):
+            continue  # without the bus there is no message that two send
         with pytest.raises(ConfigError, match=said) as caught:
             plan(connect, **BUS, options={"ideal": ideal})
         assert "mocks.toml: connect" in str(caught.value)
@@ -141,6 +145,78 @@ def test_a_cycle_time_that_does_not_fit_is_named_with_the_key_that_changes_it():
     said = r"the nearest are 0.01 s and 0.02 s \(`cycle_time` in \[buses.can0.messages.EMD_Status\]\)"
     with pytest.raises(ConfigError, match=said):
         plan([SENT], buses={"can0": bus})
+
+
+PAGES = """VERSION ""
+BS_:
+BU_: ECU
+BO_ 256 M: 9 ECU
+ SG_ Page M : 0|4@1+ (1,0) [0|15] "" ECU
+ SG_ All : 8|16@1+ (1,0) [0|0] "" ECU
+ SG_ P1 m1 : 32|16@1+ (1,0) [0|0] "" ECU
+ SG_ P2 m2 : 32|16@1+ (1,0) [0|0] "" ECU
+ SG_ P4 m4 : 32|16@1+ (1,0) [0|0] "" ECU
+"""
+
+
+def paged(folder, *signals, **bus):
+    """The plan and the units of a system in which `a` counts, and sends that in these signals to `b`."""
+    (folder / "p.dbc").write_text(PAGES)
+
+    def count(values, time, step_size):
+        values["y"] += 1.0
+
+    a = MockUnit("a", [real("y", "output")], count)
+    b = MockUnit("b", [real(name, "input", start=-1.0) for name in signals])
+    connect = [{"from": "a.y", "to": [f"b.{name}"], "via": f"can0.M.{name}"} for name in signals]
+    buses = {"can0": {"dbc": str(folder / "p.dbc"), "cycle_time": 0.02, **bus}}
+    return [a, b], plan_of([a, b], {"connect": connect, "buses": buses, "experiment": {"stop_time": 0.2}})
+
+
+def test_every_page_of_a_message_has_its_turn(tmp_path):
+    _, made = paged(tmp_path, "All", "P4", "P1", cycle=2)
+    assert [(m.every, m.first, dict(m.page)) for m in made.messages] == [
+        (8, 0, {"Page": 1}),
+        (8, 4, {"Page": 4}),
+    ]
+    assert [list(m.senders) for m in made.messages] == [["All", "P1"], ["All", "P4"]]
+    assert [list(m.message.signals) for m in made.messages] == [["Page", "All", "P1"], ["Page", "All", "P4"]]
+    assert [m.message.signals["Page"].start_raw for m in made.messages] == [1, 4]
+    assert {(m.message.length, m.message.fd) for m in made.messages} == {(12, True)}
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.03])
+def test_a_receiver_holds_what_the_last_frame_with_its_signal_said(tmp_path, delay):
+    units, made = paged(tmp_path, "All", "P4", "P1", delay=delay)
+    engine = started(units, made)
+    engine.advance(made.steps)
+    late = round(delay / 0.01)
+    y = column(engine, "a.y")
+
+    def held(every, first):
+        return [-1.0] * late + [
+            y[k - (k - first) % every] if k >= first else -1.0 for k in range(len(y) - late)
+        ]
+
+    # nothing is sent at the stop time
+    assert column(engine, "b.All")[:-1].tolist() == held(2, 0)[:-1]
+    assert column(engine, "b.P1")[:-1].tolist() == held(4, 0)[:-1]
+    assert column(engine, "b.P4")[:-1].tolist() == held(4, 2)[:-1]
+
+
+def test_a_page_that_the_run_does_not_reach_is_told_without_what_others_bring(tmp_path):
+    _, made = paged(tmp_path, "All", "P4", "P1", cycle=10)
+    assert made.unreached == (
+        "can0.M first arrives at 0.2 s, not before the stop time 0.2 s: b.P4 keeps its first value",
+    )
+
+
+def test_a_message_that_a_classic_bus_cannot_send_is_named(tmp_path):
+    with pytest.raises(
+        ConfigError,
+        match=r"connect a.y -> b.All: .*p.dbc: line 6: M.All: the message has 9 bytes, and `fd = false`",
+    ):
+        paged(tmp_path, "All", fd=False)
 
 
 def test_a_coarser_signal_is_in_the_message_and_in_the_route():
