@@ -41,15 +41,6 @@ FRICTION = {
 }
 
 
-def road_named(name: str) -> Road:
-    """Return the road of a name: dry, wet, cobble or snow. Raises ValueError for any other."""
-    try:
-        return Road[name.upper()]
-    except KeyError:
-        known = ", ".join(road.name.lower() for road in Road)
-        raise ValueError(f"road = {name!r} is none of {known}") from None
-
-
 def friction_coefficient(road: Road, slip: float) -> float:
     """Return mu [1] at a slip in [-1, 1]."""
     th_1, th_2, th_3 = FRICTION[road]

@@ -10,7 +10,7 @@ import functools
 import math
 from fractions import Fraction
 
-from .measure import BASE_UNITS, Exponents, UnitOfMeasure
+from .measure import BASE_UNITS, Exponents
 
 _PI = Fraction(math.pi)
 _GRAVITY = Fraction("9.80665")  # standard gravity (3rd CGPM, 1901) [m/s2]
@@ -112,9 +112,3 @@ def _written_out(name: str) -> _Size | None:
     if base is None:
         return None
     return _prefixed(_LONG_PREFIXES[prefix] + base, _PREFIXED) if prefix else _PREFIXED[base]
-
-
-def unit(name: str, size: Size) -> UnitOfMeasure:
-    """Return the unit of measure of one symbol."""
-    factor, exponents, offset = size
-    return UnitOfMeasure(name, exponents, float(factor), float(offset))

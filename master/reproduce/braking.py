@@ -9,12 +9,14 @@ import numpy as np
 
 from ...cosim.results.results import Results
 from ...models import braking_analysis as analysis
+from ...models.constants import KMH
 from ...models.road_friction import Road
 from ..simulation import simulate
 from ..studies.parallel import Task
 from . import braking_detailed as detailed
 from . import braking_set_points as set_points
 from . import printed
+from .braking_maneuvers import CAPTIONS
 from .braking_pictures import pictures
 from .braking_runs import (
     CONTROLLED,
@@ -41,12 +43,6 @@ from .braking_runs import (
 )
 from .page import Findings, Found, Page, Paper, at_most, holds, near, page
 
-_NAMES = {
-    "known_speed": "(a) full slip control, speed known",
-    "estimated_speed": "(b) full slip control, speed estimated",
-    "front_only": "(c) front brake only",
-    "front_compensated": "(d) front brake, rear wheel compensated",
-}
 _END = (
     "ideal signals; below 2 m/s torques are frozen and half a newton meter decides whether a wheel locks: "
     "over the bus (c) locks there without the delay too"
@@ -59,8 +55,8 @@ _INERTIAS = (0.5, 0.75, 1.0, 1.5)  # share of J
 
 def _runs() -> tuple[Task[Any], ...]:
     return (
-        *(Task(name, simulate, ("braking", name)) for name in _NAMES),
-        *(Task(f"{name}, ideal", simulate, ("braking", name), {"ideal": True}) for name in _NAMES),
+        *(Task(name, simulate, ("braking", name)) for name in CAPTIONS),
+        *(Task(f"{name}, ideal", simulate, ("braking", name), {"ideal": True}) for name in CAPTIONS),
         *(Task(f"{steps} late", simulate, ("braking",), _late(steps)) for steps in (1, 2)),
         *(Task(f"height {name}", stops, (name, [high(x) for x in _HEIGHTS])) for name in CONTROLLED),
         *(Task(f"inertia {name}", stops, (name, [heavy(x) for x in _INERTIAS])) for name in CONTROLLED),
@@ -128,7 +124,7 @@ def _table(found: dict[str, Any]) -> Findings:
     for by, row in detailed.table(found, {by: _printed(by) for by in rows if by != "(b)"}).items():
         rows[by].append(row)
     at_rest = [float(found[name]["vehicle.speed"][-1]) for name in (*CONTROLLED, "estimated_speed")]
-    return rows | {"end speed": holds(f"{3.6 * max(at_rest):g} km/h", max(at_rest) == 0.0)}
+    return rows | {"end speed": holds(f"{KMH * max(at_rest):g} km/h", max(at_rest) == 0.0)}
 
 
 def _printed(by: str) -> float:
@@ -247,7 +243,7 @@ def _delay(found: dict[str, Any]) -> Findings:
         "(a), brakes one step of 10 ms later: stopping distance": near(one, 33.85, 0.1, "m"),
         "(a), brakes two steps later: stopping distance": near(two, 36.3, 0.15, "m"),
         **{
-            f"{_NAMES[name]}, brakes two steps later: front wheel": _late_lock(name, found)
+            f"{CAPTIONS[name]}, brakes two steps later: front wheel": _late_lock(name, found)
             for name in CONTROLLED[1:]
         },
     }

@@ -13,7 +13,7 @@ from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import EndSpec, FigureSpec, PanelSpec, SignalSpec
 from .page import Picture
 
-_CAPTIONS = {
+CAPTIONS = {
     "known_speed": "(a) full slip control, speed measured",
     "estimated_speed": "(b) full slip control, speed estimated",
     "front_only": "(c) front brake only",
@@ -34,7 +34,7 @@ def pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
                 f"Fig. {number}: {text}; slips of the wheels, true and by (16), down to 2 m/s",
                 _slips(number, text, {label: found[name + plant] for plant, label in _PLANTS.items()}),
             )
-            for number, (name, text) in enumerate(_CAPTIONS.items(), 4)
+            for number, (name, text) in enumerate(CAPTIONS.items(), 4)
         ),
         Picture.over_time(
             "ride",

@@ -7,6 +7,7 @@ from typing import Any
 from ...cosim.interface import Value
 from ...cosim.results.results import Results
 from ...models import multi_drive_analysis as analysis
+from ...models.constants import KMH
 from ...models.wheel_speed_controller import WheelSpeedController
 from ..simulation import simulate
 from ..studies.parallel import Task
@@ -199,7 +200,7 @@ def _machine(machine: Results, ideal: dict[int, Results]) -> dict[str, list[Foun
 
     faster, slower = apart(ideal[1], ideal[3]), apart(ideal[6], ideal[3])
     reason = f"15 % of what a lag of 1 ms in place of 3 makes, {faster:.0f} N·m; 6 ms make {slower:.0f} N·m"
-    speed = 3.6 * largest(machine["vehicle.speed"], ideal[3]["vehicle.speed"])
+    speed = KMH * largest(machine["vehicle.speed"], ideal[3]["vehicle.speed"])
     return {
         "dq machine and ideal drive, without the bus, differ by": [
             at_most(apart(machine, ideal[3]), 0.15 * faster, "N·m", digits=2, of="torque", reason=reason),

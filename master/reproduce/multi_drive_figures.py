@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -33,7 +33,12 @@ _QUANTITIES: tuple[tuple[int, str, str, tuple[tuple[str, str], ...]], ...] = (
 
 def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
     """Return the pictures of the runs "pid" and "mimo", each of two figures of the paper."""
-    both = _joined(found["pid"].time, {name: _columns(found[name]) for name in ("pid", "mimo")})
+    columns = [
+        (ResultVariable(f"{run}/{name}", unit), values)
+        for run in ("pid", "mimo")
+        for name, (values, unit) in _columns(found[run]).items()
+    ]
+    both = joined(found["pid"].time, columns)
     return tuple(
         Picture.over_time(
             f"fig{i}-{i + 1}", f"Figs. {i} and {i + 1}: {text}", both, _spec(both, i, text, unit, signals)
@@ -84,8 +89,7 @@ def _columns(results: Results) -> dict[str, tuple[Array, str]]:
     return columns
 
 
-def _joined(time: Array, runs: Mapping[str, Mapping[str, tuple[Array, str]]]) -> Results:
-    """Return the columns of runs of one time as results, with names "run/column"."""
-    named = [(f"{run}/{name}", *column) for run, columns in runs.items() for name, column in columns.items()]
-    variables = [ResultVariable(name, unit) for name, _, unit in named]
-    return Results(time, np.column_stack([values for _, values, _ in named]), variables)
+def joined(time: Array, columns: Iterable[tuple[ResultVariable, Array]]) -> Results:
+    """Return the columns, shape (n,) each as `time` [s], as results."""
+    variables, values = zip(*columns, strict=True)
+    return Results(time, np.column_stack(values), variables)

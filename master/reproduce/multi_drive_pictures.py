@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...cosim.figures import draw as figures
 from ...cosim.results.results import Results, ResultVariable
-from ...cosim.row_store import Array
 from ...cosim.system.figure_spec import FigureSpec, PanelSpec, SignalSpec
+from ...models.constants import AIR_DENSITY
 from ...models.induction_motor_drive import InductionMotorDrive
 from . import multi_drive_cases, multi_drive_figures
+from .multi_drive_figures import joined
+from .multi_drive_numbers import DENSITY, of_print
 from .page import Picture
 
 _CONTROLLERS = {"mimo": "MIMO-PID", "pid": "PIDs", "stronger": "PIDs, gains x 1.5"}
@@ -90,13 +92,7 @@ def _beside(runs: Mapping[str, Results]) -> Results:
         for name, run in runs.items()
         for v in run.variables
     ]
-    return _joined(next(iter(runs.values())).time, columns)
-
-
-def _joined(time: Array, columns: Iterable[tuple[ResultVariable, Array]]) -> Results:
-    """Return the columns, shape (n,) each as `time` [s], as results."""
-    variables, values = zip(*columns, strict=True)
-    return Results(time, np.column_stack(values), variables)
+    return joined(next(iter(runs.values())).time, columns)
 
 
 def _between(results: Results, begin: float, end: float) -> Results:
@@ -105,17 +101,17 @@ def _between(results: Results, begin: float, end: float) -> Results:
 
 
 def _resistances(results: Results) -> Results:
-    """Return the three torques, their sum, and the torque of air of 1.164 in place of 1.2 kg/m3."""
+    """Return the three torques, their sum, and the torque of thinner air, beside that which is printed."""
     slope, rolling, air = (results[f"vehicle.{n}_torque"] for n in ("slope", "rolling", "aerodynamic"))
     values = {
         "slope": slope,
         "rolling": rolling,
         "air": air,
         "all": slope + rolling + air,
-        "thin air": air * (1.164 / 1.2),
-        "printed": np.full(len(air), 93.2),
+        "thin air": air * (DENSITY / AIR_DENSITY),
+        "printed": np.full(len(air), of_print("air PIDs")),
     }
-    return _joined(results.time, ((ResultVariable(n, "N.m"), v) for n, v in values.items()))
+    return joined(results.time, ((ResultVariable(n, "N.m"), v) for n, v in values.items()))
 
 
 def phase_currents(results: Results, begin: float, end: float) -> Results:
@@ -141,7 +137,7 @@ def phase_currents(results: Results, begin: float, end: float) -> Results:
     for k, name in enumerate("abc"):
         turned = angle - k * 2.0 * np.pi / 3.0
         phases.append((ResultVariable(name, "A"), i_d * np.cos(turned) - i_q * np.sin(turned)))
-    return _joined(time, [*phases, (ResultVariable("across", "A"), i_q), (ResultVariable("along", "A"), i_d)])
+    return joined(time, [*phases, (ResultVariable("across", "A"), i_q), (ResultVariable("along", "A"), i_d)])
 
 
 def _machine_differences(found: Mapping[str, Any]) -> Results:
@@ -153,7 +149,7 @@ def _machine_differences(found: Mapping[str, Any]) -> Results:
         for what in ("right_drive.torque", "vehicle.speed"):
             variable = dataclasses.replace(ideal.variable(what), name=f"{short}/{what}")
             columns.append((variable, found[run][what] - ideal[what]))
-    return _joined(ideal.time, columns)
+    return joined(ideal.time, columns)
 
 
 def _panel(label: str, unit: str, *signals: tuple[str, str], limits: Any = None) -> PanelSpec:

@@ -19,11 +19,12 @@ import numpy as np
 from ...cosim.analysis.first_order import Prediction
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
+from ...models.constants import KMH
 from ...models.scooter import Scooter
 from ..studies.identification import Identification, identify
 from ..studies.identification_run import PhaseProgress
 from . import printed
-from .scooter_numbers import KMH, steady_throttle
+from .scooter_numbers import steady_throttle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -148,4 +149,4 @@ def at_speed(speed: float, progress: PhaseProgress | None = None) -> Identificat
         sweep=(0.008, 0.6),
         duration=600.0,
     )
-    return identify("Scooter", spec, parameters={"initial_speed": speed / 3.6}, progress=progress)
+    return identify("Scooter", spec, parameters={"initial_speed": speed / KMH}, progress=progress)

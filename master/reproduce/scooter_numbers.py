@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ...cosim.leftovers import temporary
 from ...cosim.results.results import Results
+from ...models.constants import KMH
 from ...models.scooter import Scooter, command, level_road_load, maximum_force
 from ..simulation import Simulation, simulate
 
-KMH = 3.6  # km/h in 1 m/s
 VARIANTS: dict[str, dict[str, Any]] = {"bus": {}, "ideal": {"ideal": True}, "jacobi": {"algorithm": "jacobi"}}
 CONSTANT_SPEEDS = (24.0, 27.3, 30.5, 34.49, 40.5, 45.25, 49.0)  # km/h
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.models.road_friction import FRICTION, Road, friction_coefficient, friction_slope, road_named
+from evcosim.models.road_friction import FRICTION, Road, friction_coefficient, friction_slope
 
 roads = st.sampled_from(list(Road))
 slips = st.floats(0.0, 1.0)
@@ -45,9 +45,3 @@ def test_peaks() -> None:
             friction_coefficient(road, x / 100.0) <= friction_coefficient(road, peak) for x in range(101)
         )
     assert friction_coefficient(Road.DRY, 0.0) == 0.0
-
-
-def test_an_unknown_road_is_named() -> None:
-    assert road_named("cobble") is Road.COBBLE
-    with pytest.raises(ValueError, match="road = 'mud' is none of dry, wet, cobble, snow"):
-        road_named("mud")
