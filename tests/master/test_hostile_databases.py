@@ -13,6 +13,7 @@ from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.master.simulation import Simulation
 from support.forked import forked
+from support.small_bench import bench
 
 NUMBERS = [
     "-1",
@@ -67,15 +68,7 @@ SIG_VALTYPE_ 328 EMD_Power : <1>;
 
 FIELD = re.compile(r"<(<?)([^<>\n]+)>>?")
 LINES = [line for line in DATABASE.splitlines() if FIELD.search(line)]
-SYSTEM = """
-name = "bench"
-experiment = { step_size = 0.01, stop_time = 0.03 }
-units = { ecu = { fmu = "BoundController" }, vehicle = { fmu = "Scooter" } }
-buses = { can0 = { dbc = "a.dbc" } }
-[[connect]]
-from = "vehicle.speed"
-to = ["ecu.speed_measured"]
-via = "can0.EMD_Status.EMD_VehicleSpeed"
+SYSTEM = f"""{bench("a.dbc")}\
 [[connect]]
 from = "vehicle.power"
 via = "can0.EMD_Status.EMD_Power"

@@ -15,19 +15,10 @@ from evcosim.cosim.system.toml import DATA
 from evcosim.master.builtin import fmu_file
 from evcosim.master.cli import main
 from support.forked import forked
+from support.small_bench import bench
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with names")
 
-SYSTEM = """
-name = "bench"
-experiment = { step_size = 0.01, stop_time = 0.03 }
-units = { ecu = { fmu = "BoundController" }, vehicle = { fmu = "FMU" } }
-buses = { can0 = { dbc = "DBC" } }
-[[connect]]
-from = "vehicle.speed"
-to = ["ecu.speed_measured"]
-via = "can0.EMD_Status.EMD_VehicleSpeed"
-"""
 SCENARIO = '[[stimulus]]\nto = "ecu.throttle_request"\ncsv = "CSV"\ninterpolation = "hold"\n'
 SWAP = 'fmu = "FMU"\n'
 RUN = "run s.toml --no-plot -q --engine python -o out --replace"
@@ -69,7 +60,7 @@ ODD: dict[str, Callable[[Path], object]] = {
 
 def made(folder: Path, fmu: str = "v.fmu", dbc: str = "a.dbc", csv: str = "t.csv") -> None:
     """Write good files of all kinds, which name these ones."""
-    (folder / "s.toml").write_text(SYSTEM.replace("FMU", fmu).replace("DBC", dbc))
+    (folder / "s.toml").write_text(bench(dbc, fmu))
     (folder / "c.toml").write_text(SCENARIO.replace("CSV", csv))
     (folder / "w.toml").write_text(SWAP.replace("FMU", fmu))
     shutil.copy(fmu_file("Scooter"), folder / "v.fmu")

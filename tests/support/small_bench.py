@@ -23,15 +23,22 @@ VAL_ 328 EMD_VehicleSpeed 255 "SNA" ;
 """
 """What of `can/ev.dbc` the bus carries: the whole of it takes longer to read than a short run."""
 
-SYSTEM = """
+
+def bench(dbc: str = "bench.dbc", vehicle: str = "Scooter") -> str:
+    """The system without a metric: two units, and the speed over a bus of this database."""
+    return f"""
 name = "bench"
-experiment = { step_size = 0.01, stop_time = 0.03 }
-units = { ecu = { fmu = "BoundController" }, vehicle = { fmu = "Scooter" } }
-buses = { can0 = { dbc = "bench.dbc" } }
+experiment = {{ step_size = 0.01, stop_time = 0.03 }}
+units = {{ ecu = {{ fmu = "BoundController" }}, vehicle = {{ fmu = "{vehicle}" }} }}
+buses = {{ can0 = {{ dbc = "{dbc}" }} }}
 [[connect]]
 from = "vehicle.speed"
 to = ["ecu.speed_measured"]
 via = "can0.EMD_Status.EMD_VehicleSpeed"
+"""
+
+
+SYSTEM = f"""{bench()}\
 [[connect]]
 from = "ecu.throttle"
 to = ["vehicle.throttle"]
