@@ -57,7 +57,7 @@ def _order(links: Iterable[Link], interfaces: Mapping[str, UnitInterface]) -> tu
         output = interfaces[unit].variables[name]
         inputs = {v.name for v in interfaces[unit].of_causality("input")}
         needs = [output.depends, output.depends_initially]
-        known = inputs if None in needs else inputs.intersection(*[set().union(*(n or () for n in needs))])
+        known = inputs if None in needs else inputs & set[str]().union(*(n or () for n in needs))
         graph.setdefault((unit, name), set()).update((unit, i) for i in known)
     try:
         return [], list(graphlib.TopologicalSorter(graph).static_order())

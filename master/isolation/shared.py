@@ -137,16 +137,16 @@ def private(plan: UnitPlan) -> tuple[UnitPlan, int]:
     return dataclasses.replace(plan, groups=tuple(groups), routes=(), texts=Texts()), place
 
 
-Copy = tuple[int, int, int]
+CopiedSlots = tuple[int, int, int]
 """Values that are copied: their first slots in the run's memory and in the shared one, and their number."""
 
 
 class Copies(NamedTuple):
     """The values that a turn copies: `inputs` before it, after it those that feed `through` and `outputs`."""
 
-    inputs: list[Copy]
-    through: list[Copy]
-    outputs: list[Copy]
+    inputs: list[CopiedSlots]
+    through: list[CopiedSlots]
+    outputs: list[CopiedSlots]
 
 
 def copies(ours: Sequence[SlotGroup], theirs: Sequence[SlotGroup], texts: bool) -> Copies:

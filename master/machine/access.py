@@ -42,16 +42,9 @@ def transfer(typingctx, function, component, references, count, values):
 
 
 @intrinsic
-def transfer_3(typingctx, function, component, references, count, values):
-    """Call function(component, references, count, values, count): get and set of FMI 3.0."""
-
-    def implement(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        address, *arguments = values
-        arguments.append(arguments[2])
-        kind = ir.FunctionType(_INT, [a.type for a in arguments])
-        return builder.call(builder.inttoptr(address, kind.as_pointer()), arguments)
-
-    return types.int32(*[_LONG] * 5), implement
+def transfer_3(typingctx, function, component, references, count, values, values_count):
+    """Call function(component, references, count, values, values_count): get and set of FMI 3.0."""
+    return _calling([_LONG] * 5)
 
 
 @intrinsic

@@ -123,6 +123,7 @@ def call(t, m, row):
             word(c, L.REFERENCES),
             word(c, L.COUNT),
             word(c, L.VALUES),
+            word(c, L.COUNT),
         )
     else:
         status = transfer(

@@ -100,7 +100,8 @@ def _through_the_cache(function: Any, name: str, signature: str = _KERNEL) -> tu
     try:
         with leftovers.temporary() as folder:
             if (packed := kept(name)) is not None:
-                zipfile.ZipFile(io.BytesIO(packed)).extractall(folder)
+                with zipfile.ZipFile(io.BytesIO(packed)) as archive:
+                    archive.extractall(folder)
             with _cached_in(str(folder)):
                 made = _compiled(function, signature, cache=True)
             return made, "" if made.cache_hits else keep(name, _packed(folder))
