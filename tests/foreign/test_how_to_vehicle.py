@@ -1,14 +1,14 @@
-"""docs/how-to/vehicle.md: its commands, run in order by the installed programs, print what the page says."""
+"""docs/how-to/vehicle.md: its commands, run in order, print what the page says."""
 
 from __future__ import annotations
 
 import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
+from support import warm
 from support.needs import need_c_compiler
 
 ROOT = Path(__file__).parents[2]
@@ -29,9 +29,7 @@ def test_the_page_shows_what_its_commands_print(tmp_path: Path) -> None:
     assert len(blocks) == 5
     for block in blocks:
         for command, told in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", block, re.MULTILINE):
-            done = subprocess.run(
-                command, shell=True, cwd=folder, env=programs, capture_output=True, text=True
-            )
+            done = warm.run(command, folder, programs)
             printed = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
             assert done.returncode in (0, 1), done.stderr
             assert VARIES.sub("", printed.strip()) == VARIES.sub("", told.strip()), command

@@ -1,0 +1,33 @@
+"""What a command of `evcosim` needs, imported and used once, for `support.warm`."""
+
+from __future__ import annotations
+
+import importlib
+import io
+
+import numba
+from matplotlib.figure import Figure
+
+for _name in (
+    "cantools.database",
+    "scipy.linalg.cython_blas",
+    "scipy.signal",
+    "typer._adapters",
+    "evcosim.cosim.figures.shown",
+    "evcosim.cosim.report.page",
+    "evcosim.cosim.results.compare",
+    "evcosim.master.cli.app",
+    "evcosim.master.engine.compiled.engine",
+    "evcosim.master.simulation",
+    "evcosim.master.single_fmu",
+    "evcosim.master.studies.identification",
+):
+    importlib.import_module(_name)
+
+numba.njit(lambda x: x)(1.0)  # numba fills its tables
+_figure = Figure(layout="constrained")
+_axes = _figure.subplots()
+_axes.plot([0.0, 1.0], label="$x$")
+_axes.legend()
+for _format in ("png", "svg"):  # matplotlib finds its fonts
+    _figure.savefig(io.BytesIO(), format=_format)
