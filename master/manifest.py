@@ -15,6 +15,7 @@ from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
 from ..cosim.system.toml import data_file, is_built_in
+from .engine.bus_statistics import bus_statistics
 from .engine.engine import Engine
 from .fmi.tolerance import tolerance_of
 from .prepare import Prepared
@@ -50,7 +51,7 @@ def manifest(
         "defaults": {unit.name: _defaults(unit) for unit in plan.units},
         "connect": _connected(system, {unit.name for unit in plan.units}),
         "connections": _scaled(system),
-        "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
+        "buses": _buses(system, engine),
         "events": [
             {"time": plan.clock.at(k), **event.model_dump(exclude={"time"})} for k, event in plan.events
         ],
@@ -127,6 +128,15 @@ def _scaled(system: System) -> list[dict[str, Any]]:
         for connection in system.file.connect
         if connection.written
     ]
+
+
+def _buses(system: System, engine: Engine) -> dict[str, dict[str, Any]]:
+    """Return the settings of each bus, and what was counted of its frames where there are any."""
+    counted = bus_statistics(engine.frames, engine.k)
+    return {
+        name: bus.model_dump() | ({"frames": counted[name]} if name in counted else {})
+        for name, bus in system.file.buses.items()
+    }
 
 
 def saturations(engine: Engine) -> dict[str, dict[str, float]]:

@@ -20,6 +20,7 @@ LONGEST_DELAY = 3600.0
 """The longest delay of a bus [s] that a file or an option gives."""
 
 Rounding = Literal["nearest", "half_even", "truncate"]
+Timing = Literal["instant", "frame"]
 Overflow = Literal["saturate", "wrap", "error"]
 Resolution = float | Literal["ideal"]
 
@@ -52,7 +53,8 @@ class BusSettings(BaseModel):
     check does (wrap), or is an error (error)."""
 
     delay: float = Field(default=0.0, ge=0.0, le=LONGEST_DELAY)
-    """Time from sampling to the receivers' mailboxes in s: a multiple of the communication step."""
+    """Time from sampling to the receivers' mailboxes in s: a multiple of the communication step. With `timing
+    = "frame"` any time, from the end of the frame on."""
 
     resolution: Annotated[
         Resolution, PlainValidator(checked_resolution), WithJsonSchema(_RESOLUTION_SCHEMA)
@@ -61,6 +63,23 @@ class BusSettings(BaseModel):
 
     cycle: int = Field(default=1, ge=1, le=_SLOWEST)
     """Factor by which messages are sent less often than the DBC says."""
+
+    timing: Timing = "instant"
+    """Frames arrive at the moment at which they are sent (instant), or wait for the bus, contend with others
+    and take their bits' time (frame), so that receivers see them at the first communication point after."""
+
+    data_bitrate: int | None = Field(default=None, gt=0, le=10**9)
+    """Bits a second of the payload of CAN FD frames; without it they do not switch the bit rate."""
+
+    jitter: float = Field(default=0.0, ge=0.0, le=SLOWEST)
+    """Longest time in s from the sampling of a message to its place in the queue, drawn for each frame, with
+    `timing = "frame"`."""
+
+    bit_error_rate: float = Field(default=0.0, ge=0.0, lt=1.0)
+    """Probability that a bit on the wire is wrong, with `timing = "frame"`: the frame is sent again."""
+
+    seed: int = Field(default=0, ge=0, lt=2**63)
+    """Seed of the random draws of the bus: equal ones give equal runs."""
 
     cycle_time: float | None = Field(default=None, gt=0.0, le=SLOWEST)
     """Cycle time in s of all messages for which neither the database nor `messages` has one."""

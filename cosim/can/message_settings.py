@@ -20,6 +20,9 @@ class MessageSettings(BaseModel):
     """Time from one transmission to the next in s, a multiple of the communication step; without it that of
     the database, else the bus' `cycle_time`."""
 
+    jitter: float | None = Field(default=None, ge=0.0, le=SLOWEST)
+    """Longest time in s from the sampling to the queue, with `timing = "frame"`; without it the bus' own."""
+
     start_delay: float | None = Field(default=None, ge=0.0, le=SLOWEST)
     """Time of the first transmission after the start in s; without it that of the database, else 0."""
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
+from ..can.framing import check_jitter, framing_of
 from ..can.pages import pages
 from ..can.resolution import with_resolution
 from ..can.send_steps import send_steps
@@ -312,7 +313,11 @@ def _message(
     settings = work.system.file.buses[bus]
     message = as_sent(work.databases[bus].require(name), settings)
     every, first = send_steps(message, step_size, str(work.system.path), bus)
-    delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
+    delay = 0
+    if settings.timing == "instant":
+        delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
+    framing = framing_of(message, settings)
+    check_jitter(message, settings, every * settings.cycle * step_size, f"{work.system.path}: buses.{bus}")
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -326,7 +331,7 @@ def _message(
     for i, page in enumerate(turns):
         arrivals: list[tuple[int, int]] = []
         of_page = [route for route in routes if route.signal.name in page.signals]
-        if delay:
+        if delay and framing is None:
             of_page = [_staged(work.slots, route, arrivals) for route in of_page]
         sent = page.of(message)
         yield MessagePlan(
@@ -342,6 +347,7 @@ def _message(
             after=after,
             delay=delay,
             arrivals=tuple(arrivals),
+            framing=framing,
             page=page.selected,
         )
 

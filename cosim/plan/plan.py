@@ -89,6 +89,11 @@ class MessagePlan:
     framing: Framing | None = None
     page: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
+    @property
+    def timed(self) -> bool:
+        """True where its frames take time on the bus."""
+        return self.settings.timing == "frame"
+
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
@@ -122,6 +127,11 @@ class Plan:
     text_slots: tuple[int, ...] = ()
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
     unreached: tuple[str, ...] = ()
+
+    @functools.cached_property
+    def timed_buses(self) -> tuple[str, ...]:
+        """The buses on which frames take time."""
+        return tuple(dict.fromkeys(message.bus for message in self.messages if message.timed))
 
     @property
     def steps(self) -> int:

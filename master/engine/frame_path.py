@@ -20,7 +20,7 @@ from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.values import set_raw
 from .schedule import Action
 from .sender import Sender
-from .wire_tables import views, wire_arrays
+from .wire_tables import key_of, nodes_of, ring_of_bus, views, wire_arrays
 
 
 class FramePath:
@@ -32,12 +32,15 @@ class FramePath:
     def __init__(
         self, senders: Sequence[Sender], memory: NDArray[np.float64], step: float, logs: bool
     ) -> None:
+        buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
+        framed.sort(key=lambda i: (buses.index(senders[i].plan.bus), key_of(senders[i].plan.message)))
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}
         self.arrays = wire_arrays(self.senders, memory, step, logs)
         self.wire = views(self.arrays, self.help)
+        self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
         self._kept = frame_store()
 
@@ -47,6 +50,13 @@ class FramePath:
 
     def operation(self, action: Action) -> tuple[int, int] | None:
         """Return an action of the schedule as the first two arguments of `act`; None where it is none."""
+        if action.kind in ("arrive", "contend"):
+            bus = np.flatnonzero(self.arrays["buses"][:, T.TIMED])[action.index]
+            return (
+                (T.ARRIVE, ring_of_bus(self.arrays, bus))
+                if action.kind == "arrive"
+                else (T.CONTEND, int(bus))
+            )
         if action.kind not in ("send", "deliver") or action.index not in self._rows:
             return None
         row = self._rows[action.index]

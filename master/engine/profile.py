@@ -12,7 +12,8 @@ Part = tuple[str, str]
 """The name of a unit, of a message, "stimuli" or "results", and its activity, as in ("vehicle", "step")."""
 
 _WHAT: dict[Kind, str] = {
-    "drive": "drive", "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
+    "drive": "drive", "arrive": "channel", "contend": "channel",
+    "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
     "end": "get", "record": "record", "note": "note texts", "publish": "get",
 }  # fmt: skip # a table
 
@@ -32,6 +33,8 @@ def part_of(action: Action, plan: Plan, what: str = "", apart: bool = False) -> 
         name = "stimuli"
     elif action.kind in ("record", "note"):
         name = "results"
+    elif action.kind in ("arrive", "contend"):
+        name = plan.timed_buses[action.index]
     elif action.kind in ("send", "deliver"):
         message = plan.messages[action.index]
         name = f"{message.bus}.{message.message.name}"

@@ -2,7 +2,8 @@
 
 Time is a count k, of which `clock` makes the time t_k. The stages of step k, under `gauss_seidel`:
 
-1. the values of the stimuli at t_k are written to the slots of their inputs;
+1. the values of the stimuli at t_k are written to the slots of their inputs, and on buses with `timing =
+   "frame"` the frames that ended by t_k reach the mailboxes;
 2. the messages that are due and carry outputs valid at t_k are sent;
 3. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
    biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
@@ -13,7 +14,9 @@ Time is a count k, of which `clock` makes the time t_k. The stages of step k, un
 5. the outputs after the step that are not sampled become the valid ones: at the end of the unit's period,
    and at the stop time if that cuts its last one short.
 
-On a bus with a delay the values sent that long ago arrive at the place where the message is sent.
+On buses with `timing = "frame"` a message that is sent waits for the bus; the arbitration up to t_k+1 is
+resolved before row k is recorded. On other buses with a delay the values sent that long ago arrive at the
+place where the message is sent.
 Under `jacobi` all messages are sent and all inputs taken before any unit steps, so that every value takes
 one communication step to arrive.
 """
@@ -26,16 +29,19 @@ from typing import Literal
 from ...cosim.plan.plan import MessagePlan, Plan
 from ...cosim.plan.turns import cut_short
 
-Kind = Literal["drive", "deliver", "send", "take", "begin", "end", "record", "note", "publish"]
+Kind = Literal[
+    "drive", "arrive", "deliver", "send", "take", "begin", "end", "contend", "record", "note", "publish"
+]
 
 
 @dataclasses.dataclass(frozen=True)
 class Action:
     """An action that is due at the steps k with k >= first and (k - first) % every == 0.
 
-    `index` is the place in the plan's drives, messages or units:
+    `index` is the place in the plan's drives, messages, units or timed buses:
 
         drive     write the stimulus' value to its slot
+        arrive    unpack the frames of the bus that have arrived
         deliver   copy the values that the message sampled `delay` steps ago to the mailboxes, or unpack the
                   frame that was sent then
         send      sample the message and write its values to the mailboxes (with a delay: waiting slots too)
@@ -43,6 +49,7 @@ class Action:
         begin     apply overrides and biases, set the unit's inputs, read the outputs with direct feedthrough,
                   and begin the step
         end       wait for the step, read the outputs, and refuse NaN and infinity
+        contend   let the frames that wait have the bus, as many as start before the next step
         record    record the row of the step
         note      note the texts of the row, where texts are recorded
         publish   make the unit's outputs after its step, but for sampled ones, the valid ones
@@ -68,13 +75,17 @@ def schedule(plan: Plan) -> tuple[Action, ...]:
     units = range(len(plan.units))
     # 1. the stimuli at t_k
     drives = [Action("drive", i) for i in range(len(plan.drives))]
+    # the frames that ended by t_k
+    arrive = [Action("arrive", i) for i in range(len(plan.timed_buses))]
     # 2. and 3. messages and units, as the algorithm orders them
     steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
+    # the frames that start before t_k+1; all that were queued at t_k contend, whichever turn sent them
+    contend = [Action("contend", i) for i in range(len(plan.timed_buses))]
     # 4. row k
     record = [Action("record"), *([Action("note")] if plan.text_columns else [])]
     # 5. the outputs valid at t_k+1; those of a unit with a longer period at the end of its turn
     publish = [action for i in units for action in _publish(plan, i)]
-    return (*drives, *steps, *record, *publish)
+    return (*drives, *arrive, *steps, *contend, *record, *publish)
 
 
 def _gauss_seidel(plan: Plan) -> list[Action]:

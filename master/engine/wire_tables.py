@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import zlib
 from collections.abc import Sequence
 from typing import Any, assert_never
 
@@ -22,21 +24,21 @@ from .sender import Sender
 Arrays = dict[str, NDArray[Any]]
 """Tables by the names of `Wire`; `helper` is not among them."""
 
+_MOST_BITS = 1024  # no frame is longer
 _LOG_ROWS = 1024  # frames that are logged between two calls of Python
 
 
 def wire_arrays(senders: Sequence[Sender], memory: NDArray[np.float64], step: float, logs: bool) -> Arrays:
     """Return the tables of the messages of `senders`; message i is that of sender i.
 
-    `memory` is the run's, shape (size,); `step` [s] that of the run. `logs`: frames are logged.
+    They stand bus by bus, on each in the order in which they win it. `memory` is the run's, shape (size,);
+    `step` [s] that of the run. `logs`: frames are logged.
     """
     plans = [sender.plan for sender in senders]
-    buses = list(dict.fromkeys(plan.bus for plan in plans))
     made: Arrays = {
         "messages": _table(len(plans), T.MESSAGE),
         "base": _table(len(plans), T.BYTES),
         "waiting": _table(len(plans), T.BYTES),
-        "buses": _table(len(buses), T.BUS_WIDTH),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
         "memory": memory,
         "frame": np.zeros(T.BYTES, dtype=np.int64),
@@ -46,20 +48,76 @@ def wire_arrays(senders: Sequence[Sender], memory: NDArray[np.float64], step: fl
     }
     made["single_bits"], made["double_bits"] = made["single"].view(np.int32), made["double"].view(np.int64)
     made["state"][T.STEP_TIME] = picoseconds(step)
-    for plan in plans:
-        made["buses"][buses.index(plan.bus), T.DELAY] = plan.delay * picoseconds(step)
     _add_signals(made, senders)
+    _add_buses(made, plans, step)
     _add_rings(made, plans)
+    same = [(plan.bus, key_of(plan.message)) for plan in plans]
     for i, plan in enumerate(plans):
-        _fill(
-            made["messages"], i,
-            {T.BUS: buses.index(plan.bus),
-             T.KEY: arbitration_key(plan.message.frame_id, plan.message.extended),
-             T.LENGTH: plan.message.length, T.EXTENDED: plan.message.extended, T.FD: plan.message.fd,
-             T.EVERY: plan.every, T.FIRST: plan.first, T.LOGGED: logs},
-        )  # fmt: skip # a row
+        pages = {T.PAGE: i - same.index(same[i]), T.PAGES: same.count(same[i])}
+        _fill(made["messages"], i, _message_row(plan) | pages | {T.LOGGED: logs})
         made["base"][i, : plan.message.length] = list(_base(plan.message, plan.routes))
     return made
+
+
+def key_of(message: Message) -> int:
+    """Return a number that of two messages is lower for the one that wins the bus."""
+    return arbitration_key(message.frame_id, message.extended)
+
+
+def ring_of_bus(made: Arrays, bus: int) -> int:
+    """Return the ring in which the frames of a bus are under way where they take time."""
+    return int(made["messages"][made["buses"][bus, T.FIRST_MESSAGE], T.RING])
+
+
+def _message_row(plan: MessagePlan) -> dict[int, Any]:
+    message, own = plan.message, plan.settings.of_message(plan.message.name)
+    return {
+        T.KEY: key_of(message), T.ID: message.frame_id, T.EXTENDED: message.extended, T.FD: message.fd,
+        T.LENGTH: message.length, T.EVERY: plan.every, T.FIRST: plan.first,
+        T.SWITCHED: message.fd and plan.settings.data_bitrate is not None,
+        T.JITTER: picoseconds(plan.settings.jitter if own.jitter is None else own.jitter),
+    }  # fmt: skip # a row
+
+
+def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
+    """Add the tables of buses and of nodes, which are the senders that the database names."""
+    buses = list(dict.fromkeys(plan.bus for plan in plans))
+    nodes = nodes_of(plans)
+    made["buses"], made["nodes"] = _table(len(buses), T.BUS_WIDTH), _table(len(nodes), T.NODE_WIDTH)
+    made["chances"] = _table(len(buses), _MOST_BITS, np.float64)
+    for row, (bus, _) in enumerate(nodes):
+        made["nodes"][row, T.BUS_OF] = buses.index(bus)
+    for i, plan in enumerate(plans):
+        _fill(made["messages"], i, {T.BUS: buses.index(plan.bus), T.NODE: nodes.index(_node(plan))})
+    for row, bus in enumerate(buses):
+        own = [i for i, plan in enumerate(plans) if plan.bus == bus]
+        settings = plans[own[0]].settings
+        timed, steps = plans[own[0]].timed, plans[own[0]].delay
+        delay = picoseconds(settings.delay) if timed else steps * picoseconds(step)
+        _fill(
+            made["buses"], row,
+            {T.DELAY: delay, T.TIMED: timed, T.FIRST_MESSAGE: own[0], T.MESSAGES: len(own),
+             T.BIT: _bit(settings.bitrate), T.DATA_BIT: _bit(settings.data_bitrate or settings.bitrate),
+             T.SEED: settings.seed, T.NAME: zlib.crc32(bus.encode()), T.NOISY: settings.bit_error_rate > 0.0},
+        )  # fmt: skip # a row
+        right = math.log1p(-settings.bit_error_rate)
+        made["chances"][row] = [-math.expm1(bits * right) for bits in range(_MOST_BITS)]
+
+
+def _bit(rate: int) -> int:
+    """Return the time of a bit [ps] at a rate [bit/s]."""
+    return round(10**12 / rate)
+
+
+def nodes_of(plans: Sequence[MessagePlan]) -> list[tuple[str, str]]:
+    """Return bus and name of each node that sends one of these messages, in the order of their table."""
+    return list(dict.fromkeys(_node(plan) for plan in plans))
+
+
+def _node(plan: MessagePlan) -> tuple[str, str]:
+    """Return bus and node of a message; where the database names no sender, its unit."""
+    named = [sender for sender in plan.message.senders if sender != "Vector__XXX"]
+    return plan.bus, named[0] if named else next(iter(plan.senders.values()), "").partition(".")[0]
 
 
 def views(arrays: Arrays, helper: Any) -> Wire:
@@ -140,17 +198,37 @@ def _kind(operation: SignalOperation) -> int:
 
 
 def _add_rings(made: Arrays, plans: Sequence[MessagePlan]) -> None:
-    """Add the rings of frames under way: one for each message whose bus has a delay."""
+    """Add the rings of frames under way: of each bus on which they take time, each message with a delay."""
     rings: list[dict[int, int]] = []
     rows = 0
+    places: dict[str, int] = {}
     for i, plan in enumerate(plans):
-        _fill(made["messages"], i, {T.RING: len(rings) if plan.delay else -1})
-        if plan.delay:
-            rings.append({T.START_ROW: rows, T.ROWS: plan.delay // plan.every + 1})
-            rows += plan.delay // plan.every + 1
+        bus = made["buses"][made["messages"][i, T.BUS]]
+        if plan.timed and plan.bus in places:
+            ring = places[plan.bus]
+        elif plan.timed or plan.delay:
+            ring = places[plan.bus] = len(rings)
+            room = _under_way(made, bus, plans) if plan.timed else plan.delay // plan.every + 1
+            rings.append({T.START_ROW: rows, T.ROWS: room})
+            rows += room
+        else:
+            ring = -1
+        _fill(made["messages"], i, {T.RING: ring})
     made["rings"], made["flights"] = _table(len(rings), T.RING_WIDTH), _table(rows, T.FLIGHT)
     for i, row in enumerate(rings):
         _fill(made["rings"], i, row)
+
+
+def _under_way(made: Arrays, bus: NDArray[np.int64], plans: Sequence[MessagePlan]) -> int:
+    """Return how many frames can be under way on a bus: those that end in a step, and wait for its delay.
+
+    One ends at each shortest frame's time at most, and each message is queued once a cycle, and once before.
+    """
+    step = int(made["state"][T.STEP_TIME])
+    span = step + int(bus[T.DELAY])
+    first = int(bus[T.FIRST_MESSAGE])
+    own = plans[first : first + int(bus[T.MESSAGES])]
+    return sum(span // (plan.every * step) + 3 for plan in own)
 
 
 def _table(rows: int, width: int, kind: Any = np.int64) -> NDArray[Any]:

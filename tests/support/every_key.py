@@ -53,8 +53,10 @@ fmu = "Scooter"
 period = 0.01
 [buses.can0]
 dbc = "bench.dbc"
+timing = "frame"
 [buses.can0.messages.EMD_Status]
 cycle_time = 0.01
+jitter = 0.001
 [[connect]]
 from = "vehicle.speed"
 to = ["ecu.speed_measured"]

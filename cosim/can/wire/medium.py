@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..timing.draws import drawn
 from . import tables as T
+from .arbitration import contend
+from .log import log
 from .tables import Wire
-from .values import ask, pack, sample, unpack
+from .values import pack, sample, unpack
+
+_JITTER = 1  # what is drawn for
 
 
 def send(w: Wire, i: int, k: int) -> int:
@@ -17,11 +22,60 @@ def send(w: Wire, i: int, k: int) -> int:
     m, now = w.messages, k * w.state[T.STEP_TIME]
     m[i, T.SENT] += 1
     m[i, T.INSTANCE] += 1
+    if w.buses[m[i, T.BUS], T.TIMED]:
+        queue(w, i, now)
+        return T.DONE
     if log(w, i, k, now) != T.DONE:
         return T.RAISED
+    m[i, T.CARRIED] += 1
     if m[i, T.RING] < 0:
-        return deliver(w, i, k, now, now)
+        return deliver(w, i, k, now)
     push(w, m[i, T.RING], i, now + w.buses[m[i, T.BUS], T.DELAY], now)
+    return T.DONE
+
+
+def queue(w: Wire, i: int, now: int) -> None:
+    """Let the frame at hand, of message i, wait for the bus in place of an earlier one that still waits."""
+    m, bus = w.messages, w.messages[i, T.BUS]
+    if m[i, T.QUEUED]:
+        m[i, T.REPLACED] += 1
+    else:
+        if m[i, T.PAGES] > 1:
+            replace_pages(w, i)
+        m[i, T.QUEUED] = 1
+        w.buses[bus, T.PENDING] += 1
+    m[i, T.SAMPLED] = m[i, T.SINCE] = now
+    if m[i, T.JITTER]:
+        purpose = _JITTER | m[i, T.PAGE] << 8
+        draw = drawn(w.buses[bus, T.SEED], w.buses[bus, T.NAME], m[i, T.ID], m[i, T.INSTANCE], purpose)
+        m[i, T.SINCE] += int(draw * m[i, T.JITTER])
+    for byte in range(m[i, T.LENGTH]):
+        w.waiting[i, byte] = w.frame[byte]
+
+
+def replace_pages(w: Wire, i: int) -> None:
+    """Take another page of the message that still waits out of the buffer, which message i gets."""
+    m = w.messages
+    for j in range(i - m[i, T.PAGE], i - m[i, T.PAGE] + m[i, T.PAGES]):
+        if m[j, T.QUEUED]:
+            m[j, T.QUEUED] = 0
+            m[j, T.REPLACED] += 1
+            w.buses[m[i, T.BUS], T.PENDING] -= 1
+
+
+def run_bus(w: Wire, bus: int, k: int) -> int:
+    """Let the frames that wait have the bus, as many as start before the next step; return DONE or RAISED."""
+    end = (k + 1) * w.state[T.STEP_TIME]
+    while w.buses[bus, T.PENDING] > 0:
+        i = contend(w, bus, end)
+        if i < 0:
+            break
+        finish = w.buses[bus, T.FREE_AT] - 3 * w.buses[bus, T.BIT]  # without the interframe space
+        note(w.messages, i, T.LATENCY_LEAST, finish - w.messages[i, T.SAMPLED], w.messages[i, T.CARRIED])
+        w.messages[i, T.CARRIED] += 1
+        if log(w, i, k, finish) != T.DONE:
+            return T.RAISED
+        push(w, w.messages[i, T.RING], i, finish + w.buses[bus, T.DELAY], w.messages[i, T.SAMPLED])
     return T.DONE
 
 
@@ -37,7 +91,7 @@ def arrive(w: Wire, ring: int, k: int) -> int:
         i = w.flights[row, T.MESSAGE_OF]
         for byte in range(w.messages[i, T.LENGTH]):
             w.frame[byte] = w.flights[row, T.PAYLOAD + byte]
-        if deliver(w, i, k, w.flights[row, T.SAMPLE_TIME], w.flights[row, T.ARRIVAL]) != T.DONE:
+        if deliver(w, i, k, w.flights[row, T.SAMPLE_TIME]) != T.DONE:
             return T.RAISED
     return T.DONE
 
@@ -53,44 +107,33 @@ def push(w: Wire, ring: int, i: int, arrival: int, sampled: int) -> None:
         w.flights[row, T.PAYLOAD + byte] = w.frame[byte]
 
 
-def deliver(w: Wire, i: int, k: int, sampled: int, arrival: int) -> int:
+def deliver(w: Wire, i: int, k: int, sampled: int) -> int:
     """Give the frame at hand, of message i, to its receivers in step k; return DONE or RAISED."""
     m = w.messages
-    note(m, i, T.LATENCY_LEAST, arrival - sampled)
-    note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled)
+    note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
     m[i, T.ARRIVED] += 1
     return unpack(w, i, k)
 
 
-def note(m: Any, i: int, least: int, time: int) -> None:
-    """Add a time to three columns that follow each other: the least so far, the sum, and the most."""
-    if m[i, T.ARRIVED] == 0 or time < m[i, least]:
+def note(m: Any, i: int, least: int, time: int, before: int) -> None:
+    """Add a time to three columns that follow each other: the least so far, the sum, and the most.
+
+    `before` times were added already.
+    """
+    if before == 0 or time < m[i, least]:
         m[i, least] = time
     m[i, least + 1] += time
-    if time > m[i, least + 2]:
+    if before == 0 or time > m[i, least + 2]:
         m[i, least + 2] = time
 
 
-def log(w: Wire, i: int, k: int, end: int) -> int:
-    """Add the frame at hand, of message i, which ends at a time, to the log; return DONE or RAISED."""
-    if not w.messages[i, T.LOGGED]:
-        return T.DONE
-    if w.state[T.LOG_ROWS] == len(w.log) and ask(w, T.FLUSH, i, k) != T.DONE:
-        return T.RAISED
-    row = w.state[T.LOG_ROWS]
-    w.log[row, T.LOG_STEP], w.log[row, T.LOG_TIME], w.log[row, T.LOG_MESSAGE] = k, end, i
-    for byte in range(8 * ((w.messages[i, T.LENGTH] + 7) // 8)):
-        if byte % 8 == 0:
-            w.log[row, T.LOG_PAYLOAD + byte // 8] = 0
-        if byte < w.messages[i, T.LENGTH]:
-            signed = w.frame[byte] - (256 if byte % 8 == 7 and w.frame[byte] > 127 else 0)
-            w.log[row, T.LOG_PAYLOAD + byte // 8] |= signed << 8 * (byte % 8)
-    w.state[T.LOG_ROWS] += 1
-    return T.DONE
-
-
 def act(w: Wire, what: int, i: int, k: int) -> int:
-    """Do an action of step k: SEND message i, or let the frames of ring i ARRIVE; return DONE or RAISED."""
+    """Do an action of step k: SEND message i, let the frames of ring i ARRIVE, let those of bus i CONTEND.
+
+    Return DONE or RAISED.
+    """
     if what == T.SEND:
         return send(w, i, k)
-    return arrive(w, i, k)
+    if what == T.ARRIVE:
+        return arrive(w, i, k)
+    return run_bus(w, i, k)

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 class Wire(NamedTuple):
     """The tables, each a two-dimensional array (for Python a memoryview) but for those in one dimension.
 
-    `reals` and `maps` are float64. In one dimension: `memory`, the run's, float64; `frame`, the bytes of the
-    frame at hand; `single` (float32) with its bits `single_bits` (int32), `double` (float64) with its bits
-    `double_bits`, one number each; `state`. `helper` is what `ask` calls.
+    `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64; `frame`, the
+    bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double` (float64)
+    with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
     """
 
     messages: Any
@@ -30,6 +30,8 @@ class Wire(NamedTuple):
     rings: Any
     flights: Any
     buses: Any
+    nodes: Any
+    chances: Any
     log: Any
     memory: Any
     frame: Any
@@ -47,15 +49,19 @@ class Wire(NamedTuple):
 """KEY: of two messages the one with the lower key wins the bus; LENGTH in bytes; SWITCHED: 1 if the payload
 has the data bit rate; SIGNALS rows of signals from FIRST_SIGNAL on; RING: the row of rings in which its
 frames are under way, -1 where they arrive when they are sent."""
-(QUEUED, SINCE, SAMPLED, INSTANCE) = range(12, 16)
+(NODE, ID, JITTER) = range(12, 15)
+"""The row of nodes of its sender, its identifier, and the longest time by which it is queued later."""
+(QUEUED, SINCE, SAMPLED, INSTANCE) = range(15, 19)
 """1 while a frame waits in `waiting`, from which time on it may start, the time of its values, and the number
 of times that the message was sent."""
-(SENT, REPLACED, ARRIVED, LATENCY_LEAST, LATENCY_SUM, LATENCY_MOST, SEEN_LEAST, SEEN_SUM, SEEN_MOST) = range(
-    16, 25
-)
-"""Counts of frames: that were sampled, replaced by a newer one while they waited, and arrived; time from the
-sampling to the end of the frame; and to the communication point at which receivers see it."""
-MESSAGE = 25
+(SENT, REPLACED, CARRIED, ERRORS, ARRIVED, BUSY) = range(19, 25)
+"""Counts of frames: that were sampled, replaced by a newer one while they waited, carried by the bus, ended
+by a wire error, and that arrived; the time that the bus was busy with them."""
+(LATENCY_LEAST, LATENCY_SUM, LATENCY_MOST, SEEN_LEAST, SEEN_SUM, SEEN_MOST) = range(25, 31)
+"""Time from the sampling to the end of the frame; and to the communication point at which it is seen."""
+(PAGE, PAGES) = range(31, 33)
+"""Which of the pages of a multiplexed message it is, and the number of them; they have one buffer."""
+MESSAGE = 33
 
 # ---- columns of signals
 
@@ -94,10 +100,17 @@ first is HEAD."""
 FLIGHT = PAYLOAD + BYTES
 """Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
 
-(FREE_AT, PENDING, DELAY) = range(3)
-BUS_WIDTH = 3
+(FREE_AT, PENDING, DELAY, TIMED, FIRST_MESSAGE, MESSAGES, BIT, DATA_BIT, SEED, NAME, NOISY) = range(11)
+BUS_WIDTH = 11
 """Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
-end of a frame."""
+end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on, in the order in which
+they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong.
+Row i of `chances`, float64, has the probability that n bits on bus i are not all right in column n."""
+
+(READY_AT, ERROR_COUNT, RECEIVE_COUNT, BUS_OF, BUS_OFFS) = range(5)
+NODE_WIDTH = 5
+"""Columns of nodes: the time from which on it may send; the counters of errors as sender (TEC) and as
+receiver (REC); its bus; and how often it was bus-off."""
 
 (LOG_STEP, LOG_TIME, LOG_MESSAGE, LOG_PAYLOAD) = range(4)
 LOG_WIDTH = LOG_PAYLOAD + 8
@@ -114,5 +127,5 @@ RAW, VALUE, FLUSH = range(3)
 """The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log."""
 DONE, RAISED = range(2)
 
-SEND, ARRIVE = range(2)
+SEND, ARRIVE, CONTEND = range(3)
 """Actions of a step."""

@@ -16,13 +16,14 @@ import numpy as np
 from numba import carray, njit
 from numpy.typing import NDArray
 
-from ....cosim.can.wire import medium, payload, tables, values
+from ....cosim.can.timing import draws, lengths
+from ....cosim.can.wire import arbitration, log, medium, payload, tables, values
 from ....cosim.can.wire.tables import Wire
 from ...machine import access
 from ...machine.access import call_3, pointer, word
 from ..wire_tables import Arrays
 
-MODULES: tuple[ModuleType, ...] = (payload, values, medium)
+MODULES: tuple[ModuleType, ...] = (draws, lengths, payload, values, log, arbitration, medium)
 """The modules whose functions are compiled."""
 SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access)
 SIGNATURE = "int32(int64, int64, int64, int64)"
@@ -76,10 +77,10 @@ def _wire(t):
     """Return the tables at the addresses of a `wire_table`."""
     return Wire(
         _ints(t, 0), _ints(t, 1), _reals(t, 2), _ints(t, 3), _reals(t, 4),  # messages to maps
-        _ints(t, 5), _ints(t, 6), _ints(t, 7), _ints(t, 8), _ints(t, 9), _ints(t, 10),  # base to log
-        _row(t, 11, np.float64), _row(t, 12, np.int64),  # memory and frame
-        _row(t, 13, np.float32), _row(t, 14, np.int32), _row(t, 15, np.float64), _row(t, 16, np.int64),
-        _row(t, 17, np.int64), word(t, 3 * 18),  # state and helper
+        _ints(t, 5), _ints(t, 6), _ints(t, 7), _ints(t, 8), _ints(t, 9), _ints(t, 10),  # base to nodes
+        _reals(t, 11), _ints(t, 12), _row(t, 13, np.float64), _row(t, 14, np.int64),  # chances to frame
+        _row(t, 15, np.float32), _row(t, 16, np.int32), _row(t, 17, np.float64), _row(t, 18, np.int64),
+        _row(t, 19, np.int64), word(t, 3 * 20),  # state and helper
     )  # fmt: skip # in the order of Wire
 
 

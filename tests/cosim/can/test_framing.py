@@ -2,8 +2,31 @@
 
 from __future__ import annotations
 
-from evcosim.cosim.can.framing import Framing
+import pytest
+
+from evcosim.cosim.can.bus_settings import BusSettings
+from evcosim.cosim.can.database import Message
+from evcosim.cosim.can.framing import Framing, check_jitter, framing_of
+from evcosim.cosim.can.message_settings import MessageSettings
+from evcosim.cosim.errors import ConfigError
+
+MESSAGE = Message("test.dbc", "M", 1)
 
 
 def test_a_framing_without_settings_is_equal_to_another():
     assert Framing() == Framing()
+
+
+@pytest.mark.parametrize(("timing", "framed"), [("instant", False), ("frame", True)])
+def test_frames_that_take_time_are_made(timing, framed):
+    assert (framing_of(MESSAGE, BusSettings(timing=timing)) is not None) == framed
+
+
+def test_jitter_of_a_message_is_shorter_than_its_cycle():
+    check_jitter(MESSAGE, BusSettings(jitter=0.009), 0.01, "s.toml")
+    own = {"M": MessageSettings(jitter=0.0)}
+    check_jitter(MESSAGE, BusSettings(jitter=0.02, messages=own), 0.01, "s.toml")
+    with pytest.raises(
+        ConfigError, match=r"^s.toml: message 'M': jitter = 0.01 s is not less than its cycle"
+    ):
+        check_jitter(MESSAGE, BusSettings(jitter=0.01), 0.01, "s.toml")

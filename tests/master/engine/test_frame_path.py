@@ -31,7 +31,7 @@ def sender(plan: MessagePlan, memory: np.ndarray, log_raw: bool) -> Sender:
     return Sender(plan, channel, memoryview(memory), None)
 
 
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=150)
 @given(cases())
 def test_a_frame_carries_what_the_channel_carries(case):
     signal, use, values = case

@@ -16,13 +16,16 @@ def message(after=None, every=1, first=0, delay=0, width=2):
     )
 
 
-def plan(algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0, steps=100, told=True):
+def plan(
+    algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0, steps=100, told=True, timed=()
+):
     units = [SimpleNamespace(every=every) for every in periods]
     return SimpleNamespace(
         algorithm=algorithm,
         clock=SimpleNamespace(steps=steps, told=told),
         units=units,
         messages=messages,
+        timed_buses=timed,
         drives=[None] * drives,
         memory_size=100,
         text_columns=[None] * texts,
@@ -36,6 +39,13 @@ def words(actions):
 def test_texts_are_noted_with_the_row_where_there_are_any():
     assert words(schedule(plan(texts=1))).endswith("record note0 publish0 publish1")
     assert "note" not in words(schedule(plan()))
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+def test_timed_buses_arrive_before_all_messages_and_contend_behind_all_turns(algorithm):
+    actions = words(schedule(plan(algorithm, messages=[message()], drives=1, timed=("a", "b"))))
+    assert actions.startswith("drive0 arrive0 arrive1 send0 take0")
+    assert actions.endswith("end1 contend0 contend1 record publish0 publish1")
 
 
 def test_gauss_seidel_sends_first_then_takes_each_unit_with_its_discrete_messages():

@@ -28,9 +28,8 @@ def test_a_frame_arrives_after_the_delay():
         assert w.messages[0, T.ARRIVED] == max(0, k - 1)
         assert medium.act(w, T.SEND, 0, k) == T.DONE
     assert w.rings[0, T.COUNT] == 2
-    assert w.messages[0, [T.SENT, T.LATENCY_LEAST, T.LATENCY_MOST, T.SEEN_SUM]].tolist() == [
-        4, 2 * 10**12, 2 * 10**12, 4 * 10**12,
-    ]  # fmt: skip # one row
+    assert w.messages[0, [T.SENT, T.CARRIED, T.SEEN_LEAST]].tolist() == [4, 4, 2 * 10**12]
+    assert w.messages[0, [T.SEEN_SUM, T.SEEN_MOST]].tolist() == [4 * 10**12, 2 * 10**12]
 
 
 def test_without_a_ring_it_arrives_at_once_and_is_logged():
@@ -42,10 +41,29 @@ def test_without_a_ring_it_arrives_at_once_and_is_logged():
     assert w.log[0, [T.LOG_STEP, T.LOG_TIME, T.LOG_PAYLOAD]].tolist() == [3, 3 * 10**12, 255]
 
 
-def test_a_payload_of_eight_bytes_is_one_word_of_the_log():
-    w = wire(0, rows=0)
-    w.messages[0, [T.LOGGED, T.LENGTH]] = 1, 8
-    w.base[0, :8] = range(249, 257)
-    w.base[0, 7] = 200
-    assert medium.send(w, 0, 0) == T.DONE
-    assert w.log[0, T.LOG_PAYLOAD : T.LOG_PAYLOAD + 1].tobytes() == bytes([*range(249, 256), 200])
+def test_a_frame_that_waits_is_replaced_by_the_newest():
+    w = wire(0, rows=4)
+    w.buses[0, [T.TIMED, T.MESSAGES, T.BIT]] = 1, 1, 10**10
+    for value in (7, 8):
+        w.base[0, 0] = value
+        assert medium.send(w, 0, 0) == T.DONE
+    assert w.messages[0, [T.SENT, T.REPLACED]].tolist() == [2, 1]
+    assert medium.act(w, T.CONTEND, 0, 0) == T.DONE
+    assert medium.act(w, T.ARRIVE, 0, 1) == T.DONE
+    assert w.frame[0] == 8
+    assert w.messages[0, [T.CARRIED, T.ARRIVED]].tolist() == [1, 1]
+
+
+def test_the_pages_of_a_message_have_one_buffer():
+    w = wire(0, rows=4)
+    w.buses[0, [T.TIMED, T.MESSAGES, T.BIT]] = 1, 2, 10**10
+    for i in range(2):
+        w.messages[i, [T.LENGTH, T.PAGE, T.PAGES]] = 1, i, 2
+        w.base[i, 0] = 5 + i
+    for i in (1, 0, 1):
+        assert medium.send(w, i, 0) == T.DONE
+    assert w.messages[:2, T.QUEUED].tolist() == [0, 1]
+    assert w.messages[:2, T.REPLACED].tolist() == [1, 1]
+    assert w.buses[0, T.PENDING] == 1
+    assert medium.act(w, T.CONTEND, 0, 0) == T.DONE
+    assert w.frame[0] == 6

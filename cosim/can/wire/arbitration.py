@@ -1,0 +1,136 @@
+"""The bus: who of those that wait starts when it is idle, the bits of the frame, and what noise does to it.
+
+A wrong bit is seen by the sender at once and by all others before the error flag ends, so that the flags of
+both take 12 bits; the delimiter takes 8. The frame waits on, and contends anew. The sender's error counter
+(TEC) grows by 8, and falls by 1 with each frame that is carried; those of the receivers (REC) grow and fall
+by 1. Beyond 127 a node is error passive: after a frame of its own it lets 8 bits pass before the next. Beyond
+255 it is bus-off: it sends nothing for 128 times 11 bits, and begins again with counters of 0.
+"""
+
+from __future__ import annotations
+
+from ..timing.draws import drawn
+from ..timing.lengths import classic_bits, fd_bits
+from . import tables as T
+from .tables import Wire
+
+_ERROR = 2  # what is drawn for
+_ERROR_FRAME = 20  # bits of the flags of all nodes and the delimiter
+_INTERFRAME = 3
+_TAIL = 9  # bits behind those that may have the data bit rate
+_SUSPENDED = 8
+_RECOVERY = 128 * 11
+_PASSIVE, _OFF = 127, 255
+_NEVER = 0x7FFFFFFFFFFFFFFF
+
+
+def contend(w: Wire, bus: int, end: int) -> int:
+    """Let the next frame have the bus that starts before a time; return its message, -1 for none.
+
+    It is the frame at hand then, and the bus is free after it.
+    """
+    b = w.buses
+    now = b[bus, T.FREE_AT]
+    while now < end:
+        i, now = first_of(w, bus, now)
+        if i < 0 or now >= end:
+            break
+        for byte in range(w.messages[i, T.LENGTH]):
+            w.frame[byte] = w.waiting[i, byte]
+        good = carry(w, bus, i, now)
+        now = b[bus, T.FREE_AT]
+        if good:
+            w.messages[i, T.QUEUED] = 0
+            b[bus, T.PENDING] -= 1
+            return i
+    return -1
+
+
+def first_of(w: Wire, bus: int, now: int) -> tuple[int, int]:
+    """Return the message that wins the bus, which is idle from `now` on, and when; -1: none waits."""
+    m, first = w.messages, w.buses[bus, T.FIRST_MESSAGE]
+    soonest = _NEVER
+    for i in range(first, first + w.buses[bus, T.MESSAGES]):
+        if m[i, T.QUEUED]:
+            since = max(m[i, T.SINCE], w.nodes[m[i, T.NODE], T.READY_AT])
+            if since <= now:
+                return i, now
+            soonest = min(soonest, since)
+    if soonest == _NEVER:
+        return -1, now
+    return first_of_later(w, bus, soonest), soonest
+
+
+def first_of_later(w: Wire, bus: int, now: int) -> int:
+    """Return the message that wins the bus at a time at which one may start."""
+    m, first = w.messages, w.buses[bus, T.FIRST_MESSAGE]
+    for i in range(first, first + w.buses[bus, T.MESSAGES]):
+        if m[i, T.QUEUED] and max(m[i, T.SINCE], w.nodes[m[i, T.NODE], T.READY_AT]) <= now:
+            return i
+    return -1
+
+
+def carry(w: Wire, bus: int, i: int, now: int) -> int:
+    """Send the frame at hand, of message i, from `now` on; return 1 if it is carried, 0 with a wrong bit."""
+    m, b = w.messages, w.buses
+    nominal, fast = bits_of(w, i)
+    wrong = -1
+    if b[bus, T.NOISY]:
+        wrong = wrong_bit(w, bus, i, nominal + fast)
+        count_errors(w, bus, m[i, T.NODE], wrong >= 0)
+    if wrong < 0:
+        b[bus, T.FREE_AT] = now + nominal * b[bus, T.BIT] + fast * b[bus, T.DATA_BIT]
+    else:
+        m[i, T.ERRORS] += 1
+        head = nominal - _TAIL if fast else nominal
+        quick = min(max(wrong + 1 - head, 0), fast)
+        b[bus, T.FREE_AT] = (
+            now + (wrong + 1 - quick + _ERROR_FRAME) * b[bus, T.BIT] + quick * b[bus, T.DATA_BIT]
+        )
+    b[bus, T.FREE_AT] += _INTERFRAME * b[bus, T.BIT]
+    m[i, T.BUSY] += b[bus, T.FREE_AT] - now
+    if w.nodes[m[i, T.NODE], T.ERROR_COUNT] > _PASSIVE:
+        suspend(w, bus, m[i, T.NODE])
+    return 1 if wrong < 0 else 0
+
+
+def bits_of(w: Wire, i: int) -> tuple[int, int]:
+    """Return the bits of the frame at hand, of message i, at the nominal and at the data bit rate."""
+    m = w.messages
+    if m[i, T.FD]:
+        return fd_bits(m[i, T.ID], m[i, T.EXTENDED], w.frame, 0, m[i, T.LENGTH], m[i, T.SWITCHED])
+    return classic_bits(m[i, T.ID], m[i, T.EXTENDED], w.frame, 0, m[i, T.LENGTH]), 0
+
+
+def wrong_bit(w: Wire, bus: int, i: int, bits: int) -> int:
+    """Return the first bit of so many that is wrong, from 0 on; -1: all are right."""
+    b, m = w.buses, w.messages
+    attempt = m[i, T.CARRIED] + m[i, T.ERRORS]
+    purpose = _ERROR | m[i, T.PAGE] << 8
+    draw = drawn(b[bus, T.SEED], b[bus, T.NAME], m[i, T.ID], attempt, purpose)
+    if draw >= w.chances[bus, bits]:
+        return -1
+    bit = 0
+    while draw >= w.chances[bus, bit + 1]:
+        bit += 1
+    return bit
+
+
+def count_errors(w: Wire, bus: int, sender: int, wrong: int) -> None:
+    """Count a frame in the error counters of all nodes of a bus."""
+    for node in range(len(w.nodes)):
+        if w.nodes[node, T.BUS_OF] == bus:
+            column = T.ERROR_COUNT if node == sender else T.RECEIVE_COUNT
+            step = 8 if node == sender else 1
+            count = w.nodes[node, column] + step if wrong else max(0, w.nodes[node, column] - 1)
+            w.nodes[node, column] = count
+
+
+def suspend(w: Wire, bus: int, node: int) -> None:
+    """Let a node that is error passive or bus-off wait after its frame."""
+    pause = _SUSPENDED
+    if w.nodes[node, T.ERROR_COUNT] > _OFF:
+        w.nodes[node, T.BUS_OFFS] += 1
+        w.nodes[node, T.ERROR_COUNT] = w.nodes[node, T.RECEIVE_COUNT] = 0
+        pause = _RECOVERY
+    w.nodes[node, T.READY_AT] = w.buses[bus, T.FREE_AT] + pause * w.buses[bus, T.BIT]

@@ -1,0 +1,59 @@
+"""Counts of the frames of a run: load, losses and times by bus and message."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...cosim.can.wire import tables as T
+from .frame_path import FramePath
+
+_PICOSECOND = 1e-12
+
+_COUNTS = {
+    "sent": T.SENT,
+    "replaced": T.REPLACED,
+    "carried": T.CARRIED,
+    "errors": T.ERRORS,
+    "arrived": T.ARRIVED,
+}
+
+
+def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
+    """Return the counts of the buses that carried frames, by name, after so many steps.
+
+    Of a bus on which frames take time: `load`, the share of the time that it was busy, and of each node the
+    error counters. Of each message its `load`, the numbers of frames that were sent, replaced by a newer one
+    before they were carried, carried, ended by wire errors and arrived, and least, mean and greatest time [s]
+    from the sampling to the end of the frame (`latency`) and to the communication point at which
+    receivers see it (`seen`).
+    """
+    found: dict[str, dict[str, Any]] = {}
+    messages, state = frames.arrays["messages"], frames.arrays["state"]
+    elapsed = max(1, steps * int(state[T.STEP_TIME]))
+    for row, sender in zip(messages, frames.senders, strict=False):
+        about = found.setdefault(sender.plan.bus, {"load": 0.0, "messages": {}, "nodes": {}})
+        load = float(row[T.BUSY]) / elapsed
+        about["load"] += load
+        page = "".join(f" {name} = {raw}" for name, raw in sender.plan.page.items())
+        about["messages"][sender.plan.message.name + page] = {
+            "load": load,
+            **{name: int(row[column]) for name, column in _COUNTS.items()},
+            "latency": _times(row, T.LATENCY_LEAST, int(row[T.CARRIED])),
+            "seen": _times(row, T.SEEN_LEAST, int(row[T.ARRIVED])),
+        }
+    for (bus, node), row in zip(frames.nodes, frames.arrays["nodes"], strict=False):
+        found[bus]["nodes"][node] = {
+            "tec": int(row[T.ERROR_COUNT]), "rec": int(row[T.RECEIVE_COUNT]), "bus_off": int(row[T.BUS_OFFS]),
+        }  # fmt: skip # a row
+    return found
+
+
+def _times(row: NDArray[np.int64], least: int, count: int) -> dict[str, float] | None:
+    """Return least, mean and greatest time [s] of three columns; None without any."""
+    if count == 0:
+        return None
+    low, total, high = (float(row[least + i]) * _PICOSECOND for i in range(3))
+    return {"min": low, "mean": total / count, "max": high}
