@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -19,7 +19,7 @@ from ..cosim.plan.turns import TurnTimes
 from ..cosim.results.repeat import command_of, given_options
 from ..cosim.swap.mapping import present, without_absent, without_open, without_untaken
 from ..cosim.swap.requirements import lacking
-from ..cosim.swap.sampled import inherited, sampled_in, told, untold
+from ..cosim.swap.sampled import discrete_in, inherited, sampled_in, told, unknown, untold
 from ..cosim.swap.swap_file import swapped
 from ..cosim.system.outside import read_outside
 from ..cosim.system.run_options import RunOptions, check_options
@@ -148,18 +148,21 @@ def _sampled(
     if wanted is not None and not put_in:
         return told(interface, unit, wanted, system.keys_of(unit)), []
     if (put_in or unit in system.swaps) and not interface.tells_sampled:
-        return inherited(interface, unit, sampled_in(of_place(original, unit)))
+        names = _sampled_in_place(original, unit, interface)
+        return (interface, unknown(unit, interface)) if names is None else inherited(interface, unit, names)
     return interface, untold(unit, interface)
 
 
-def of_place(system: System, unit: str) -> UnitInterface:
-    """Return the interface of the FMU that a system has for a unit; an empty one where it is not there."""
+def _sampled_in_place(system: System, unit: str, taking: UnitInterface) -> Collection[str] | None:
+    """Return the sampled outputs of the unit whose place another FMU is `taking`; None for unknown ones."""
     entry, keys = system.file.units[unit], system.keys_of(unit)
     try:
         interface = present(read_fmu(fmu_file(entry.fmu, system.path)).interface, entry, keys)
     except ConfigError:  # the place of an FMU that is not there is taken by another one
-        return UnitInterface(entry.fmu, {})
-    return interface if entry.sampled is None else told(interface, unit, entry.sampled, keys)
+        if isinstance(entry.sampled, bool):
+            return discrete_in(taking) if entry.sampled else ()
+        return entry.sampled
+    return sampled_in(interface if entry.sampled is None else told(interface, unit, entry.sampled, keys))
 
 
 def _undriven(plan: Plan, opened: Sequence[str]) -> list[str]:

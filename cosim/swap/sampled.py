@@ -21,6 +21,11 @@ def sampled_in(interface: UnitInterface) -> tuple[str, ...]:
     return tuple(v.name for v in interface.variables.values() if v.sampled)
 
 
+def discrete_in(interface: UnitInterface) -> list[str]:
+    """Return the names of the outputs that are declared discrete, in declared order."""
+    return [v.name for v in interface.of_causality("output") if v.variability != "continuous"]
+
+
 def told(interface: UnitInterface, unit: str, wanted: bool | list[str], keys: str) -> UnitInterface:
     """Return the interface with the sampled outputs that the unit's key `sampled` says.
 
@@ -33,7 +38,7 @@ def told(interface: UnitInterface, unit: str, wanted: bool | list[str], keys: st
         return _with(interface, wanted)
     if not wanted:
         return _with(interface, ())
-    discrete = [v.name for v in interface.of_causality("output") if v.variability != "continuous"]
+    discrete = discrete_in(interface)
     if not discrete:
         raise ConfigError(
             f"{keys}sampled = true: no output of {interface.place} is declared discrete; list those that the "
@@ -57,9 +62,24 @@ def inherited(interface: UnitInterface, unit: str, place: Collection[str]) -> tu
     ]
 
 
+def unknown(unit: str, interface: UnitInterface) -> list[str]:
+    """Return the warning of an FMU that takes the place of one that cannot be read.
+
+    [] where no output is discrete.
+    """
+    discrete = discrete_in(interface)
+    if not discrete:
+        return []
+    return [
+        f"unit '{unit}': the FMU whose place {interface.place} takes cannot be read, so that its sampled "
+        f"outputs are unknown: {_listed(discrete)} {_are(discrete)} not taken as sampled; `sampled` of the "
+        "unit says which are"
+    ]
+
+
 def untold(unit: str, interface: UnitInterface) -> list[str]:
     """Return the warning of an FMU of an earlier evcosim, which does not tell; [] for any other."""
-    discrete = [v.name for v in interface.of_causality("output") if v.variability != "continuous"]
+    discrete = discrete_in(interface)
     if interface.tells_sampled or not interface.ours or not discrete:
         return []
     return [

@@ -137,6 +137,24 @@ def test_an_fmu_inherits_from_the_place_that_it_takes(tmp_path: Path, how: str) 
         assert not [text for text in simulation.warnings if "sampled" in text]
 
 
+@pytest.mark.parametrize(
+    ("more", "time"),
+    [('sampled = ["stairs"]', 0.99), ("sampled = true", 0.99), ("sampled = false", 1.0), ("", 1.0)],
+)
+def test_the_place_of_an_fmu_that_is_not_there_is_known_by_its_keys(
+    tmp_path: Path, more: str, time: float
+) -> None:
+    path = stairs(tmp_path, more=more)
+    path.write_text(path.read_text().replace("watch2.fmu", "gone.fmu", 1))
+    for options in ({}, {"fmus": {"a": str(tmp_path / "other.fmu")}}):
+        with inheriting(tmp_path, **options) as simulation:
+            simulation.run()
+            assert change(simulation.results, "a.stairs") == time
+            said = [text for text in simulation.warnings if "sampled" in text]
+        assert len(said) == (more != "sampled = false")
+        assert ("are unknown: stairs, copy are not taken as sampled" in "".join(said)) == (not more)
+
+
 def test_an_fmu_of_an_earlier_evcosim_is_warned_of(tmp_path: Path) -> None:
     path = stairs(tmp_path)
     assert not [text for text in prepare(path, trust=True).plan.warnings if "earlier" in text]
