@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import pytest
 from hypothesis import settings
 
@@ -10,6 +12,9 @@ from support import bytecode, scratch
 # an example that a busy machine slows down has failed nothing: speed is shown by benchmarks
 settings.register_profile("evcosim", deadline=None)
 settings.load_profile("evcosim")
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in a background job, whose children ignore it too
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 bytecode.compile_sources()
 scratch.use()

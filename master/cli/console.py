@@ -115,7 +115,23 @@ def _width() -> int:
 
 
 def _print_bold(text: str) -> None:
-    typer.secho(visible(text), file=raw_stream(sys.stdout), bold=True)  # plain where it is no terminal
+    typer.secho(visible(text), file=raw_stream(sys.stdout), bold=True, color=is_bold(sys.stdout.isatty()))
+
+
+def is_bold(terminal: bool, environment: Mapping[str, str] = os.environ) -> bool:
+    """Return True where headings are bold: on a terminal, unless the environment says otherwise.
+
+    NO_COLOR counts most, then FORCE_COLOR and CLICOLOR_FORCE, then TERM=dumb and CLICOLOR=0.
+    """
+
+    def says(name: str) -> bool:
+        return environment.get(name, "") not in ("", "0")
+
+    if environment.get("NO_COLOR"):
+        return False
+    if says("FORCE_COLOR") or says("CLICOLOR_FORCE"):
+        return True
+    return terminal and environment.get("TERM") != "dumb" and environment.get("CLICOLOR") != "0"
 
 
 def number(value: float) -> str:

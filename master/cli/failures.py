@@ -13,6 +13,7 @@ import typer
 from ...cosim.visible import raw_stream, visible, visible_stream
 from . import interrupts, outputs
 from .typed_paths import check_given
+from .wrapping import message_lines
 
 _SCREEN = 20  # lines of a message at most
 _NO_MEMORY = "failed to map segment from shared object"  # the loader's message for a library
@@ -85,13 +86,24 @@ def open_closed_streams() -> None:
 
 
 def complain(message: str, whole: bool = False) -> None:
-    """Print a message on stderr: at most a screen, unless `whole`."""
+    """Print a message on stderr: at most a screen, wrapped in a terminal, unless `whole`."""
     lines = visible(message.strip()).split("\n") if message.strip() else ["no reason given"]
     if len(lines) > _SCREEN and not whole:
         lines[_SCREEN - 1 :] = [f"... and {len(lines) - _SCREEN + 1} more lines; --debug shows them"]
     # a name with a line feed must not make another message of what follows
     lines[1:] = [f"  {line}" if line.lstrip().startswith("evcosim:") else line for line in lines[1:]]
-    print("evcosim: " + "\n".join(lines), file=sys.stderr)
+    lines[0] = f"evcosim: {lines[0]}"
+    width = 0 if whole else _terminal_width()
+    shown = [part for line in lines for part in message_lines(line, width)] if width else lines
+    print("\n".join(shown), file=sys.stderr)
+
+
+def _terminal_width() -> int:
+    """Return the columns of the terminal that shows messages; 0 for a file or a pipe."""
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns if sys.stderr.isatty() else 0
+    except (OSError, ValueError):  # a stream without a descriptor
+        return 0
 
 
 def _judged(error: Exception) -> tuple[int, str]:

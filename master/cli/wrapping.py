@@ -6,10 +6,14 @@ import itertools
 import re
 from collections.abc import Collection, Sequence
 
-GAP, _INDENT = "  ", "    "
+GAP, _INDENT, _BEGIN = "  ", "    ", "  "
 _LEAST = 8  # columns of a cell, however narrow the terminal is
 _NAMES = re.compile(r"(?<=[./:])(?=[^\W\d_])")  # as in bus.message.signal and folder/file
 _WORDS = re.compile(r"(?<=[./:_])(?=[^\W\d_])")  # as in rolling_coefficient
+_QUOTED = re.compile(
+    r"(?:(?<!\w)'(?=\S).*?(?<=\S)'(?!\w)|\S)+"
+)  # a word, with all that stands in quotes in it
+_PLACE = re.compile(r"(?:evcosim: )?(?:warning: )?[^:']*[./\\][^\s:']*:(?= )")  # the file that is spoken of
 
 
 Table = Sequence[Sequence[str]]
@@ -82,6 +86,26 @@ def _row_lines(row: Sequence[str], widths: Sequence[int], on_right: Sequence[boo
         ).rstrip()
         for parts in itertools.zip_longest(*cells, fillvalue="")
     ]
+
+
+def message_lines(line: str, width: int) -> list[str]:
+    """Return a line of a message as lines of a terminal, those after the first indented.
+
+    It is wrapped between words. A word and the file with which a message begins stay whole, however long they
+    are, and so does, where a line has room for it, what stands in quotes, as a command to be copied.
+    """
+    if len(line) <= width:
+        return [line]
+    place = _PLACE.match(line)
+    start = place.end() if place else 0
+    lines = [line[:start]] if start else []
+    for word in _QUOTED.findall(line[start:]):
+        for part in [word] if len(word) <= width - len(_BEGIN) else word.split():
+            if lines and len(lines[-1]) + 1 + len(part) <= width:
+                lines[-1] += f" {part}"
+            else:
+                lines.append(f"{_BEGIN}{part}" if lines else part)
+    return lines
 
 
 def cell_lines(text: str, width: int) -> list[str]:

@@ -25,6 +25,11 @@ evcosim schema --json-of run
 evcosim schema --json-of compare
 ```
 
+Without it too a pipe or a file gets what a terminal shows, with each message on one line, so that it can be
+searched. In a terminal tables and messages are wrapped to its width; names of files, and commands in quotes
+where they fit, stay whole. Headings are bold there: `NO_COLOR`, `TERM=dumb` and `CLICOLOR=0` leave that
+out, `FORCE_COLOR` and `CLICOLOR_FORCE` put it into a pipe. `COLUMNS` is the width of tables there.
+
 In the tables `rows[].name` is the key `name` of each entry of the list `rows`, and `metrics.*.value`
 the key `value` of each entry of `metrics`, by name.
 """

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 from evcosim.master.cli import console
+from evcosim.master.reproduce import papers
+from evcosim.master.reproduce.page import Page, Row
 
 
 @pytest.mark.parametrize("columns", ["20", "40", "80", "200"])
@@ -35,3 +43,115 @@ def test_a_wrapped_table_is_no_wider_than_the_terminal(capsys, monkeypatch):
 def test_json_has_no_nan(capsys):
     console.print_json({"a": [float("nan"), np.float64(1.0)], "b": float("inf")})
     assert json.loads(capsys.readouterr().out) == {"a": [None, 1.0], "b": None}
+
+
+@pytest.mark.parametrize(
+    ("terminal", "environment", "bold"),
+    [
+        (True, {}, True),
+        (False, {}, False),
+        (True, {"NO_COLOR": "1"}, False),
+        (True, {"NO_COLOR": ""}, True),
+        (True, {"TERM": "dumb"}, False),
+        (True, {"TERM": "xterm", "CLICOLOR": "1"}, True),
+        (True, {"CLICOLOR": "0"}, False),
+        (False, {"CLICOLOR": "1"}, False),
+        (False, {"FORCE_COLOR": "1"}, True),
+        (False, {"FORCE_COLOR": "0"}, False),
+        (False, {"CLICOLOR_FORCE": "1", "TERM": "dumb"}, True),
+        (True, {"NO_COLOR": "1", "FORCE_COLOR": "1"}, False),
+    ],
+)
+def test_where_headings_are_bold(terminal, environment, bold):
+    assert console.is_bold(terminal, environment) is bold
+
+
+VERBS = [
+    ("list",),
+    ("info", "scooter"),
+    ("info", "Battery"),
+    ("check", "Battery", "--as", "scooter.vehicle"),
+    ("compare", "a", "b"),
+    ("reproduce", "lane_keeping"),
+    ("run", "Battery", "--stop-time", "0.1", "--no-plot", "--no-report", "--profile"),
+    ("schema", "swap"),
+    ("new", "made"),
+    ("run", "nothing"),
+]
+
+
+@pytest.mark.parametrize("command", VERBS, ids=lambda command: " ".join(command[:2]))
+def test_color_adds_escapes_to_what_a_verb_prints_and_no_color_keeps_them_out(
+    evcosim, request, monkeypatch, command
+):
+    """Only headings are set off, so that the text is the same without."""
+    if command[0] == "compare":
+        request.getfixturevalue("two_runs")
+    if command[0] == "reproduce":
+        page = Page("lane_keeping", "t", "s", "a", (Row("(1)", "x", "", "", "1", "calibrated"),), (), (), ())
+        monkeypatch.setattr(papers, "reproduce", lambda *_: [page])
+    for name in ("NO_COLOR", "FORCE_COLOR", "CLICOLOR", "CLICOLOR_FORCE"):
+        monkeypatch.delenv(name, raising=False)
+    said = []
+    for environment in ({}, {"FORCE_COLOR": "1"}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}):
+        for name, value in environment.items():
+            monkeypatch.setenv(name, value)
+        answer = evcosim(*command, *(("-o", "out") if command[0] in ("run", "reproduce") else ()))
+        shutil.rmtree("made", ignore_errors=True)
+        said.append(answer.out + answer.err)
+    assert [("\x1b" in text) for text in said] == [
+        False,
+        command[0] in COLORED and command[1:] != ("nothing",),
+        False,
+    ]
+    plain, colored, _ = (re.sub(r"\d[\d.e+-]*", "#", re.sub("\x1b\\[[01]m", "", text)) for text in said)
+    assert plain.split() == colored.split()
+
+
+COLORED = {"list", "info", "check", "compare", "reproduce", "run"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pty")
+@pytest.mark.parametrize(
+    ("more", "bold"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)]
+)
+def test_a_terminal_of_60_columns(tmp_path, more, bold):
+    """Messages are wrapped there, and a pipe has each on a line."""
+    outside = ("COLUMNS", "NO_COLOR", "FORCE_COLOR", "CLICOLOR", "CLICOLOR_FORCE")
+    environment = {k: v for k, v in os.environ.items() if k not in outside} | {"TERM": "xterm"} | more
+    verbs = "main(['list']); main(['run', 'mine/systems/scoter.toml'])"
+    program = f"from evcosim.master.cli import main; {verbs}"
+    said = in_terminal([sys.executable, "-c", program], tmp_path, environment, columns=60)
+    assert ("\x1b[1m" in said) is bold
+    assert "evcosim: mine/systems/scoter.toml: there is no such system\r\n  file\r\n" in said
+    assert max(len(re.sub("\x1b\\[[01]m", "", line)) for line in said.splitlines()) <= 60
+    if more:
+        return
+    run = [sys.executable, "-c", program]
+    piped = subprocess.run(run, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert piped.stderr == "evcosim: mine/systems/scoter.toml: there is no such system file\n"
+    assert "\x1b" not in piped.stdout
+
+
+def in_terminal(command, folder, environment, columns):
+    """Return what a program prints to a terminal of so many columns."""
+    import fcntl
+    import pty
+    import termios
+
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    running = subprocess.Popen(command, cwd=folder, env=environment, stdout=slave, stderr=slave, stdin=slave)
+    os.close(slave)
+    said = b""
+    while True:
+        try:
+            part = os.read(master, 65536)
+        except OSError:  # Linux says so that nobody has the other end any more
+            part = b""
+        if not part:
+            break
+        said += part
+    os.close(master)
+    running.wait(timeout=60)
+    return said.decode()

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+
+import jsonschema
+import pytest
+
+from evcosim.master.cli.json_schemas import schema_of
 from evcosim.master.reproduce import papers
 from evcosim.master.reproduce.page import Page, Row
-from evcosim.master.reproduce.printed import sentence
+from evcosim.master.reproduce.printed import VERDICTS, sentence
 from support.answers import refused
 
 
@@ -33,6 +39,20 @@ def test_the_last_line_counts_as_the_index_does(evcosim, monkeypatch):
 def test_an_unknown_paper(evcosim, tmp_path):
     refused(evcosim("reproduce", "scoter", "-o", "pages"), "no paper 'scoter' (did you mean 'scooter'?)")
     assert not (tmp_path / "pages").exists()
+
+
+@pytest.mark.parametrize("verdict", [*VERDICTS, "missed"])
+def test_what_is_printed_as_json_is_what_its_schema_says(evcosim, monkeypatch, verdict):
+    page = page_of(verdict)
+    others = [dataclasses.replace(page, name=name) for name in ("scooter", "braking", "multi_drive")]
+    monkeypatch.setattr(papers, "reproduce", lambda *_: [page, *others])
+    printed = evcosim("reproduce", "--json").json
+    assert list(printed) == ["lane_keeping", "scooter", "braking", "multi_drive"]
+    schema = jsonschema.Draft202012Validator(schema_of("reproduce"))
+    schema.validate(printed)
+    (row,) = printed["lane_keeping"]["rows"]
+    del row["verdict"]
+    assert not schema.is_valid(printed)
 
 
 def test_the_tables_as_json(evcosim, monkeypatch):

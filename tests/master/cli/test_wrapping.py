@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.master.cli.wrapping import cell_lines, column_widths, is_narrow, wrapped, wrapped_below
+from evcosim.master.cli.wrapping import (
+    cell_lines,
+    column_widths,
+    is_narrow,
+    message_lines,
+    wrapped,
+    wrapped_below,
+)
 
 HEAD = ("place", "what", "obtained")
 ROWS = [
@@ -67,3 +74,40 @@ def test_nothing_is_lost_and_no_line_is_too_long(rows, width):
 )
 def test_the_widest_columns_are_cut(available, widths):
     assert column_widths([["abc", "x" * 10, "y" * 30]], available) == widths
+
+
+@pytest.mark.parametrize("width", [20, 40, 80])
+@pytest.mark.parametrize(
+    ("line", "whole"),
+    [
+        (
+            "evcosim: a b/my system.toml: connect 1.to: a list is needed, not 'car.speed'",
+            "a b/my system.toml:",
+        ),
+        ("evcosim: there is no unit 'ecm'; 'evcosim check a.fmu --as b.c' shows it all", "--as b.c'"),
+        ("evcosim: warning: x is the user's, and it's /a/very/long/path/to/that.toml in it", "/to/that.toml"),
+        ("evcosim: " + "x" * 90 + " and words behind it that are as long as this", "x" * 90),
+    ],
+)
+def test_a_message_is_wrapped_between_words(line, whole, width):
+    lines = message_lines(line, width)
+    assert " ".join(part.strip() for part in lines) == line
+    assert any(whole in part for part in lines)
+    assert not lines[0].startswith(" ") and all(part.startswith("  ") for part in lines[1:])
+    longest = max(len(part) for part in lines)
+    assert longest <= width or any(len(part) > width for part in [*line.split(), line[: line.find(": ", 9)]])
+
+
+def test_a_command_in_quotes_stays_on_a_line_that_has_room():
+    line = "evcosim: unknown system 'scoter': type 'evcosim run scooter --set vehicle.mass=180' now"
+    assert message_lines(line, 60) == [
+        "evcosim: unknown system 'scoter': type",
+        "  'evcosim run scooter --set vehicle.mass=180' now",
+    ]
+    assert message_lines(line, 100) == [line]
+    assert message_lines("  as it is", 80) == ["  as it is"]
+
+
+@given(st.text("ab '/.:", max_size=80), st.integers(10, 60))
+def test_no_character_of_a_message_is_lost(line, width):
+    assert "".join("".join(message_lines(line, width)).split()) == "".join(line.split())
