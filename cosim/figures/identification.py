@@ -118,19 +118,16 @@ def prediction(
         panels = list(grid[:, 0])
         top = panels[0]
         top.plot(found.time, found.measured, color=COLORS[0], linewidth=2.4, label="measured")
-        dashes = (0, (5, 1.5))
-        top.plot(
-            found.time, found.predicted, color=COLORS[1], linestyle=dashes, linewidth=1.4, label="model,\n"
-            "re-initialized in\ndecelerations",
-        )  # fmt: skip # one line of text in two
-        for i, (text, values) in enumerate((others or {}).items(), 2):
+        others = others or {}
+        of_fit = f"{'linear ' if others else ''}model,\nre-initialized in\ndecelerations"
+        for i, (text, values) in enumerate([*others.items(), (of_fit, found.predicted)], 1):
             top.plot(found.time, values, **look(i) | {"linewidth": 1.4}, label=text)
         name = flowing(label)
         top.set_ylabel(f"{name}\n[{pretty(unit)}]" if unit else name)
         if shown:
             panels[1].plot(found.time, found.esr, color=COLORS[0], marker=".", ms=3, label="in accelerations")
             mean = f"mean, {found.mean_esr:.2f} %"
-            panels[1].axhline(found.mean_esr, color=COLORS[1], linestyle=dashes, linewidth=1.4, label=mean)
+            panels[1].axhline(found.mean_esr, **look(1) | {"linewidth": 1.4}, label=mean)
             panels[1].set_ylabel("ESR [%]")
             panels[1].set_ylim(bottom=0.0)
         for axes in panels:

@@ -8,9 +8,11 @@ from ..visible import flowing, on_one_line
 
 
 def pretty(unit: str) -> str:
-    """Return a unit's name as print has it: m/s2 as m/s², N.m as N·m."""
+    """Return a unit's name as print has it: m/s2 as m/s², N.m as N·m, uH as µH, ohm as Ω."""
     raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
     printed = re.sub(r"(?<=[A-Za-z])-?\d+", lambda m: m[0].translate(raised), unit).replace(".", "·")
+    printed = re.sub(r"\bu(?=(?:[msgHFAVWN]|ohm)\b)", "µ", printed)
+    printed = re.sub(r"(?<![A-Za-z])([kMmµ]?)ohm\b", r"\1Ω", printed)
     return on_one_line(printed)
 
 

@@ -27,17 +27,18 @@ _WITH_UNIT = re.compile(r"(?s)(.*?)\s*\[([^\[\]]+)\]\s*")  # "speed [m/s]"
 def redrawn(figure: Figure) -> str:
     """Return the lines of a figure as panels in HTML, one for each axes; "" where one is not over time.
 
-    A panel begins with the part of the time that the figure shows. What is no line is left out.
+    A panel begins with the part of the time that the figure shows. What is no line is left out. Panels stand
+    below each other: each has the title of its column and the label of its row.
     """
     axes = [each for each in figure.axes if _curves(each)]
     if not axes or not all(_over_time(each, axes) for each in axes):
         return ""
     columns = Columns()
-    panels = [_panel(each, columns) for each in axes]
     times = np.concatenate([_numbers(line.get_xdata()) for each in axes for line in _curves(each)])
     if not len(times):
         return ""
     whole = TimeAxis(1.0, "s", float(times.min()), float(times.max()))
+    panels = [_panel(each, figure.axes, whole, columns) for each in axes]
     low, high = (float(end) for end in axes[-1].get_xlim())
     shown = (max(low, whole.begin), min(high, whole.end))
     return element(whole, columns, panels=panels, signals=[], shown=shown if shown[0] < shown[1] else None)
@@ -58,22 +59,57 @@ def _numbers(values: Any) -> Array:
     return np.asarray(values, dtype=np.float64)
 
 
-def _panel(axes: Axes, columns: Columns) -> dict[str, Any]:
-    found = _WITH_UNIT.fullmatch(axes.get_ylabel())
-    label, unit = found.groups() if found else (axes.get_ylabel(), "")
-    title = ": ".join(text for text in (axes.get_title(), label.strip()) if text)
+def _panel(axes: Axes, all_axes: list[Axes], whole: TimeAxis, columns: Columns) -> dict[str, Any]:
+    above, beside = _texts(axes, all_axes)
+    found = _WITH_UNIT.fullmatch(beside)
+    label, unit = found.groups() if found else (beside, "")
+    title = ": ".join(text for text in (above, label.strip()) if text)
+    curves = [(line, _numbers(line.get_xdata()), _numbers(line.get_ydata())) for line in _curves(axes)]
+    ends = np.array([whole.begin, whole.end])
+    levels = [(line, ends, _numbers(line.get_ydata())) for line in _levels(axes)]
     lines = [
         line_data(
-            array_column(columns, _numbers(line.get_xdata()), _numbers(line.get_ydata())),
-            "" if str(line.get_label()).startswith("_") else str(line.get_label()),
+            array_column(columns, times, values),
+            _name(line),
             line.get_drawstyle() == "steps-post",
             _stroke(line),
         )
-        for line in _curves(axes)
+        for line, times, values in curves + levels
     ]
     low, high = (float(end) for end in axes.get_ylim())
     given = not axes.get_autoscaley_on() and low < high
     return panel_data(title, "" if unit == "1" else unit, lines, (), (low, high) if given else None)
+
+
+def _texts(axes: Axes, all_axes: list[Axes]) -> tuple[str, str]:
+    """Return the text above the column of a chart, and that beside its row: its own ones, if it has them."""
+    place = axes.get_subplotspec()
+    above, beside = axes.get_title(), axes.get_ylabel()
+    for other in all_axes:
+        there = other.get_subplotspec()
+        if place is None or there is None:
+            continue
+        if there.colspan == place.colspan and there.rowspan.start <= place.rowspan.start:
+            above = above or other.get_title()
+        if there.rowspan == place.rowspan and there.colspan.start <= place.colspan.start:
+            beside = beside or other.get_ylabel()
+    return above, beside
+
+
+def _levels(axes: Axes) -> list[Line2D]:
+    """Return the lines across a whole chart that have a name."""
+    return [
+        line
+        for line in axes.get_lines()
+        if _name(line)
+        and list(_numbers(line.get_xdata())) == [0.0, 1.0]
+        and len(set(_numbers(line.get_ydata()))) == 1
+    ]
+
+
+def _name(line: Line2D) -> str:
+    text = str(line.get_label())
+    return "" if text.startswith("_") else text
 
 
 def _stroke(line: Line2D) -> Stroke:

@@ -215,7 +215,7 @@ def _maneuvers(found: dict[str, Any]) -> Findings:
     )
     return {
         "pid": holds(
-            f"held within {held:.2f}; {_lock(found['estimated_speed'], '').obtained}",
+            f"held within {held:.3f}; {_lock(found['estimated_speed'], '').obtained}",
             held < 0.15 and lock_of(found["estimated_speed"]).stays,
             "held within 0.15 above 5 m/s; locked to standstill",
         ),

@@ -19,17 +19,17 @@ from .page import Picture
 
 _SHORT = {"known_speed": "(a)", "front_only": "(c)", "front_compensated": "(d)"}
 _ABOUT_FIG_3 = (
-    "Fig. 3: Psi, the torque that keeps a wheel at its slip, over that slip, on a dry road: (a) front wheel, "
+    "Fig. 3: Ψ, the torque that keeps a wheel at its slip, over that slip, on a dry road: (a) front wheel, "
     "(b) rear wheel, for slips of the other wheel of 0.1 (solid), 0.5 (dashed) and 0.9 (dotted; printed as "
     "0.1 again, a misprint)"
 )
 _ABOUT_PSI = (
-    "Beyond the paper: Psi on a dry road over both slips, and on four roads with the other wheel at 0.22; "
-    "the torque of a controller with 1.05 k-bar meets it once on each road"
+    "Beyond the paper: Ψ on a dry road over both slips, and on four roads with the other wheel at 0.22; "
+    "the torque of a controller with 1.05 k̄ meets it once on each road"
 )
 _ABOUT_PROPOSITIONS = (
-    "Propositions 3.1 and 3.2 on a dry road: with the true speed every start ends at one point, with the "
-    "fastest wheel's speed every start ends with both wheels locked"
+    "Beyond the paper: Propositions 3.1 and 3.2 on a dry road; with the true speed every start ends at one "
+    "point, with the fastest wheel's speed every start ends with both wheels locked"
 )
 _ABOUT_VEHICLE = (
     "Beyond the paper: stopping distance over the height of the center of mass and the inertia of the wheels "
@@ -73,7 +73,7 @@ def _friction() -> Any:
 
 def _psi_lines() -> Any:
     """Draw Psi of each wheel over its own slip, a line for each slip of the other one."""
-    with figures.canvas(1, 2, height=3.6, title="Braking: Psi of both wheels") as (figure, axes):
+    with figures.canvas(1, 2, height=3.6, title="Braking: Ψ of both wheels") as (figure, axes):
         for i, (wheel, other) in enumerate((("f", "r"), ("r", "f"))):
             panel = axes[0, i]
             for j, slip in enumerate(_OTHER_SLIPS):
@@ -99,7 +99,7 @@ def _psi() -> Any:
     front, rear = np.meshgrid(side, side)
     at = analysis.reduced(NOMINAL, front, rear)
     gains = critical(1.05)
-    with figures.canvas(2, 2, height=3.4, title="Braking: Psi over both slips, and on four roads") as (
+    with figures.canvas(2, 2, height=3.4, title="Braking: Ψ over both slips, and on four roads") as (
         figure,
         axes,
     ):

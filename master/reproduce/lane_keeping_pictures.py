@@ -124,12 +124,14 @@ def _delay(found: Mapping[str, Any]) -> Any:
     ):
         for i, (name, label) in enumerate((("ideal", "none"), ("one", "one step"), ("two", "two steps"))):
             results = found[name]
-            for row, limits in enumerate(((-0.05, 0.4), (-25.0, 25.0))):
+            for row, (limits, text) in enumerate(
+                (((-0.05, 0.4), "displacement"), ((-25.0, 25.0), "all of it"))
+            ):
                 axes[row, 0].plot(
                     results.time, results["vehicle.displacement"], label=label, **figures.look(i)
                 )
                 axes[row, 0].set_ylim(*limits)
-                axes[row, 0].set_ylabel("displacement [m]")
+                axes[row, 0].set_ylabel(f"{text} [m]")
         axes[0, 0].legend(title="extra delay", loc="upper left", bbox_to_anchor=(1.01, 1.0))
         axes[1, 0].set_xlabel("time [s]")
         axes[1, 0].set_xlim(0.0, found["two"].time[-1])

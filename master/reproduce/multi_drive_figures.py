@@ -64,7 +64,7 @@ def _spec(
             signals=[SignalSpec(name=f"{name}/{signal}", label=about) for signal, about in signals],
             limits=(low - space, high + space),
         )
-        for name, label in (("pid", f"Fig. {number}: PIDs"), ("mimo", f"Fig. {number + 1}: MIMO"))
+        for name, label in (("pid", f"Fig. {number}: PIDs"), ("mimo", f"Fig. {number + 1}: MIMO-PID"))
     ]
     return FigureSpec(title=f"Two-motor car: {text}", panels=panels)
 

@@ -224,6 +224,8 @@ def contradictions(found: Mapping[str, Any]) -> Findings:
             ),
         }
     text = "distance PIDs, text"
+    rises = [launch(found[f"launch {name}"]).rise for name in ("mimo", "pid")]
+    rows["rise"] = holds(f"{rises[0]:.2f} and {rises[1]:.2f} s", abs(rises[0] - rises[1]) < 0.01)
     return rows | {text: _distance(maneuver(found["pid"]).distance, text)}
 
 

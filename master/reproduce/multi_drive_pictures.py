@@ -275,7 +275,7 @@ def _coupling_figure(coupled: Mapping[float, tuple[Effect, Effect]]) -> Any:
                 values = [coupled[k][i][row] for k in kappa]
                 axes[row, 0].plot(kappa, values, label=text, marker=marker, markersize=4, **figures.look(i))
             axes[row, 0].set_ylabel(label)
-            axes[row, 0].set_ylim(bottom=0.0)
+            axes[row, 0].set_ylim(0.0, axes[row, 0].dataLim.y1 * 1.07)
         axes[0, 0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
         axes[2, 0].set_xlabel("κ")
         axes[2, 0].set_xlim(-0.02, 1.02)

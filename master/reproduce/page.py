@@ -171,7 +171,7 @@ def _parameters(row: printed.Printed) -> list[Found]:
 
 
 def _judged(row: printed.Printed, values: Sequence[Found]) -> Row:
-    made = _row(row.place, row.quantity, row.shown, row.verdict, row.reason, values)
+    made = _row(row.at, row.quantity, row.shown, row.verdict, row.reason, values)
     return dataclasses.replace(made, picture=row.picture)
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import importlib
 import math
 
+from ...cosim.figures.text import pretty
 from ...cosim.units.conversion import between
 from ...models.base import variables
 from .printed import Printed
@@ -41,7 +42,7 @@ def compared(path: str, row: Printed) -> tuple[str, str, bool]:
     found = parameter(path)
     value = _in(found, row.unit)
     unit = row.unit or found.unit
-    shown = f"{value:.12g} {unit}" if unit not in ("", "1") else f"{value:.12g}"
+    shown = f"{value:.12g} {pretty(unit)}" if unit not in ("", "1") else f"{value:.12g}"
     return found.name, shown, any(math.isclose(value, number, rel_tol=_ROUNDING) for number in row.numbers)
 
 

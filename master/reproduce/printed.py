@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import Any, Literal, get_args
+
+from ...cosim.figures.text import pretty
 
 Kind = Literal["number", "equation", "figure", "claim"]
 Verdict = Literal["reproduced", "calibrated", "by construction", "not reproducible"]
@@ -27,7 +30,7 @@ _ABOUT_VERDICTS = {
     "by construction": "is put in as printed, so that it cannot fail to come out",
     "not reproducible": "cannot come out, for the reason given",
 }
-_SYMBOLS = str.maketrans({".": "·", "2": "²", "3": "³"})
+_SECTION = re.compile(r"[IVX]+(-[A-D])?|\d+(\.\d+)?")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,7 +81,13 @@ class Printed:
     @property
     def shown(self) -> str:
         """The value as printed, with its unit."""
-        return f"{_text(self.value)} {self.unit.translate(_SYMBOLS)}".rstrip()
+        return f"{_text(self.value)} {pretty(self.unit)}".rstrip()
+
+    @property
+    def at(self) -> str:
+        """The place, with a § before the number of a section."""
+        parts = self.place.split(", ")
+        return ", ".join(f"§{part}" if _SECTION.fullmatch(part) else part for part in parts)
 
     @property
     def numbers(self) -> list[float]:
@@ -139,7 +148,7 @@ def _file() -> dict[str, Any]:
 
 def _text(value: Any) -> str:
     if isinstance(value, list):
-        between = "; " if value and isinstance(value[0], list) else " "
+        between = "; " if value and isinstance(value[0], list) else ", "
         inner = between.join(_text(each) if not isinstance(each, list) else _row(each) for each in value)
         return f"[{inner}]"
     return str(value)

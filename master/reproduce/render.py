@@ -21,6 +21,8 @@ from .printed import VERDICTS, about_verdicts, counted, sentence
 _HEAD = ("place", "what", "printed", "obtained", "to reach", "verdict", "reason")
 _OWN_HEAD = ("what", "obtained", "to reach", "verdict", "reason")
 _OWN = "Own numbers"
+_PICTURES = "Figures"
+_LONG = re.compile(r"\S{16,}")  # a name that may not fit a column
 _ABOUT_OWN = (
     "Numbers that the paper does not print, beside what they were found to be before. They are not counted "
     "with those above."
@@ -32,6 +34,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 1240px; margin: 2rem aut
 table { border-collapse: collapse; width: 100%; font-size: 14px; }
 th, td { border-bottom: 1px solid #d0d0d0; padding: .35rem .6rem; text-align: left; vertical-align: top; }
 th { background: #f3f3f3; position: sticky; top: 0; }
+summary { cursor: pointer; } .matrix { display: block; overflow-x: auto; white-space: nowrap; }
 td.reproduced { color: #005a32; } td.calibrated, td.own { color: #08519c; } td.by { color: #4a4a4a; }
 td { overflow-wrap: break-word; } code { font-size: 92%; }
 td.missed { color: #fff; background: #a50f15; font-weight: 600; } td.not { color: #7f4f00; }
@@ -40,8 +43,9 @@ pre { background: #f6f6f6; padding: .8rem; white-space: pre-wrap; }
 pre div { padding-left: 2em; text-indent: -2em; }
 pre span { display: inline-block; text-indent: 0; max-width: 100%; overflow-wrap: anywhere; }
 .printed { table-layout: fixed; } .printed th { box-sizing: border-box; width: 10%; }
-.printed th:nth-child(1) { width: 8%; } .printed th:nth-child(2) { width: 20%; }
-.printed th:nth-child(4) { width: 20%; } .printed th:nth-child(7) { width: 22%; }
+.printed th:nth-child(1) { width: 7.5%; } .printed th:nth-child(2) { width: 20%; }
+.printed th:nth-child(4) { width: 20%; } .printed th:nth-child(6) { width: 10.5%; }
+.printed th:nth-child(7) { width: 22%; }
 @media (max-width: 800px) {
   thead { display: none; }
   table, tbody, tr, td { display: block; }
@@ -124,6 +128,7 @@ def _markdown(page: Page) -> str:
     lines = [f"# {page.title}", "", page.source, "", page.about, ""]
     lines += [f"{_summary(page)}.", "", "```sh", *page.commands, "```", ""]
     lines += markdown_table(_HEAD, [_cells(_with_link(page, row), _HEAD, "**") for row in page.rows])
+    lines += ["", f"## {_PICTURES}"] if page.pictures else []
     for picture in page.pictures:
         lines += [
             "",
@@ -153,6 +158,7 @@ def _html(page: Page, images: dict[str, Path]) -> str:
 <p>{e(_summary(page))}.</p>
 <pre>{_commands(page.commands)}</pre>
 {_table(_HEAD, page.rows)}
+{f"<h2>{_PICTURES}</h2>" if pictures else ""}
 {pictures}
 {own}""",
     )
@@ -206,9 +212,25 @@ def _table(head: Sequence[str], rows: Sequence[Row]) -> str:
 
 
 def _cell(row: Row, name: str, text: str) -> str:
-    """Return the HTML of a cell: names of code as such, the value of a figure as a link to its picture."""
-    made = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
+    """Return the HTML of a cell: names of code as such, the value of a figure as a link to its picture.
+
+    A matrix is folded; a long name may break behind its dots, underscores and slashes.
+    """
+    if name == "printed" and text.startswith("[") and ";" in text:
+        return _matrix(text)
+    made = _LONG.sub(lambda found: re.sub(r"([._/])(?=\w)", r"\1\0", found[0]), text)
+    made = html.escape(made).replace("\0", "<wbr>")
+    made = re.sub(r"`([^`]*)`", r"<code>\1</code>", made)
     return f'<a href="#{html.escape(row.picture)}">{made}</a>' if row.picture and name == "obtained" else made
+
+
+def _matrix(text: str) -> str:
+    """Return a matrix, "[a b; c d]" with a unit or none, as HTML that opens to its rows."""
+    inside, _, unit = text.removeprefix("[").partition("]")
+    rows = inside.split("; ")
+    size = f"{len(rows)} by {len(rows[0].split())} matrix{unit}"
+    lines = "<br>".join(html.escape(row) for row in rows)
+    return f'<details><summary>{html.escape(size)}</summary><span class="matrix">{lines}</span></details>'
 
 
 def _line(cells: Sequence[tuple[str, str, str]]) -> str:

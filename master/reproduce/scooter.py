@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...cosim.results.results import Results
-from ...models.bound_controller import BoundController
+from ...models.bound_controller import TIME_CONSTANT, BoundController
 from ..simulation import simulate
 from ..studies.parallel import Task
 from . import printed
@@ -135,7 +135,15 @@ def _vehicle() -> Findings:
         "pole falls": holds(f"{shown} Hz", all(a > b for a, b in pairwise(poles)), "strictly falling"),
         "gain stays": at_most(spread, 5.0, "%", digits=2),
         "boost": at_least(numbers.boost(20.0, 40.0), 1.5, digits=3),
+        "comparable": _comparable(),
     }
+
+
+def _comparable() -> Found:
+    slow, fast = (numbers.power_share(speed, 1.0) for speed in (10.0, 49.0))
+    return holds(
+        f"{slow:.2f} and {fast:.2f}", slow > 2.0 and 0.5 < fast < 2.0, "from above 2 to between ½ and 2"
+    )
 
 
 def _identification(found: ScooterIdentification) -> Findings:
@@ -199,6 +207,9 @@ def _supervisor(found: dict[str, Any]) -> Findings:
             f"in DCS from {taken:.2f} s on", taken <= _RELEASE + 0.5, "before g_d is 0, at 30.5 s"
         ),
         "bounds": holds(f"{lowest[0]:.2g} m/s², {lowest[1]:.3g} km/h", min(lowest) >= 0.0, "≥ 0"),
+        "slow bounds": at_least(
+            varying.manifest["units"]["planner"]["parameters"]["period"] / TIME_CONSTANT, 10.0, digits=3
+        ),
     }
 
 
@@ -267,6 +278,7 @@ def _ranges(found: dict[str, Any]) -> Findings:
             f"without, a_b = 1, a_b = 0.5 m/s²: {shown}; at the latter two speeds without a_b, below a v_b: "
             f"{beside} Wh/km",
             fall[0][0] > fall[1][0] > fall[2][0],
+            "falls with a_b",
         ),
     }
 

@@ -115,7 +115,7 @@ def figure(found: Mapping[str, Any]) -> Any:
                 values = [getattr(at(found, a, v), name) for a in ACCELERATION_BOUNDS]
                 _line(panel, ACCELERATION_BOUNDS, values, f"v_b = {v:g} km/h", i)
             panel.set_ylabel(label)
-            panel.set_ylim(bottom=0.0)
+            panel.set_ylim(0.0, panel.dataLim.y1 * 1.07)
         axes[1, 0].plot(
             4.0,
             found["dwell"].switches,

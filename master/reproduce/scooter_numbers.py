@@ -43,6 +43,12 @@ def boost(slow: float, fast: float) -> float:
     return accelerations[0] / accelerations[1]
 
 
+def power_share(speed: float, acceleration: float) -> float:
+    """Return the power of an acceleration [m/s2] at a speed [km/h] over that of the level road's friction."""
+    p = Scooter.Parameters()
+    return p.mass * acceleration / level_road_load(p, speed / KMH)
+
+
 def steady_throttle(speed: float) -> float:
     """Return the throttle g [%] that keeps a speed [km/h] on a level road: v = 17.03 + 0.46 g (force map)."""
     return (speed - 17.03) / 0.46

@@ -48,12 +48,13 @@ def _without_observer(found: Mapping[str, Any]) -> Any:
         figure,
         axes,
     ):
-        for row, (name, label) in enumerate((("fig8 raw", "raw v_m"), ("fig8 bus", "observer"))):
+        for row, (name, label) in enumerate((("fig8 raw", "of raw v_m"), ("fig8 bus", "with observer"))):
             results = found[name]
             axes[row, 0].plot(
-                results.time, results["ecu.throttle"], drawstyle="steps-post", **figures.look(0)
-            )
-            axes[row, 0].set_ylabel(f"throttle [%]\n{label}")
+                results.time, results["ecu.throttle"], drawstyle="steps-post", label="applied",
+                **figures.look(0),
+            )  # fmt: skip # one line
+            axes[row, 0].set_ylabel(f"throttle {label}\n[%]")
             axes[row, 0].set_ylim(-5.0, 105.0)
         axes[1, 0].set_xlabel("time [s]")
         axes[1, 0].set_xlim(0.0, np.max(results.time))

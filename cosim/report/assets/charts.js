@@ -315,9 +315,10 @@
       this.show(plot.data[0][plot.cursor.idx]);
     }
 
-    /** Show the values at the end of what is in view. */
+    /** Show the values at the end of what is in view: the last ones that all curves have which reach into it. */
     rest() {
-      this.show(Math.min(this.view[1], this.data.time.end));
+      const ends = this.panels.flatMap(p => p.lines.map(l => l.times[l.times.length - 1])).filter(t => t >= this.view[0]);
+      this.show(Math.min(this.view[1], this.data.time.end, ...ends));
     }
 
     show(time) {

@@ -23,7 +23,21 @@ def test_names_are_broken_at_their_marks(text: str, lines: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("unit", "shown"), [("m/s2", "m/s²"), ("N.m", "N·m"), ("kg/m3", "kg/m³"), ("1", "1"), ("m.s-1", "m·s⁻¹")]
+    ("unit", "shown"),
+    [
+        ("m/s2", "m/s²"),
+        ("N.m", "N·m"),
+        ("kg/m3", "kg/m³"),
+        ("1", "1"),
+        ("m.s-1", "m·s⁻¹"),
+        ("uH", "µH"),
+        ("ohm", "Ω"),
+        ("kohm.m", "kΩ·m"),
+        ("unit", "unit"),
+        ("u", "u"),
+        ("urad/us", "urad/µs"),
+        ("uohm", "µΩ"),
+    ],
 )
 def test_units_are_printed_as_in_print(unit: str, shown: str) -> None:
     assert pretty(unit) == shown

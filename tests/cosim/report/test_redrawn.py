@@ -19,10 +19,12 @@ def drawn(label="time [s]", columns=1):
             axes[0, column].plot(T, np.sin(T), label="sine", **look(0))
             axes[0, column].plot(T, np.floor(T), label="steps", drawstyle="steps-post", **look(1))
             axes[0, column].axhline(0.5)
-            axes[0, column].set_ylabel("a\nspeed [m/s]")
-            axes[0, column].set_title("above")
+            axes[0, column].set_title(f"above{column or ''}")
             axes[1, column].plot(T[:100], T[:100] ** 2)
-            axes[1, column].set(ylabel="slip [1]", xlabel=label, xlim=(0.5, 3.0), ylim=(-1.0, 2.0))
+            axes[1, column].axhline(1.5, label="limit", **look(1))
+            axes[1, column].set(xlabel=label, xlim=(0.5, 3.0), ylim=(-1.0, 2.0))
+        axes[0, 0].set_ylabel("a\nspeed [m/s]")
+        axes[1, 0].set_ylabel("slip [1]")
     return figure
 
 
@@ -30,7 +32,7 @@ def test_lines_have_their_values_units_strokes_and_names():
     (data,) = data_in(redrawn(drawn()))
     above, below = data["panels"]
     assert (above["title"], above["unit"], above["limits"]) == ("above: a speed", "m/s", None)
-    assert (below["title"], below["unit"], below["limits"]) == ("slip", "", [-1.0, 2.0])
+    assert (below["title"], below["unit"], below["limits"]) == ("above: slip", "", [-1.0, 2.0])
     sine, steps = above["lines"]
     assert [(line["label"], line["held"]) for line in (sine, steps)] == [("sine", False), ("steps", True)]
     assert (sine["color"], steps["color"], sine["dash"]) == (*COLORS[:2], [])
@@ -46,13 +48,20 @@ def test_the_part_of_the_time_that_the_figure_shows_comes_first():
     assert data["time"] == {"scale": 1.0, "unit": "s", "begin": 0.0, "end": 2.0, "shown": [0.5, 2.0]}
 
 
-def test_a_curve_needs_no_name_and_a_mark_is_none():
+def test_a_curve_needs_no_name_and_a_level_without_one_is_a_mark():
     (data,) = data_in(redrawn(drawn()))
-    assert [line["label"] for panel in data["panels"] for line in panel["lines"]] == ["sine", "steps", ""]
+    lines = [line for panel in data["panels"] for line in panel["lines"]]
+    assert [line["label"] for line in lines] == ["sine", "steps", "", "limit"]
+    column = data["columns"][lines[-1]["column"]]
+    assert list(unpacked(column)) == [1.5, 1.5]
+    assert list(times_of(data["grids"][column["grid"]])) == [0.0, 2.0]
 
 
-def test_columns_of_charts_follow_each_other():
-    assert len(data_in(redrawn(drawn(columns=2)))[0]["panels"]) == 4
+def test_panels_have_the_title_of_their_column_and_the_label_and_unit_of_their_row():
+    panels = data_in(redrawn(drawn(columns=2)))[0]["panels"]
+    assert [(panel["title"], panel["unit"]) for panel in panels] == [
+        ("above: a speed", "m/s"), ("above1: a speed", "m/s"), ("above: slip", ""), ("above1: slip", ""),
+    ]  # fmt: skip # a panel in each
 
 
 @pytest.mark.parametrize("label", ["time [min]", "speed [m/s]", ""])

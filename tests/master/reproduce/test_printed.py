@@ -37,6 +37,8 @@ def test_keys_are_those_of_one_row():
 
 def test_numbers_stay_as_printed():
     assert printed.row("multi_drive", "rise MIMO-PID").shown == "0.50 s"
+    assert printed.row("multi_drive", "poles").shown == "4"
+    assert printed.row("scooter", "range of a_b").shown == "[0, 4] m/s²"
     assert printed.row("lane_keeping", "S").shown == "[0.2979 -0.9401; 0.9592 0.3409]"
     assert printed.row("lane_keeping", "S").numbers == [0.2979, -0.9401, 0.9592, 0.3409]
     assert printed.row("braking", "coupling").numbers == []
@@ -63,6 +65,23 @@ def test_a_row_without_way_or_reason_is_refused(changed, message):
     assert Printed(**good).shown == "stated"
     with pytest.raises(ValueError, match=message):
         Printed(**good | changed)
+
+
+@pytest.mark.parametrize("row", [row for row in printed.rows() if row.kind == "figure"], ids=str)
+def test_the_verdicts_on_figures_follow_one_rule(row):
+    if not row.picture:
+        assert row.verdict == "by construction"  # a scheme
+    else:
+        assert row.verdict == "calibrated" or (row.verdict == "reproduced" and row.by)
+
+
+def test_sections_are_marked_and_other_places_are_not():
+    places = {row.place: row.at for row in printed.rows()}
+    assert [places[place] for place in ("II, IV-A", "Table 2, 6", "4.4, (31)")] == [
+        "§II, §IV-A", "Table 2, §6", "§4.4, (31)",
+    ]  # fmt: skip # three places
+    same = {place for place, at in places.items() if place == at}
+    assert {"Table I", "Figs. 2 and 3", "(13)-(24)", "Remark 3.3", "Abstract"} <= same
 
 
 def test_counts_and_their_sentence():

@@ -50,6 +50,7 @@ ROWS = (
     Row("Fig. 1", "in `Model` <b>", "drawn", "", "redrawn", "by construction", picture="curve"),
 )
 OWN = (Row("", "ours", "", "1 ± 0.1", "2", "missed"), Row("", "settling", "", "2", "2", "own"))
+MATRIX = Row("§4", "A", "[1 0 0; 0 1 0] m", "", "Model.a_long_name_of_it = 1", "by construction")
 
 
 @pytest.fixture
@@ -75,6 +76,16 @@ def test_code_and_pictures_in_a_cell(made):
     assert '<td data-head="what">in <code>Model</code> &lt;b&gt;</td>' in html
     assert '<td data-head="obtained"><a href="#curve">redrawn</a></td>' in html
     assert "| [redrawn](figures/mine-curve.png) |" in markdown
+
+
+def test_a_matrix_is_folded_and_a_long_name_may_break(tmp_path):
+    write_page(Page("mine", "Title", "A. Author", "About", (MATRIX,), (), (), ()), tmp_path)
+    markdown, html = ((tmp_path / f"mine.{kind}").read_text(encoding="utf-8") for kind in ("md", "html"))
+    matrix = '<summary>2 by 3 matrix m</summary><span class="matrix">1 0 0<br>0 1 0</span>'
+    assert matrix in html
+    assert "Model.<wbr>a_<wbr>long_<wbr>name_<wbr>of_<wbr>it = 1" in html
+    assert "[1 0 0; 0 1 0] m" in markdown
+    assert "wbr" not in markdown
 
 
 def test_a_verdict_has_its_class(made):
