@@ -13,9 +13,12 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from .diagram_content import Content
+from .letter_widths import width
 
 Measure = Callable[[str], float]
 
+NAME, UNIT, TITLE = 7.5, 9.5, 9.0  # sizes of the texts in points; units and buses are bold
+_ROUNDING = 1.04  # how much wider a text may be drawn, by hinting
 LINE = 0.13  # height of a line of names
 BOX = 0.42  # height of a unit
 _INSET = 0.14  # from a corner of a unit to the first line
@@ -76,6 +79,17 @@ class Layout:
     right: float
     bottom: float
     top: float
+
+
+def laid_out(content: Content) -> Layout:
+    """Return the places of a picture's content, for a font that is as wide as DejaVu Sans or less."""
+
+    def wide(text: str, size: float = NAME, *, bold: bool = False) -> float:
+        return _ROUNDING * width(text, size, bold=bold)
+
+    headings = [max(wide(name, UNIT, bold=True), wide(fmu)) for name, fmu in content.units]
+    titles = [wide(bus.title, TITLE, bold=True) for bus in content.buses]
+    return lay_out(content, wide, headings, titles)
 
 
 def lay_out(content: Content, measure: Measure, headings: Sequence[float], titles: Sequence[float]) -> Layout:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 from ..system.system import SystemFile
 from .canvas import drawing
 from .diagram_content import content_of
-from .diagram_layout import BOX, LINE, Arc, Box, Drop, lay_out
+from .diagram_layout import BOX, LINE, NAME, TITLE, UNIT, Arc, Box, Drop, laid_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _INK, _PALE, _DIRECT, _BUS = "#1a1a1a", "#505050", "#0072B2", "#D55E00"
-_NAME, _UNIT, _TITLE = 7.5, 9.5, 9.0  # sizes of texts in points
 _EDGE = 0.12  # inches around the picture
 
 
@@ -26,9 +24,7 @@ def draw_diagram(system: SystemFile) -> Figure:
     picture is as large as its content needs.
     """
     content = content_of(system)
-    headings = [max(_width(name, _UNIT, bold=True), _width(fmu, _NAME)) for name, fmu in content.units]
-    titles = [_width(bus.title, _TITLE, bold=True) for bus in content.buses]
-    layout = lay_out(content, _width, headings, titles)
+    layout = laid_out(content)
     edges = (layout.left - _EDGE, layout.right + _EDGE, layout.bottom - _EDGE, layout.top + _EDGE)
     with drawing(*edges) as (figure, axes):
         for box, (name, fmu) in zip(layout.boxes, content.units, strict=True):
@@ -37,24 +33,10 @@ def draw_diagram(system: SystemFile) -> Figure:
             _draw_arc(axes, arc)
         for bar, bus in zip(layout.bars, content.buses, strict=True):
             axes.plot([bar.left, bar.right], [bar.y, bar.y], color=_BUS, lw=4, solid_capstyle="round")
-            _write(axes, bar.left, bar.y - 0.06, bus.title, "left", size=_TITLE, color=_BUS, bold=True)
+            _write(axes, bar.left, bar.y - 0.06, bus.title, "left", size=TITLE, color=_BUS, bold=True)
         for drop in layout.drops:
             _draw_drop(axes, drop)
     return figure
-
-
-def _width(text: str, size: float = _NAME, bold: bool = False) -> float:
-    """Return the width of a text in inches; that of the drawn one is up to 4 % more, by hinting."""
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import text_to_path
-
-    font = FontProperties(size=size, weight="bold" if bold else "normal")
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", UserWarning
-        )  # a letter that the font lacks: a box of its size is drawn
-        width, _, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
-    return 1.04 * float(width) / 72.0
 
 
 def _write(
@@ -65,7 +47,7 @@ def _write(
     align: str = "center",
     *,
     vertical: str = "top",
-    size: float = _NAME,
+    size: float = NAME,
     color: str = _INK,
     bold: bool = False,
 ) -> None:
@@ -89,7 +71,7 @@ def _draw_unit(axes: Axes, box: Box, name: str, fmu: str) -> None:
     axes.add_patch(
         FancyBboxPatch(corner, box.width, BOX, boxstyle=style, facecolor="#F4F6F8", edgecolor=_INK, lw=1.2)
     )
-    _write(axes, box.x, 0.08, name, vertical="center", size=_UNIT, bold=True)
+    _write(axes, box.x, 0.08, name, vertical="center", size=UNIT, bold=True)
     _write(axes, box.x, -0.1, fmu, vertical="center", color=_PALE)
 
 

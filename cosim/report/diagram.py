@@ -1,160 +1,124 @@
 """The units of a run and what connects them, as a picture in a page: SVG whose texts are text.
 
-Units stand above each other in the order of their steps, and each connected variable has a line in the box of
-its unit. Direct connections run at the right of the boxes, the buses stand at the left of them, so that no
-line crosses a text.
+Its places are those of the picture that `evcosim info --diagram` draws (`figures.diagram_layout`).
 """
 
 from __future__ import annotations
 
-import dataclasses
 import html
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..figures.style import COLORS
-from ..visible import on_one_line
+from ..figures.diagram_content import Content, Wire, bus_title, content
+from ..figures.diagram_layout import BOX, LINE, NAME, TITLE, UNIT, Arc, Box, Drop, Layout, laid_out
 from .manifest_facts import items_of, records_of, texts_of
 
-MOST = 60  # variables: a picture with more lines shows nothing
-_LINE, _HEAD, _GAP = 18, 24, 16  # px: a line of text, the head of a box, between two boxes
-_LANE, _LETTER = 12, 6.6  # px: between two lines beside the boxes, the width of a letter
-_EDGE, _PITCH = 16, 74  # px: left of the first bus, from bus to bus
-
-
-@dataclasses.dataclass
-class _Port:
-    """A variable in a box: `end` is -1 where it sends, 1 where it receives; `lane` is its line's place."""
-
-    unit: str
-    text: str
-    small: str
-    sends: bool
-    bus: str
-    lane: int
-    y: float = 0.0
+MOST = 60  # names: a picture with more shows nothing, and takes long
+_INCH = 115.2  # px: names of 12 px
+_EDGE = 0.12  # inches around the picture
+_DIRECT, _BUS = "#0072B2", "#D55E00"
 
 
 def diagram(manifest: Mapping[str, Any]) -> str:
     """Return the diagram as SVG; "" without a connection, or where there are too many."""
-    order = texts_of(manifest.get("order"))
-    buses = [name for name, _ in items_of(manifest.get("buses"))] if not manifest.get("ideal") else []
-    ports = [port for port in _ports(manifest, buses) if port.unit in order]
-    if not ports or len(ports) > MOST:
+    shown = _content(manifest)
+    names = [*shown.arcs.values(), *(names for bus in shown.buses for names in bus.names.values())]
+    if not 0 < sum(map(len, names)) <= MOST:
         return ""
-    lanes = 1 + max(port.lane for port in ports)
-    left = _EDGE + _PITCH * len([bus for bus in buses if any(port.bus == bus for port in ports)])
+    layout = laid_out(shown)
+    width, height = layout.right - layout.left + 2.0 * _EDGE, layout.top - layout.bottom + 2.0 * _EDGE
+    size = f"{_INCH * width:.0f} {_INCH * height:.0f}"
+    return (
+        f'<div class="wide"><svg class="diagram" viewBox="0 0 {size}" width="{size.split()[0]}" role="img" '
+        f'aria-label="units and connections">{"".join(_Pen(layout).drawn(shown))}</svg></div>'
+    )
+
+
+def _content(manifest: Mapping[str, Any]) -> Content:
+    """Return what the picture shows: without a bus, all connections of an ideal run are direct."""
     files = {
         name: str(dict(items_of(about)).get("fmu", "")) for name, about in items_of(manifest.get("units"))
     }
-    heads = {
-        unit: (f"{i}  {_short(unit)}", _short(files.get(unit, "").rsplit("/", 1)[-1]))
-        for i, unit in enumerate(order, 1)
-    }
-    longest = [len(p.text) + len(p.small) + 6 for p in ports] + [
-        len(a) + len(b) + 3 for a, b in heads.values()
+    ideal = bool(manifest.get("ideal"))
+    buses = {name: _title(name, dict(items_of(about))) for name, about in items_of(manifest.get("buses"))}
+    wires = [
+        Wire(str(c.get("from", "")), texts_of(c.get("to")), "" if ideal else str(c.get("via") or ""))
+        for c in records_of(manifest.get("connect"))
     ]
-    width = max(150.0, 24 + _LETTER * max(longest))
-    right = left + width
-    drawn, y = [], 28.0 if left > _EDGE else 8.0  # the names of the buses stand above
-    for unit in order:
-        inside = [port for port in ports if port.unit == unit]
-        height = _HEAD + _LINE * len(inside) + (6 if inside else 0)
-        drawn += list(_box(heads[unit], left, y, width, height))
-        for i, port in enumerate(inside):
-            port.y = y + _HEAD + _LINE * (i + 0.5)
-            drawn += list(_row(port, left, right))
-        y += height + _GAP
-    drawn += _nets(ports, right)
-    drawn += _buses(ports, manifest, left)
-    size = f"{right + 24 + _LANE * lanes:.0f} {y:.0f}"
+    order = dict.fromkeys(texts_of(manifest.get("order")))
+    return content({unit: files.get(unit, "") for unit in order}, {} if ideal else buses, wires)
+
+
+def _title(name: str, about: Mapping[str, Any]) -> str:
+    dbc, bitrate = about.get("dbc"), about.get("bitrate")
     return (
-        f'<div class="wide"><svg class="diagram" viewBox="0 0 {size}" width="{size.split()[0]}" role="img" '
-        f'aria-label="units and connections">{"".join(drawn)}</svg></div>'
+        bus_title(name, dbc, bitrate) if isinstance(dbc, str) and isinstance(bitrate, int | float) else name
     )
 
 
-def _ports(manifest: Mapping[str, Any], buses: list[str]) -> Iterator[_Port]:
-    """Yield the connected variables; those of one direct connection have one lane."""
-    lane = 0
-    for connection in records_of(manifest.get("connect")):
-        bus, _, signal = str(connection.get("via") or "").partition(".")
-        bus = bus if bus in buses else ""
-        small = signal.rpartition(".")[2] if bus else ""
-        for sends, name in (
-            (True, str(connection.get("from", ""))),
-            *((False, to) for to in texts_of(connection.get("to"))),
-        ):
-            unit, _, variable = name.partition(".")
-            yield _Port(unit, _short(variable), _short(small), sends, bus, -1 if bus else lane)
-        lane += 0 if bus else 1
+class _Pen:
+    """Draws a layout; its places in inches, upward, become pixels, downward."""
 
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
 
-def _short(text: str, most: int = 40) -> str:
-    shown = on_one_line(text)
-    return shown if len(shown) <= most else f"{shown[: most - 1]}…"
-
-
-def _text(x: float, y: float, text: str, kind: str, anchor: str = "start") -> str:
-    return f'<text x="{x:g}" y="{y:g}" class="{kind}" text-anchor="{anchor}">{html.escape(text)}</text>'
-
-
-def _box(head: tuple[str, str], x: float, y: float, width: float, height: float) -> Iterator[str]:
-    yield (
-        f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="4" '
-        'fill="#f6f8fa" stroke="#808080"/>'
-    )
-    yield _text(x + 10, y + 17, head[0], "unit")
-    yield _text(x + width - 10, y + 17, head[1], "small", "end")
-
-
-def _row(port: _Port, left: float, right: float) -> Iterator[str]:
-    """Yield the texts of a variable, at the side at which its line ends."""
-    if port.bus:
-        yield _text(left + 10, port.y + 4, port.text, "port")
-        yield _text(right - 10, port.y + 4, port.small, "small", "end")
-    else:
-        yield _text(right - 10, port.y + 4, port.text, "port", "end")
-
-
-def _nets(ports: list[_Port], right: float) -> Iterator[str]:
-    """Yield the direct connections: from the sender to a lane at the right, and back to each receiver."""
-    for lane in sorted({port.lane for port in ports if not port.bus}):
-        ends = [port for port in ports if port.lane == lane and not port.bus]
-        color = COLORS[lane % len(COLORS)]
-        x = right + 20 + _LANE * lane
-        heights = [port.y for port in ends]
-        if len(ends) > 1:
-            yield _path(f"M{x:g} {min(heights):g} V{max(heights):g}", color)
-        for port in ends:
-            yield _path(f"M{x:g} {port.y:g} H{right + (0 if port.sends else 6):g}", color)
-            yield _dot(right, port.y, color) if port.sends else _arrow(right, port.y, -1, color)
-
-
-def _buses(ports: list[_Port], manifest: Mapping[str, Any], left: float) -> Iterator[str]:
-    used = [name for name, _ in items_of(manifest.get("buses")) if any(port.bus == name for port in ports)]
-    for i, name in enumerate(used):
-        ends = [port for port in ports if port.bus == name]
-        color = ("#D55E00", "#0072B2", "#009E73")[i % 3]
-        x = 24.0 + _PITCH * i
-        low = max(port.y for port in ends) + 12
-        yield f'<path d="M{x:g} 22 V{low:g}" stroke="{color}" stroke-width="5" fill="none"/>'
-        yield _text(x - 4, 14, _short(name, 10), "unit")
-        for port in ends:
-            yield _path(
-                f"M{x + (8 if port.sends else 0):g} {port.y:g} H{left - (0 if port.sends else 6):g}", color
+    def drawn(self, shown: Content) -> Iterator[str]:
+        layout = self._layout
+        for box, (name, fmu) in zip(layout.boxes, shown.units, strict=True):
+            yield from self._unit(box, name, fmu)
+        for arc in layout.arcs:
+            yield from self._arc(arc)
+        for bar, bus in zip(layout.bars, shown.buses, strict=True):
+            yield (
+                f'<path d="M{self._x(bar.left)} {self._y(bar.y)} H{self._x(bar.right)}" stroke="{_BUS}" '
+                'stroke-width="6" stroke-linecap="round" fill="none"/>'
             )
-            yield _arrow(x + 2.5, port.y, -1, color) if port.sends else _arrow(left, port.y, 1, color)
+            yield self._text(bar.left, bar.y - 0.19, bus.title, TITLE, "bus", "start")
+        for drop in layout.drops:
+            yield from self._drop(drop)
 
+    def _x(self, x: float) -> str:
+        return f"{_INCH * (x - self._layout.left + _EDGE):.1f}"
 
-def _path(way: str, color: str) -> str:
-    return f'<path d="{way}" stroke="{color}" stroke-width="1.4" fill="none"/>'
+    def _y(self, y: float) -> str:
+        return f"{_INCH * (self._layout.top + _EDGE - y):.1f}"
 
+    def _text(self, x: float, y: float, text: str, size: float, kind: str, anchor: str) -> str:
+        """Return a text whose letters stand on the height y."""
+        return (
+            f'<text x="{self._x(x)}" y="{self._y(y)}" class="{kind}" font-size="{size / 72.0 * _INCH:.1f}" '
+            f'text-anchor="{anchor}">{html.escape(text)}</text>'
+        )
 
-def _dot(x: float, y: float, color: str) -> str:
-    return f'<circle cx="{x:g}" cy="{y:g}" r="3" fill="{color}"/>'
+    def _unit(self, box: Box, name: str, fmu: str) -> Iterator[str]:
+        yield (
+            f'<rect x="{self._x(box.x - box.width / 2.0)}" y="{self._y(BOX / 2.0)}" '
+            f'width="{_INCH * box.width:.1f}" height="{_INCH * BOX:.1f}" rx="6" fill="#f6f8fa" '
+            'stroke="#1a1a1a"/>'
+        )
+        yield self._text(box.x, 0.04, name, UNIT, "unit", "middle")
+        yield self._text(box.x, -0.135, fmu, NAME, "small", "middle")
 
+    def _arc(self, arc: Arc) -> Iterator[str]:
+        top, begin, end = self._y(arc.y), self._x(arc.begin), self._x(arc.end)
+        yield self._line(f"M{begin} {self._y(BOX / 2.0)} V{top} H{end} V{self._y(BOX / 2.0 + 0.06)}", _DIRECT)
+        yield self._head(arc.end, BOX / 2.0, _DIRECT, down=True)
+        for i, name in enumerate(reversed(arc.names)):
+            yield self._text(arc.label, arc.y + 0.055 + LINE * i, name, NAME, "name", "middle")
 
-def _arrow(x: float, y: float, way: int, color: str) -> str:
-    """Return the head of an arrow that ends at (x, y) and points to the right (1) or to the left (-1)."""
-    return f'<path d="M{x:g} {y:g} l{-8 * way} -4 v8 z" fill="{color}"/>'
+    def _drop(self, drop: Drop) -> Iterator[str]:
+        tip = drop.y + 0.03 if drop.sends else -BOX / 2.0
+        ends = (-BOX / 2.0, tip + 0.06) if drop.sends else (drop.y, tip - 0.06)
+        yield self._line(f"M{self._x(drop.x)} {self._y(ends[0])} V{self._y(ends[1])}", _BUS)
+        yield self._head(drop.x, tip, _BUS, down=drop.sends)
+        aside, anchor = (-0.05, "end") if drop.sends else (0.05, "start")
+        for i, name in enumerate(drop.names):
+            yield self._text(drop.x + aside, drop.top - 0.1 - LINE * i, name, NAME, "name", anchor)
+
+    def _line(self, way: str, color: str) -> str:
+        return f'<path d="{way}" stroke="{color}" stroke-width="2" fill="none"/>'
+
+    def _head(self, x: float, y: float, color: str, *, down: bool) -> str:
+        """Return the head of an arrow that ends at (x, y)."""
+        back = -10 if down else 10
+        return f'<path d="M{self._x(x)} {self._y(y)} l-4.5 {back} h9 z" fill="{color}"/>'

@@ -72,6 +72,7 @@ def test_what_is_left_out_is_told_as_by_a_run(evcosim, mapped: Path) -> None:
         ),
         "left out, since the FMU has no vehicle.available_power: battery.available_power -> "
         "vehicle.available_power",
+        "left out of the figure, since it is not recorded: vehicle.acceleration",
     ]
     run = evcosim("run", mapped, "--stop-time", "0.1", "--no-plot", "--output", "out", "--json")
     assert run.code == 0, run.err
