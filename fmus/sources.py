@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import os
 import sys
 import sysconfig
 from collections.abc import Iterator
@@ -75,6 +76,7 @@ def collect(module: str, file: Path) -> list[Source]:
     """
     roots = own_roots(module, file)
     found: dict[str, Source] = {}
+    asked: set[str] = set()
     waiting = [(module, file.resolve()), (_SLAVE, _HERE / "slave.py")]
     while waiting:
         name, path = waiting.pop()
@@ -82,6 +84,9 @@ def collect(module: str, file: Path) -> list[Source]:
             continue
         source = found[name] = Source(name, path, path.read_bytes())
         for needed in (*_parents(name), *_imported(source)):
+            if needed in asked:
+                continue
+            asked.add(needed)
             located = roots.locate(needed)
             if located is not None:
                 waiting.append((needed, located))
@@ -199,11 +204,10 @@ def _parents(module: str) -> Iterator[str]:
 
 
 def _file(folder: Path, module: str) -> Path | None:
-    path = folder.joinpath(*module.split(".")) if module else folder
-    if (package := path / "__init__.py").is_file():
-        return package
-    single = path.with_name(path.name + ".py")
-    return single if single.is_file() and module else None
+    path = os.path.join(folder, *module.split(".")) if module else str(folder)
+    if os.path.isfile(package := os.path.join(path, "__init__.py")):  # methods of Path would take far longer
+        return Path(package)
+    return Path(f"{path}.py") if module and os.path.isfile(f"{path}.py") else None
 
 
 def _is_shared(folder: Path) -> bool:

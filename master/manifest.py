@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib.metadata
 import platform
@@ -35,8 +36,8 @@ def manifest(
     plan, system = prepared.plan, prepared.system
     experiment = plan.experiment
     return {
-        "evcosim": importlib.metadata.version("evcosim"),
-        "versions": {p: importlib.metadata.version(p) for p in ("fmpy", "pythonfmu", "numpy")}
+        "evcosim": _version("evcosim"),
+        "versions": {p: _version(p) for p in ("fmpy", "pythonfmu", "numpy")}
         | {"python": platform.python_version(), "platform": sys.platform},
         "system": plan.system,
         "scenario": plan.scenario,
@@ -61,6 +62,11 @@ def manifest(
         "warnings": list(warnings),
         "loop_seconds": round(loop_seconds, 6),
     } | ({"ended": engine.ending.text} if engine.ending.text else {})
+
+
+@functools.cache  # reading the metadata of a distribution takes a millisecond
+def _version(distribution: str) -> str:
+    return importlib.metadata.version(distribution)
 
 
 _NO_SETTINGS = {"title", "source", "figure", "metrics", "identification", "budget"}
