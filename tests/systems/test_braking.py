@@ -11,7 +11,7 @@ import functools
 import numpy as np
 import pytest
 
-from evcosim import Simulation, simulate
+from evcosim import simulate
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import metrics
 from evcosim.cosim.system.scenario import load_scenario
@@ -270,10 +270,3 @@ def test_every_scenario_names_its_strategy():
     system = load_system("braking")
     for name in ("known_speed", "estimated_speed", "front_only", "front_compensated"):
         assert load_scenario(system, name).file.parameters["controller"]["strategy"] == name
-
-
-def test_speed_of_the_loop():
-    """Ten times real time with all signals recorded, at least; some 40 are usual (run.json, loop_seconds)."""
-    with Simulation("braking", "front_only") as sim:
-        sim.step(sim.steps_left)
-        assert 4.5 / sim.loop_seconds >= 10.0
