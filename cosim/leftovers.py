@@ -56,6 +56,14 @@ def remove_folder(folder: Path) -> None:
     _folders.discard(folder)
 
 
+def keep_folder(folder: Path, name: str) -> Path:
+    """Let a temporary folder stay, with a word in its name that says what it is. Raises OSError."""
+    kept = folder.with_name(folder.name.replace("-", f"-{name}-", 1))
+    folder.rename(kept)
+    _folders.discard(folder)
+    return kept
+
+
 @contextlib.contextmanager
 def temporary() -> Iterator[Path]:
     """Give a temporary folder, which is removed at the end of the `with` block."""

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from .clock import Clock
 from .errors import RunError
+from .shortage import reason
 
 Array = NDArray[np.float64]
 """Numbers in memory; what is declared with it says its shape."""
@@ -115,8 +116,20 @@ class _RowFile:
         """Write bytes from byte `place` on. Raises OSError where the disk refuses."""
         with self._lock:
             self._file.seek(self._offset + place)
-            while data:
-                data = data[self._file.write(data) :]
+            write_all(self._file, data)
+
+    def is_at(self, path: Path) -> bool:
+        """Return False where the file has no longer the name that it was made with."""
+        try:
+            return os.path.samestat(os.fstat(self._file.fileno()), path.stat(follow_symlinks=False))
+        except OSError:
+            return False
+
+
+def write_all(file: Any, data: memoryview[int]) -> None:
+    """Write bytes into an unbuffered file, as many as the disk takes. Raises OSError where it is full."""
+    while data:
+        data = data[file.write(data) :]
 
 
 def rows_in(path: Path, offset: int, width: int) -> Table:
@@ -191,21 +204,30 @@ class RowStore:
         self._path: Path | None = None
         self._head = b""
         self._before: Callable[[], None] = lambda: None
+        self._there: Callable[[], bool] = lambda: True
         self._freed = self._in_memory = self._in_file = 0
+        self._gone = False  # the file has lost its name
         self._lock = threading.RLock()
 
     def __len__(self) -> int:
         return self._freed + self._in_memory
 
-    def keep_in(self, path: Path, head: bytes, before: Callable[[], None] = lambda: None) -> None:
+    def keep_in(
+        self,
+        path: Path,
+        head: bytes,
+        before: Callable[[], None] = lambda: None,
+        there: Callable[[], bool] = lambda: True,
+    ) -> None:
         """Name the file that `save` makes: it begins with `head`, then the rows follow from the first on.
 
         `before` is called before rows are written; it may raise OSError as writing them may. Rows that are no
-        more in memory are copied at once. Raises RunError where that fails; then all is as it was.
+        more in memory are copied at once. Raises RunError where that fails; then all is as it was. A file
+        that somebody removed is made anew as long as its folder is `there`.
         """
         with self._lock:
             earlier = self._path, self._head, self._before, self._file, self._in_file
-            self._path, self._head, self._before = path, head, before
+            self._path, self._head, self._before, self._there = path, head, before, there
             if self._file is None:
                 return
             try:
@@ -251,12 +273,29 @@ class RowStore:
             if more is not None and after == len(self):
                 chunks.append(more)
             try:
+                self._restore()
                 self._before()
                 for rows in chunks:
                     self._save(first, rows)
                     first += len(rows)
             except OSError as error:
                 raise self._refused(error) from error
+
+    def _restore(self) -> None:
+        """Make the file anew that somebody removed; where that is impossible, it goes on without a name."""
+        old, count = self._file, self._in_file
+        if old is None or self._path is None or self._gone or old.is_at(self._path):
+            return
+        if not self._there():
+            self._gone = True
+            return
+        try:
+            self._copy(old)
+        except OSError:
+            self._gone = True
+            if self._file is not None and self._file.is_at(self._path):
+                self._path.unlink()
+            self._file, self._in_file = old, count
 
     def _save(self, first: int, rows: Array) -> None:
         """Write what the file does not have of `rows`, the first of which is row `first`."""
@@ -274,14 +313,18 @@ class RowStore:
         if self._path is None:
             return _RowFile(tempfile.TemporaryFile(prefix="evcosim-", dir=self._folder, buffering=0))
         file = self._path.open("x+b", buffering=0)  # exclusively: it follows no link
-        file.write(self._head)
+        try:
+            write_all(file, memoryview(self._head))
+        except OSError:
+            file.close()
+            self._path.unlink()
+            raise
         return _RowFile(file, len(self._head))
 
     def _refused(self, error: OSError) -> RunError:
         folder = self._folder or tempfile.gettempdir() if self._path is None else self._path.parent
         other = "TMPDIR names another folder, " if self._path is None else ""
-        said = error.strerror or error
-        return RunError(f"{self._what} cannot be kept in {folder}: {said}; {other}{self._advice}")
+        return RunError(f"{self._what} cannot be kept in {folder}: {reason(error)}; {other}{self._advice}")
 
     def table(self, last: Array | None = None) -> Table:
         """Return the rows up to now and after them `last`, shape (rows, width).

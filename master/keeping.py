@@ -7,11 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ..cosim.errors import RunError
 from ..cosim.plan.plan import Plan
 from ..cosim.results import rows_file
-from ..cosim.results.results import Results
+from ..cosim.results.rescue import finish
+from ..cosim.results.results import PIECE, Results
+from ..cosim.results.rows_file import ROWS_NAME
 from ..cosim.results.run_folder import RunFolder
-from ..cosim.results.text_rows import TextRows
+from ..cosim.results.text_rows import TEXT_ROWS_NAME, TextRows
 from .engine.engine import Engine
 from .engine.row_keeper import RowKeeper
 
@@ -33,15 +36,33 @@ class KeptRun:
             if self._fills:
                 self.folder.check(about)
             self.folder.begin(about, (*plan.columns, *plan.text_columns))
-            head = rows_file.head(plan.clock, plan.columns, about)
-            texts = TextRows(self.folder.text_rows, plan.text_columns)
-            engine.store.keep_in(self.folder.rows, head, lambda: texts.save(engine.text_notes.new()))
+            self.folder.head = rows_file.head(plan.clock, plan.columns, about)
+            self._texts = TextRows(self.folder.text_rows, plan.text_columns, engine.text_notes.since)
+            engine.store.keep_in(self.folder.rows, self.folder.head, self._save_texts, self._is_there)
             self._keeper = RowKeeper(engine)
-            self.folder.saver = self._keeper.save_all
+            self.folder.saver, self.folder.spare = self._keeper.save_all, self._save_in
         except BaseException:
             if self._fills:
                 self.folder.release()
             raise
+
+    def _save_texts(self) -> None:
+        if self._is_there():
+            self._texts.save()
+
+    def _save_in(self, place: Path) -> int:
+        """Save all rows up to now in another folder, and return their number. Raises OSError."""
+        self._texts.beside(place / TEXT_ROWS_NAME).save()
+        table = self._keeper.rows()
+        return rows_file.complete(
+            place / ROWS_NAME,
+            self.folder.head,
+            table.shape[1],
+            lambda first: (table.rows(k, k + PIECE) for k in range(first, table.shape[0], PIECE)),
+        )
+
+    def _is_there(self) -> bool:
+        return self.folder.is_there
 
     @property
     def notice(self) -> str:
@@ -52,15 +73,22 @@ class KeptRun:
         """Save no more rows: the run has ended."""
         self._keeper.stop()
 
-    def end(self, results: Results) -> None:
+    def end(self, results: Results, error: BaseException | None) -> None:
         """Write results.csv and run.json, and give the folder free, if that is not the caller's.
 
-        Raises ConfigError where the disk refuses; the rows that were saved stay then.
+        Raises RunError, which says what is kept where, where the disk refuses; the `error` of the run gets
+        that as a note.
         """
-        if self._fills:
-            self._fills = False
-            with self.folder:
-                self.folder.finish(results)
+        if not self._fills:
+            return
+        self._fills = False
+        with self.folder:
+            try:
+                finish(self.folder, results)
+            except RunError as unwritten:
+                if error is None:
+                    raise
+                error.add_note(str(unwritten))
 
 
 def ended(results: Results, finished: bool, error: BaseException | None) -> Results:

@@ -334,8 +334,8 @@ class Simulation:
     def close(self, orderly: bool = True) -> None:
         """Terminate the units (not after an error) and release them. The results stay.
 
-        Raises the error of the first unit that cannot be terminated, after the others were; ConfigError where
-        the results cannot be written into the folder that the run has.
+        Raises the error of the first unit that cannot be terminated, after the others were; RunError where
+        the folder that the run has takes no results, which says where they are.
         """
         self._end(orderly, None)
 
@@ -351,7 +351,7 @@ class Simulation:
                 self._kept.stop()
             self._free()
             if self._kept is not None:
-                self._kept.end(ended(self.results, self.finished, error))
+                self._kept.end(ended(self.results, self.finished, error), error)
 
     def _terminate(self) -> None:
         failures: list[RunError] = []
@@ -382,8 +382,8 @@ def simulate(
 
     With a `folder`, rows reach it while the run goes on, as `Simulation.keep_in` says.
     The options, as `parameters` and `stop_time`, are the keys of `evcosim.RunOptions`. Raises
-    ConfigError before any step, RunError when a step fails; what a failed run has recorded is in the
-    error's `results` (None where it failed before the first step).
+    ConfigError before any step, RunError when a step fails or the folder takes no results; what the run has
+    recorded is in the error's `results` (None where it failed before the first step).
     """
     simulation = Simulation(system, scenario, to_stop=True, **options)
     try:

@@ -5,6 +5,7 @@ It is `flock` of the folder itself: there is no file of it, and it ends with the
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 from collections.abc import Mapping
@@ -30,6 +31,10 @@ class FolderLock:
     def __init__(self, folder: Path) -> None:
         self.path = folder
         self._descriptor: int | None = None
+        self._take()
+
+    def _take(self) -> None:
+        folder = self.path
         if flaw := flaw_of_name(folder):
             raise ConfigError(f"output folder {short_path(folder)}: cannot be written: {flaw}")
         try:
@@ -38,6 +43,20 @@ class FolderLock:
             said = reason(folder / MANIFEST_NAME, error)
             raise ConfigError(f"output folder {folder}: cannot be written: {said}") from error
         self._descriptor = _locked(folder)
+
+    @property
+    def is_there(self) -> bool:
+        """False where somebody removed, renamed or replaced the folder meanwhile, as far as that is known."""
+        if self._descriptor is None:
+            return True
+        with contextlib.suppress(OSError):
+            return os.path.samestat(os.fstat(self._descriptor), self.path.stat())
+        return False
+
+    def take_again(self) -> None:
+        """Make and lock the folder that is not there any more. Raises ConfigError as at the begin."""
+        self.release()
+        self._take()
 
     def release(self) -> None:
         """Give the folder free."""

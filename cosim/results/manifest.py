@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
 import json
 import math
 import os
@@ -14,6 +15,7 @@ import numpy as np
 
 from ..errors import ConfigError, short
 from ..reading import content
+from ..row_store import write_all
 from ..visible import visible_json
 from ..writing import replacing
 from .variable import ResultVariable
@@ -21,15 +23,32 @@ from .variable import ResultVariable
 _TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
 
 
-def write_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
+def write_manifest(
+    path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable], spare: int = 0
+) -> None:
     """Write a manifest, and under "variables" the description of each variable.
 
-    Numbers that are not finite become null: JSON has no name for them. Raises ConfigError where the file
-    cannot be written; then none is left half-done.
+    Numbers that are not finite become null: JSON has no name for them. `spare` bytes at the end are for
+    `overwrite_manifest`. Raises ConfigError where the file cannot be written; then none is left half-done.
     """
     about = {**manifest, "variables": [described(v) for v in variables]}
     with replacing(path) as file:
-        file.write(manifest_text(about) + b"\n")
+        file.write(manifest_text(about) + b" " * spare + b"\n")
+
+
+def overwrite_manifest(path: Path, manifest: Mapping[str, Any], variables: Iterable[ResultVariable]) -> None:
+    """Write a manifest into the place of one that is there: on a full disk there is no room beside it.
+
+    It is one line then, which needs less. Raises OSError where the disk refuses that too, or it is too short.
+    """
+    about = {**manifest, "variables": [described(v) for v in variables]}
+    text = manifest_text(about, indent=None)
+    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NOFOLLOW", 0))
+    with open(descriptor, "wb", buffering=0) as file:
+        room = os.fstat(descriptor).st_size - 1
+        if len(text) > room:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write_all(file, memoryview(text.ljust(room) + b"\n"))
 
 
 def manifest_text(about: Mapping[str, Any], indent: int | None = 2) -> bytes:

@@ -373,10 +373,13 @@ def _of_rows(path: Path) -> Results:
     """Read the rows that a run, which may have been killed, has saved up to now."""
     saved = read_rows(path)
     said, _ = read_manifest(path.with_name(MANIFEST_NAME))
-    manifest = saved.manifest | {key: said[key] for key in ("status", "error") if key in said}
-    manifest |= {"steps": len(saved.time), "status": status(path.parent, manifest)}
-    for counted_at_the_end in ("saturations", "loop_seconds"):
-        manifest.pop(counted_at_the_end, None)
+    if isinstance(said.get(ROWS), int) and len(saved.time) >= said.pop(ROWS):  # of the end of the run
+        manifest = said
+    else:
+        manifest = saved.manifest | {key: said[key] for key in ("status", "error") if key in said}
+        manifest |= {"steps": len(saved.time), "status": status(path.parent, manifest)}
+        for counted_at_the_end in ("saturations", "loop_seconds"):
+            manifest.pop(counted_at_the_end, None)
     texts = read_text_rows(path.with_name(TEXT_ROWS_NAME), len(saved.time))
     return Results(saved.time, saved.data, saved.variables, manifest, texts=texts)
 

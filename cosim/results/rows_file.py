@@ -3,21 +3,25 @@
 A line of JSON says what the run is and what the columns are; the rows follow from a multiple of 8 bytes on,
 each number a double in the byte order of the machine. Row k is that of communication point k. The file is
 removed when results.csv is written, so that one that stands there without a living run is of a run that was
-killed.
+killed, or that found no room for results.csv.
 """
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+
+import numpy as np
 
 from ..clock import WHOLE, Clock
 from ..errors import ConfigError, short
 from ..reading import require_file
-from ..row_store import Grid, Table, rows_in
+from ..row_store import Array, Grid, Table, rows_in, write_all
 from .manifest import described, from_json, manifest_text, variables_in
 from .variable import ResultVariable
 
@@ -37,6 +41,45 @@ def head(clock: Clock, variables: Sequence[ResultVariable], manifest: Mapping[st
     }
     line = manifest_text(about, indent=None)
     return line + b" " * (-(len(line) + 1) % 8) + b"\n"
+
+
+def complete(path: Path, begin: bytes, width: int, rows: Callable[[int], Iterable[Array]]) -> int:
+    """Append the rows of a run that its file does not have, as many as the disk takes.
+
+    The file is made with `begin` (`head`) where there is none. `rows` gives arrays of the rows from a number
+    on, each of shape (n, width). Return the number of whole rows that the file has then; 0 where none can be
+    kept, or where another file is in its place.
+    """
+    width = width or 1  # a row without numbers stands there as one
+    try:
+        if not os.path.lexists(path):
+            _make(path, begin)
+        with path.open("r+b", buffering=0) as file:
+            if path.is_symlink() or (line := file.readline(_LONGEST)) != begin:
+                return 0
+            first = _rows(file, len(line), width)
+            file.seek(len(line) + 8 * width * first)
+            with contextlib.suppress(OSError):  # it is full: the rows that it took are counted
+                for piece in rows(first):
+                    numbers = np.ascontiguousarray(piece) if piece.size else np.zeros((len(piece), 1))
+                    write_all(file, numbers.data.cast("B"))
+            return _rows(file, len(line), width)
+    except OSError:
+        return 0
+
+
+def _make(path: Path, begin: bytes) -> None:
+    """Make a file without rows. Raises OSError; then there is none."""
+    with path.open("xb", buffering=0) as file:  # exclusively: it follows no link
+        try:
+            write_all(file, memoryview(begin))
+        except OSError:
+            path.unlink()
+            raise
+
+
+def _rows(file: BinaryIO, offset: int, width: int) -> int:
+    return max(0, os.fstat(file.fileno()).st_size - offset) // (8 * width)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -19,13 +19,15 @@ from typing import Any
 
 from ..csv_numbers import CsvFile
 from ..csv_text import cut_row
-from ..errors import ConfigError
+from ..errors import ConfigError, RunError
 from ..file_names import check_name
-from ..writing import remove_drafts
+from ..leftovers import keep_folder, temporary
+from ..writing import reason, remove_drafts
 from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
-from .manifest import manifest_text, read_manifest, write_manifest
+from .manifest import manifest_text, overwrite_manifest, read_manifest, write_manifest
 from .results import CSV_NAME, ROWS, Results
 from .rows_file import ROWS_NAME
+from .rows_file import read as read_rows
 from .text_rows import TEXT_ROWS_NAME
 from .text_table import texts_path
 from .variable import ResultVariable
@@ -33,9 +35,14 @@ from .variable import ResultVariable
 FIGURES = ("figure.png", "figure.svg")
 REPORT = "report.html"
 CAN_LOGS = ("can.log", "can.blf", "can.asc")
+_SPARE = 4096  # bytes of run.json for how the run ended, which a full disk has no room for
 _SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
 FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, REPORT, *CAN_LOGS)
 """The files of a run that has ended."""
+UNWRITTEN = "unwritten"
+"""The key of run.json for the reason why there is no results.csv."""
+KEPT_IN = "kept_in"
+"""The key of run.json for the folder that has the results in its place."""
 
 
 class RunFolder(FolderLock):
@@ -44,6 +51,13 @@ class RunFolder(FolderLock):
     saver: Callable[[], int] | None = None
     """Saves the rows of the run up to now at once, in any thread, and returns their number."""
 
+    spare: Callable[[Path], int] | None = None
+    """Saves all these rows in another folder. Raises OSError or ConfigError."""
+    head: bytes = b""
+    """The begin of the file of the rows, once the run has begun."""
+    remark: str = ""
+    """A sentence about what befell the folder while the run went on; "": nothing."""
+
     def rescue(self, error: str = "") -> str:
         """Save the rows of a process that ends at once, and return what to say of them.
 
@@ -51,17 +65,69 @@ class RunFolder(FolderLock):
         """
         if (self.path / CSV_NAME).exists():
             return f"; results.csv is in {self.path}"
-        count = self.saver() if self.saver is not None else 0
-        about, variables = read_manifest(self.path / MANIFEST_NAME)
-        about |= {"status": "failed", "error": error} if error else {"status": "interrupted"}
-        about["steps"] = count
-        write_manifest(self.path / MANIFEST_NAME, about, variables.values())
-        if count and error and (found := self.recover()) is not None:  # no one waits for the end
+        count, lost = self._save_now()
+        facts: dict[str, Any] = {"status": "failed", "error": error} if error else {"status": "interrupted"}
+        facts |= {"steps": count}
+        if lost and (spared := self._spare(count, facts)):
+            return f"; {spared}{lost}"
+        self.note(facts)
+        if count and error and not lost and (found := self.recover()) is not None:  # no one waits for the end
             return f"; {len(found)} rows are in {self.path / CSV_NAME}"
         if not count:
-            return f"; no row was saved in {self.path}"
+            return f"; no row was saved in {self.path}{lost}"
         recover = f"evcosim results recover {self.path}"
-        return f"; {count} rows are in {self.rows}, and {recover} makes results.csv of them"
+        return f"; {count} rows are in {self.rows}, and {recover} makes results.csv of them{lost}"
+
+    def _save_now(self) -> tuple[int, str]:
+        """Save the rows up to now; return the number of those that are saved, and why the others are not."""
+        if not self.is_there:
+            return 0, f": {self.path} was removed or renamed"
+        try:
+            count = self.saver() if self.saver is not None else 0
+        except RunError as refused:
+            return self.count_rows(), f": {refused}"
+        return (count, "") if self.rows.exists() or not count else (0, f": {self.rows} was removed")
+
+    def _spare(self, count: int, facts: dict[str, Any]) -> str:
+        """Save the rows where temporary files are, if more than `count` fit there; return a clause on it."""
+        if self.spare is None:
+            return ""
+        try:
+            with temporary() as place:
+                more = self.spare(place)
+                if more <= count:
+                    return ""
+                kept = keep_folder(place, "results")
+        except (OSError, ConfigError):
+            return ""
+        about, variables = read_manifest(self.path / MANIFEST_NAME)
+        with contextlib.suppress(ConfigError):
+            write_manifest(kept / MANIFEST_NAME, about | facts | {"steps": more}, variables.values())
+        self.note({**facts, KEPT_IN: str(kept)})
+        return f"{more} rows are in {kept}, and evcosim results recover {kept} makes results.csv of them"
+
+    def note(self, facts: Mapping[str, Any]) -> str:
+        """Let run.json say more of a run whose results are not there. Return why it cannot; "": it does."""
+        path = self.path / MANIFEST_NAME
+        try:
+            manifest, variables = read_manifest(path)
+            about = {**manifest, **facts}
+            try:
+                write_manifest(path, about, variables.values())
+            except ConfigError:
+                overwrite_manifest(path, about, variables.values())
+        except ConfigError as error:
+            return str(error)
+        except OSError as error:
+            return f"{path}: cannot be written: {reason(path, error)}"
+        return ""
+
+    def count_rows(self) -> int:
+        """Return the number of whole rows that were saved."""
+        try:
+            return len(read_rows(self.rows).time)
+        except ConfigError:
+            return 0
 
     def __fspath__(self) -> str:
         return os.fspath(self.path)
@@ -91,7 +157,7 @@ class RunFolder(FolderLock):
         now = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
         process = {"id": os.getpid(), "host": socket.gethostname(), "since": now}
         about = {**manifest, "status": "running", "process": process}
-        write_manifest(self.path / MANIFEST_NAME, about, variables)
+        write_manifest(self.path / MANIFEST_NAME, about, variables, spare=_SPARE)
 
     def finish(self, results: Results) -> None:
         """Write results.csv, its texts and run.json, then remove the rows.
@@ -134,6 +200,7 @@ class RunFolder(FolderLock):
             self.discard_rows()
             return None
         results = Results.read(self.path)
+        results.manifest.pop(UNWRITTEN, None)
         if self.was_killed:
             results.manifest["status"] = "killed"
         self.finish(results)

@@ -8,7 +8,8 @@ removed with results.rows.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ..errors import ConfigError
@@ -22,25 +23,75 @@ _FORMAT = "evcosim texts 1"
 
 
 class TextRows:
-    """A file at `path` of the texts of some variables, which is made at the first `save`."""
+    """A file at `path` of the texts of some variables, which is made at the first `save`.
 
-    def __init__(self, path: Path, variables: Sequence[ResultVariable]) -> None:
-        self._path, self._variables = path, tuple(variables)
-        self._made = False
+    `since` returns the rows from a number on that were noted, each with its texts.
+    """
 
-    def save(self, changes: Sequence[Change]) -> None:
-        """Append rows, each with its texts. Raises OSError where the disk refuses."""
+    def __init__(
+        self,
+        path: Path,
+        variables: Sequence[ResultVariable],
+        since: Callable[[int], Sequence[Change]],
+    ) -> None:
+        self._path, self._variables, self._since = path, tuple(variables), since
+        self._count = self._size = 0  # of what stands in the file: rows, bytes
+
+    def beside(self, path: Path) -> TextRows:
+        """Return another file of the same texts, from the first on."""
+        return TextRows(path, self._variables, self._since)
+
+    def go_on(self, count: int) -> None:
+        """Go on with a file that has so many rows, and maybe half of another one. Raises OSError."""
+        self._count, self._size = count, self._path.read_bytes().rindex(b"\n") + 1
+
+    def save(self) -> None:
+        """Append the rows that were noted since the last time. Raises OSError where the disk refuses."""
+        if self._count and not self._path.exists():  # somebody removed it
+            self._count = self._size = 0
+        changes = self._since(self._count)
         if not changes:
             return
+        if not self._size:
+            self._size = _make(self._path, self._variables)
         lines = b"".join(json.dumps([row, *texts]).encode() + b"\n" for row, texts in changes)
-        if self._made:
-            with self._path.open("ab") as file:
-                file.write(lines)
-            return
-        about = {"format": _FORMAT, "variables": [described(v) for v in self._variables]}
-        with create(self._path) as file:
-            self._made = True
-            file.write(manifest_text(about, indent=None) + b"\n" + lines)
+        with self._path.open("r+b") as file:
+            file.truncate(self._size)  # what stands behind is of a call that failed
+            file.seek(self._size)
+            file.write(lines)
+        self._count += len(changes)
+        self._size += len(lines)
+
+
+def complete_texts(path: Path, table: TextTable) -> bool:
+    """Write the texts of a run that its file does not have; return False where the disk refuses.
+
+    Raises ConfigError where what is there holds no texts.
+    """
+    written = read_text_rows(path, sys.maxsize).changes
+    if len(written) < len(table.changes):
+        rows = TextRows(path, table.variables, lambda first: table.changes[first:])
+        try:
+            if path.exists():
+                rows.go_on(len(written))
+            rows.save()
+        except OSError:
+            return False
+    return True
+
+
+def _make(path: Path, variables: Sequence[ResultVariable]) -> int:
+    """Make a file without rows, and return its bytes. Raises OSError; then there is none."""
+    about = {"format": _FORMAT, "variables": [described(v) for v in variables]}
+    begin = manifest_text(about, indent=None) + b"\n"
+    with create(path) as file:
+        try:
+            file.write(begin)
+            file.flush()
+        except OSError:
+            path.unlink()
+            raise
+    return len(begin)
 
 
 def read_text_rows(path: Path, count: int) -> TextTable:

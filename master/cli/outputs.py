@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -119,7 +117,7 @@ def _recovered(locked: RunFolder) -> list[str]:
         raise
     if found is None:
         return []
-    return [f"{locked.path}: the run before was killed; {len(found)} of its rows were recovered"]
+    return [f"{locked.path}: the run before left no results.csv; {len(found)} of its rows were recovered"]
 
 
 def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
@@ -146,42 +144,15 @@ def suffix_of(options: RunOptions, scenario: str | None = None) -> str:
 def write_results(folder: RunFolder, results: Results) -> list[str]:
     """Write results.csv and run.json, and texts beside them, and return their names.
 
-    If they cannot be written they go to a temporary folder, and RunError names it, or says where the rows are
-    that were saved in the run.
+    Raises RunError where the disk refuses, which says what is kept where.
     """
-    from ...cosim.errors import ConfigError, RunError
+    from ...cosim.results.rescue import finish
     from ...cosim.results.results import CSV_NAME, MANIFEST_NAME
     from ...cosim.results.text_table import texts_path
 
-    try:
-        folder.finish(results)
-    except ConfigError as error:
-        raise RunError(f"{error}\n{_rescued(folder, results)}") from error
+    finish(folder, results)
     texts = [texts_path(folder.path / CSV_NAME).name] if results.texts else []
     return [CSV_NAME, *texts, MANIFEST_NAME]
-
-
-def _rescued(folder: RunFolder, results: Results) -> str:
-    """Write the results where temporary files are, and return what to say of them."""
-    from ...cosim.errors import ConfigError
-    from ...cosim.shortage import of_temporary_files
-
-    try:
-        rescue = Path(tempfile.mkdtemp(prefix="evcosim-results-"))
-        try:
-            results.write(rescue)
-        except ConfigError as error:
-            shutil.rmtree(rescue, ignore_errors=True)
-            said = str(error)
-        else:
-            return f"the results are kept in {rescue}"
-    except OSError as error:
-        said = of_temporary_files(error)
-    said = f"nor can they be kept elsewhere: {said}"
-    if not folder.rows.exists():
-        return said
-    recover = f"`evcosim results recover {folder.path}` makes results.csv of them"
-    return f"{said}\nthe rows that were saved in the run are in {folder.rows}: {recover}"
 
 
 def figure_of(results: Results) -> FigureSpec | None:

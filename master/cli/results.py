@@ -21,15 +21,20 @@ def _group() -> None:
 def recover(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a run that was killed.")],
 ) -> None:
-    """Make results.csv of what a run had saved that was killed, or leave out its last row that was cut off.
+    """Make results.csv of what a run had saved that was killed or whose disk was full, or mend one.
 
     `evcosim plot` and `compare` read such a folder as it is, and the next run into it recovers it.
     """
+    from ...cosim.results.folder_lock import manifest_of
+    from ...cosim.results.run_folder import KEPT_IN
     from ...cosim.results.run_folder import recover as recovered
 
+    elsewhere = manifest_of(folder).get(KEPT_IN)
     found = recovered(folder)
     if found is None:
         print(f"{folder}: no run was killed here and no row is cut off, there is nothing to recover")
-        return
-    until = f"up to t = {found.span[1]:.6g} s" if len(found) else "none"
-    print(f"{folder}: results.csv has {len(found)} rows, {until}; status: {found.manifest['status']}")
+    else:
+        until = f"up to t = {found.span[1]:.6g} s" if len(found) else "none"
+        print(f"{folder}: results.csv has {len(found)} rows, {until}; status: {found.manifest['status']}")
+    if elsewhere is not None:
+        print(f"{folder}: the results of the run, which found no room here, were kept in {elsewhere}")

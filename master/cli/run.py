@@ -93,7 +93,8 @@ class Order:
 class FinishedRun:
     """A run at its end: `error` is its failure (None: none), `files` are the names of written files.
 
-    `target` is the system or FMU as it was typed.
+    `unwritten` says why its results are not in the folder, and where they are ("": they are there). `target`
+    is the system or FMU as it was typed.
     """
 
     target: str
@@ -103,6 +104,7 @@ class FinishedRun:
     error: BaseException | None
     files: list[str] = dataclasses.field(default_factory=list)
     metrics: list[Any] = dataclasses.field(default_factory=list)
+    unwritten: str = ""
     remarks: list[str] = dataclasses.field(default_factory=list)
 
 
@@ -214,7 +216,13 @@ def _write(
     from .outputs import write_results
 
     folder = finished.folder
-    finished.files += write_results(folder, finished.results)
+    try:
+        finished.files += write_results(folder, finished.results)
+    except RunError as error:
+        finished.unwritten = str(error)
+        finished.error = finished.error or error
+        return
+    finished.remarks += [folder.remark] if folder.remark else []
     try:
         _write_logs(finished, order)
         say(f"; in {folder.path}: {', '.join(finished.files)}")

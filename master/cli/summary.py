@@ -114,6 +114,8 @@ def of_failure(finished: FinishedRun) -> str:
         why = f"{words} at t = {number(finished.simulation.time)} s"
     else:
         why = str(finished.error)
+    if finished.unwritten:
+        return finished.unwritten if why == finished.unwritten else f"{why}\n{finished.unwritten}"
     kept = f"results up to t = {number(results.span[1])} s" if len(results) else "no step was recorded"
     folder = on_one_line(str(finished.folder.path))
     return f"{why}\n{kept}; in {folder}: {', '.join(finished.files)}"

@@ -12,8 +12,8 @@ import functools
 import math
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, assert_never, cast
+from collections.abc import Callable, Mapping
+from typing import Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from ...cosim.errors import RunError
 from ...cosim.interface import Value
 from ...cosim.plan.plan import Plan
 from ...cosim.plan.turns import TurnTimes
-from ...cosim.plan.unit_plan import Route, UnitPlan
+from ...cosim.plan.unit_plan import UnitPlan
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ...cosim.visible import on_one_line
@@ -32,25 +32,15 @@ from .ending import EndedWithin, Ending
 from .frame_path import FramePath
 from .initialization import typed
 from .profile import Profile
+from .routes import Act, compile_routes
 from .schedule import Action, schedule, waiting
 from .sender import senders_of
 from .text_notes import TextNotes
-
-Act = Callable[[int], None]
-"""A function of k that does an action in step k."""
 
 CHUNK_SECONDS = 0.1
 """The time [s] after which a chunk of steps ends; progress and Ctrl-C are looked at between two chunks."""
 _LEAST, _FIRST = 256, 16384  # the longest chunk has at least so many steps; the first one at most
 _ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
-
-
-def compile_routes(routes: Sequence[Route], memory: memoryview[float]) -> Act:
-    """Return a function that writes all inputs of a unit from their routes: one assignment for each."""
-    lines = [f"    m[{r.sink}] = {r.map.expression(f'm[{r.source}]')}" for r in routes] or ["    pass"]
-    scope: dict[str, Any] = {"memory": memory}
-    exec("def take(k, m=memory):\n" + "\n".join(lines), scope)
-    return cast(Act, scope["take"])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -253,11 +243,20 @@ class Engine:
             raise type(error)(f"at t = {self.time:.6g} s (step {self.k}): {error}") from error
         finally:
             done = self.k - first
-            self.store.append(rows if done == count else rows[:done].copy())
+            self._keep(rows if done == count else rows[:done].copy())
+        self._adapt(count, done, time.perf_counter() - begin)
+
+    def _keep(self, rows: NDArray[np.float64]) -> None:
+        """Keep rows and frames. Raises RunError where no disk takes them, unless the step itself failed."""
+        try:
+            self.store.append(rows)
             for sender in self.senders:
                 sender.channel.flush()
             self.frames.flush()
-        self._adapt(count, done, time.perf_counter() - begin)
+        except RunError as error:
+            if self.whole:
+                stop = f" of {self.plan.clock.stop:.6g}" if self.plan.clock.told else ""
+                raise RunError(f"the run was stopped at t = {self.time:.6g}{stop} s: {error}") from error
 
     def _finish_begun(self) -> None:
         """Wait for the units that had begun a step when another one ended within it."""

@@ -7,8 +7,9 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import CHUNK_SECONDS, Act, Engine
+from .engine import CHUNK_SECONDS, Engine
 from .profile import part_of
+from .routes import Act
 from .schedule import Action
 
 

@@ -11,6 +11,7 @@ import threading
 import time
 
 from ...cosim.errors import RunError
+from ...cosim.row_store import Table
 from ...cosim.shortage import no_thread
 from .engine import Engine
 
@@ -56,13 +57,20 @@ class RowKeeper:
         engine.store.save(rows, before)
         return max(before + (0 if rows is None else len(rows)), len(engine.store))
 
+    def rows(self) -> Table:
+        """Return the rows that `save_all` saves."""
+        engine = self._engine
+        before = engine.before
+        rows = None if engine.whole else engine.rows_under_way()
+        return engine.store.table(rows if len(engine.store) == before else None)
+
     def _watch(self) -> None:
         while not self._over.wait(LOOK):
             try:
                 self._look()
+                self.notice = ""
             except RunError as error:  # the run goes on, and keeps its rows in memory while they are few
                 self.notice = f"rows are not saved while it runs: {error}"
-                return
 
     def _look(self) -> None:
         engine = self._engine

@@ -9,13 +9,12 @@ from ...cosim.results.text_table import Change, TextTable
 class TextNotes:
     """Notes of the texts of a plan, whose numbers stand in `memory`, shape (size,).
 
-    Another thread may ask for the new ones.
+    Another thread may ask for them.
     """
 
     def __init__(self, plan: Plan, memory: memoryview[float]) -> None:
         self._plan, self._memory = plan, memory
         self._changes: list[tuple[int, tuple[float, ...]]] = []
-        self._given = 0  # of these, by `new`
 
     def note(self, k: int) -> None:
         """Note the texts of row k, where one differs from the row before."""
@@ -31,10 +30,9 @@ class TextNotes:
             changes.append((rows, present))
         return TextTable(self._plan.text_columns, self._as_texts(changes))
 
-    def new(self) -> list[Change]:
-        """Return the rows with their texts that were noted since the last call."""
-        first, self._given = self._given, len(self._changes)
-        return self._as_texts(self._changes[first : self._given])
+    def since(self, first: int) -> list[Change]:
+        """Return the rows with their texts that were noted, from number `first` of them on."""
+        return self._as_texts(self._changes[first:])
 
     def _now(self) -> tuple[float, ...]:
         return tuple(self._memory[slot] for slot in self._plan.text_slots)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.row_store import MEMORY, Grid, MemoryTable, RowStore, Table
+from support.small_disk import small_disk
 
 WIDTH = 3
 
@@ -118,6 +119,49 @@ def test_a_file_that_cannot_be_named_leaves_the_rows_where_they_are(tmp_path: Pa
         store.keep_in(tmp_path / "none" / "rows", b"head....")
     store.append(second)
     assert np.array_equal(store.table().whole(), np.vstack([first, second]))
+
+
+@pytest.mark.parametrize("memory", [0, 10**9])
+def test_a_file_that_somebody_removes_is_made_anew(memory: int, tmp_path: Path) -> None:
+    first, second = chunks([50, 60])
+    path = tmp_path / "rows"
+    store = RowStore(WIDTH, memory)
+    store.keep_in(path, b"head....")
+    store.append(first)
+    store.save()
+    before = store.table()
+    path.unlink()
+    store.append(second)
+    store.save()
+    assert np.array_equal(np.frombuffer(path.read_bytes()[8:]).reshape(-1, WIDTH), np.vstack([first, second]))
+    assert np.array_equal(store.table().whole(), np.vstack([first, second]))
+    assert np.array_equal(before.whole(), first)
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_where_a_file_cannot_be_made_anew_no_row_is_lost(there: bool, tmp_path: Path) -> None:
+    """Its folder is gone, or another one is in its place."""
+    first, second = chunks([50, 60])
+    (tmp_path / "folder").mkdir()
+    store = RowStore(WIDTH, memory=0)
+    store.keep_in(tmp_path / "folder" / "rows", b"head....", there=lambda: there)
+    store.append(first)
+    (tmp_path / "folder").rename(tmp_path / "moved")
+    if not there:
+        (tmp_path / "folder").mkdir()
+    store.append(second)
+    assert np.array_equal(store.table().whole(), np.vstack([first, second]))
+    assert there or list((tmp_path / "folder").iterdir()) == []
+
+
+def test_a_head_without_room_leaves_no_file(tmp_path: Path) -> None:
+    with small_disk(tmp_path / "disk", 1) as disk:
+        store = RowStore(WIDTH)
+        store.keep_in(disk / "rows", b"h" * 100_000)
+        store.append(chunks([5])[0])
+        with pytest.raises(RunError, match="No space left on device: make room on the disk"):
+            store.save()
+        assert list(disk.iterdir()) == []
 
 
 @given(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from evcosim.fmus.build import build_model
 from evcosim.master.keeping import ended
 from support.c_fmu import typed_fmu
 from support.cli_models import Fragile
+from support.small_disk import small_disk
 
 
 def status(folder: Path) -> str:
@@ -167,3 +169,45 @@ def test_the_end_is_said_in_the_manifest() -> None:
     assert ended(results, True, None).manifest["status"] == "done"
     assert ended(results, False, None).manifest["status"] == "stopped"
     assert ended(results, True, ValueError()).manifest["error"] == "ValueError"
+
+
+def test_a_full_disk_keeps_results_and_error_of_a_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The error of the disk replaces none of the run's own."""
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    with small_disk(tmp_path / "disk", 8) as disk:
+        with pytest.raises(RunError, match="the results up to t = 1 s are kept in") as caught:
+            simulate("scooter", stop_time=1.0, folder=disk / "a", isolation="none")
+        assert caught.value.results is not None
+        assert len(caught.value.results) == 101
+        assert status(disk / "a") == "failed"
+        (first,) = (path for path in (tmp_path / "elsewhere").iterdir() if (path / "results.csv").exists())
+        assert np.array_equal(Results.read(first).data, caught.value.results.data)
+        shutil.rmtree(disk / "a")
+        with pytest.raises(KeyError) as mine, Simulation("scooter", isolation="none") as sim:
+            sim.keep_in(disk / "b")
+            sim.step(100)
+            raise KeyError("mine")
+        assert "results.csv: cannot be written: No space left on device" in mine.value.__notes__[0]
+        about = json.loads((disk / "b" / "run.json").read_text())
+        assert (about["status"], about["error"]) == ("failed", "'mine'")
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_rows_go_elsewhere_where_the_process_ends_at_once(tmp_path: Path, engine: str) -> None:
+    fmu = typed_fmu(tmp_path / "typed.fmu", 2)
+    (tmp_path / "place").mkdir()
+    with Simulation(fmu, inputs={"text_in": "first"}, engine=engine, step_size=0.1, stop_time=2.0) as sim:
+        sim.keep_in(tmp_path / "out")
+        sim.step(3)
+        sim.override("fmu.text_in", "then")
+        sim.step(3)
+        assert sim._kept is not None
+        assert sim._kept.folder.spare is not None
+        assert sim._kept.folder.spare(tmp_path / "place") == 6
+        now = sim.results
+    saved = Results.read(tmp_path / "place")
+    assert np.array_equal(saved.data, now.data[:6])
+    assert saved["fmu.text_in"].tolist() == ["first"] * 3 + ["then"] * 3

@@ -11,8 +11,9 @@ from ...machine import tables as L
 from ...machine.hands import Hand, HandedOver
 from ...machine.rows import CallRows, Cells, KernelTable, Recheck, direct, fill, table
 from ...unit import Unit
-from ..engine import Act, Engine, Turn
+from ..engine import Engine, Turn
 from ..profile import Part, part_of
+from ..routes import Act
 from ..schedule import Action
 from ..sender import Sender
 from .codes import effect_kind

@@ -7,17 +7,25 @@ patched call pretends to be full.
 from __future__ import annotations
 
 import errno
+import functools
+import re
+import shutil
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from evcosim.cosim import writing
 from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.results import rescue
 from evcosim.cosim.results.folder_lock import FolderLock, lives
 from evcosim.cosim.results.results import Results
+from evcosim.cosim.row_store import RowStore
 from evcosim.master.cli import outputs
+from evcosim.master.engine import engine
 from support.answers import refused
+from support.small_disk import small_disk
 
 
 def test_files_of_an_earlier_run_do_not_stay(evcosim, tmp_path):
@@ -82,39 +90,81 @@ def test_results_that_cannot_be_written_are_kept_elsewhere(evcosim, monkeypatch,
         return write(self, folder)
 
     monkeypatch.setattr(Results, "write", full)
+    monkeypatch.setattr(rescue, "complete", lambda *_: 0)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
     (tmp_path / "elsewhere").mkdir()
     answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
     assert answer.code == 1
     (kept,) = (tmp_path / "elsewhere").iterdir()
-    assert "No space left on device" in answer.err
-    assert f"the results are kept in {kept}" in answer.err
-    assert len(Results.read(kept)) == 11
-
-
-def test_results_that_cannot_be_written_anywhere_are_said_to_be_where_their_rows_are(
-    evcosim, monkeypatch, tmp_path
-):
-    def full(self, folder):
-        (folder / "results.rows").write_bytes(b"rows") if str(folder) == "out" else None
-        raise ConfigError(f"{folder}/results.csv: cannot be written: No space left on device")
-
-    monkeypatch.setattr(Results, "write", full)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
-    (tmp_path / "elsewhere").mkdir()
-    answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out")
-    assert answer.code == 1
-    first, second, third = answer.err.splitlines()
+    first, second = answer.err.splitlines()
     assert first == "evcosim: out/results.csv: cannot be written: No space left on device"
-    assert second.startswith(f"nor can they be kept elsewhere: {tmp_path}/elsewhere/evcosim-results-")
-    assert third.startswith("the rows that were saved in the run are in out/results.rows: ")
-    assert "`evcosim results recover out`" in third
-    assert list((tmp_path / "elsewhere").iterdir()) == []
+    assert second == f"the results up to t = 0.1 s are kept in {kept}"
+    assert len(Results.read(kept)) == 11
+    assert Results.read(kept).manifest["status"] == "failed"
     # and where there is no folder for temporary files at all
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "gone"))
     answer = evcosim("run", "scooter", "--stop-time", "0.1", "-o", "out", "--isolation", "none", "--replace")
     assert answer.code in (1, 2)
     assert "unexpected" not in answer.err
+
+
+def test_a_run_that_a_full_disk_stops_says_why_and_what_is_where(evcosim, monkeypatch, tmp_path):
+    """Rows that are many need a file, and results.csv more room than they."""
+    monkeypatch.setattr(engine, "RowStore", functools.partial(RowStore, memory=100_000))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
+    (tmp_path / "elsewhere").mkdir()
+    with small_disk(tmp_path / "disk", 40) as disk:
+        answer = evcosim("run", "scooter", "--no-plot", "-o", "disk/out")
+        assert answer.code == 1
+        why, csv, elsewhere, rows = answer.err.splitlines()
+        full = "No space left on device: make room on the disk"
+        stopped = re.match(
+            r"evcosim: the run was stopped at t = (.*) of 40 s: what the run records cannot", why
+        )
+        assert stopped
+        assert why.endswith(f" be kept in disk/out: {full}; `record` less needs less")
+        assert csv == f"disk/out/results.csv: cannot be written: {full}"
+        (kept,) = (tmp_path / "elsewhere").iterdir()
+        assert elsewhere == f"the results up to t = {stopped[1]} s are kept in {kept}"
+        found = re.match(
+            r"(\d+) of (\d+) rows, up to t = (.*) s, are in disk/out/results.rows; `(.*)` ", rows
+        )
+        assert found
+        assert found[4] == "evcosim results recover disk/out"
+        results = Results.read(disk / "out")
+        assert (len(results), results.manifest["status"]) == (int(found[1]), "failed")
+        assert f"evcosim: {results.manifest['error']}" == why
+        assert f"{results.span[1]:.6g}" == found[3]
+        shutil.copytree(disk / "out", tmp_path / "moved")
+    whole = Results.read(kept)
+    assert len(whole) == int(found[2]) > len(results)
+    assert whole.manifest["error"] == results.manifest["error"]
+    answer = evcosim("results", "recover", "moved")
+    first, second = answer.out.splitlines()
+    assert first == f"moved: results.csv has {found[1]} rows, up to t = {found[3]} s; status: failed"
+    assert second == f"moved: the results of the run, which found no room here, were kept in {kept}"
+    assert np.array_equal(Results.read(tmp_path / "moved").data, whole.data[: len(results)])
+
+
+def test_rows_that_fit_where_results_do_not_are_recovered_by_the_next_run(evcosim, tmp_path, monkeypatch):
+    with small_disk(tmp_path / "disk", 30) as disk:
+        monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+        short = ("run", "scooter", "--no-plot", "--no-report", "--stop-time", "4", "-o", "disk/out")
+        answer = evcosim(*short)
+        assert answer.code == 1
+        first, second = answer.err.splitlines()
+        assert first.startswith("evcosim: disk/out/results.csv: cannot be written: No space left on device")
+        assert second.startswith(
+            "all 401 rows are in disk/out/results.rows, which `evcosim plot` and `compare`"
+        )
+        answer = evcosim("compare", "disk/out", "disk/out")
+        assert answer.code == 0
+        refused(evcosim(*short), "disk/out/results.csv: cannot be written: No space left", "--output names")
+        assert (disk / "out" / "results.rows").exists()
+        shutil.copytree(disk / "out", tmp_path / "out")
+    answer = evcosim(*short[:-1], "out")
+    assert answer.code == 0
+    assert "out: the run before left no results.csv; 401 of its rows were recovered" in answer.out
 
 
 def test_a_default_folder_is_named_by_what_has_a_name():

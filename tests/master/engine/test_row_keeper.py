@@ -131,15 +131,22 @@ def test_the_thread_saves_by_itself_and_ends(tmp_path: Path, monkeypatch: Any) -
     assert threading.active_count() == before
 
 
-def test_a_disk_that_refuses_is_a_notice(tmp_path: Path, monkeypatch: Any) -> None:
+def test_a_disk_that_refuses_is_a_notice_while_it_does(tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.setattr(row_keeper, "LOOK", 0.01)
     monkeypatch.setattr(row_keeper, "FIRST", 0.0)
-    engine = Engine(tmp_path / "none" / "rows")
+    path = tmp_path / "none" / "rows"
+    engine = Engine(path)
     engine.store.append(rows(0.0, 1.0))
     keeper = RowKeeper(engine)  # type: ignore[arg-type] # as above
-    keeper._thread.join()
+    while not keeper.notice:
+        time.sleep(0.01)
     assert "rows are not saved while it runs: what the run records cannot be kept in" in keeper.notice
     assert len(engine.store) == 2
+    path.parent.mkdir()
+    while keeper.notice:
+        time.sleep(0.01)
+    assert on_disk(path) == [0.0, 1.0]
+    keeper.stop()
 
 
 def test_without_a_thread_the_run_goes_on_with_a_notice(tmp_path: Path, monkeypatch: Any) -> None:

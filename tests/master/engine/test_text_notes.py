@@ -25,9 +25,9 @@ def test_a_row_is_noted_where_a_text_changes() -> None:
         memory[2] = float(k)  # no text stands there
         notes.note(k)
         if k == 2:
-            assert notes.new() == [(0, ("", "")), (2, ("on", ""))]
-    assert notes.new() == [(4, ("", "")), (5, ("on", ""))]
-    assert notes.new() == []
+            assert notes.since(0) == [(0, ("", "")), (2, ("on", ""))]
+    assert notes.since(2) == [(4, ("", "")), (5, ("on", ""))]
+    assert notes.since(4) == []
     memory[0] = plan.texts.number("now")
     expected = [(0, ("", "")), (2, ("on", "")), (4, ("", ""))]
     assert list(notes.table(5, now=False).changes) == expected
