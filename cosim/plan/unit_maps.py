@@ -16,6 +16,8 @@ from ..units.measure import Affine, DifferentQuantityError, OpenUnitError, UnitO
 from ..units.spellings import NO_UNIT
 from ..visible import visible_json
 
+_FACTOR = ", or `factor` with `convert = false` in its [[connect]]"
+
 Definitions = Mapping[str, UnitOfMeasure]
 
 
@@ -208,11 +210,13 @@ def _known(end: End, others: Iterable[Definitions]) -> UnitOfMeasure | None:
 
 def _advice(end: End, other: End, others: Iterable[Definitions]) -> str:
     """Return what to do where the unit of measure of an end is unknown or open."""
+    own = _known(end, others)
+    factor = _FACTOR if own is None or own.also else ""
     if end.bus:
         unit = _quoted(end.unit)
         known = _quoted("..." if _known(other, others) is None else other.unit)
-        return f"say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}"
-    return end.advice or f"say what {end.name} is in: `unit` in the unit's `map`"
+        return f"say what it is in the system file, [buses.{end.bus}.units]: {unit} = {known}{factor}"
+    return end.advice or f"say what {end.name} is in: `unit` in the unit's `map`{factor}"
 
 
 def with_unit(signal: Signal, units: Mapping[str, str]) -> Signal:

@@ -1,7 +1,7 @@
 """The definition of a unit of measure by its text, or by an FMU's own description of it.
 
-An FMU's own definition comes first; a text without one is read by the table of everyday spellings, the
-symbols of the SI and, name by name, by pint, which takes 0.3 s to load.
+An FMU's own definition comes first; a text without one is read by the tables of everyday spellings, of the
+symbols of the SI, and of other names.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from fractions import Fraction
 
 from .grammar import LONGEST, Powers, parse, plain
 from .measure import BASE_UNITS, Exponents, UnitOfMeasure, UnknownUnitError
+from .names import doubt
 from .spellings import NO_UNIT, meanings
 from .symbols import Size, is_level, symbol
 
@@ -46,7 +47,8 @@ def defined(
         if unit is not None and unit.exponents is not None:
             return unit
     said = name if len(name) <= LONGEST else name[:LONGEST] + "..."
-    raise UnknownUnitError(f"unit of measure '{said}' is not known")
+    names = [each for powers in parse(plain(said)) for each, _ in powers]
+    raise UnknownUnitError(f"unit of measure '{said}' is not known{doubt(names)}")
 
 
 @functools.lru_cache(maxsize=4096)
@@ -183,50 +185,5 @@ def _sizes(name: str, strict: bool) -> tuple[Size, ...]:
         return tuple(
             (Fraction(u.factor), u.exponents, Fraction(u.offset)) for u in units if u.exponents is not None
         )
-    known = symbol(name) or _difference(name) or _by_pint(name)
+    known = symbol(name) or _difference(name)
     return () if known is None else (known,)
-
-
-def _by_pint(name: str) -> Size | None:
-    """Return pint's definition of one name: factor, exponents and offset in SI base units.
-
-    None for a name that pint does not know, or measures in other base units than these; and for one that it
-    reads as a symbol with a prefix or a plural: "Grad" is no giga-radian, "Nms" no newton meters.
-    """
-    if not name.isidentifier():
-        return None
-    import pint  # 0.3 s, and only names that no table has need it
-
-    registry = _pint_registry()
-    try:
-        if not _is_written_out(name):
-            return None
-        made = registry.Unit(name)
-        zero, one, two = (registry.Quantity(x, made).to_base_units() for x in (0.0, 1.0, 2.0))
-    except (pint.PintError, ValueError, TypeError, AttributeError, ArithmeticError):
-        return None
-    symbols = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol"}
-    symbols |= {"candela": "cd", "radian": "rad"}
-    powers = {str(base): Fraction(power).limit_denominator(12) for base, power in one.unit_items()}
-    factor, offset = one.magnitude - zero.magnitude, zero.magnitude
-    affine = math.isclose(two.magnitude - one.magnitude, factor, rel_tol=1e-9)
-    if not powers.keys() <= symbols.keys() or not affine or not math.isfinite(factor + offset) or factor <= 0:
-        return None
-    by_symbol = {symbols[base]: power for base, power in powers.items()}
-    return Fraction(factor), tuple(by_symbol.get(base, 0) for base in BASE_UNITS), Fraction(offset)
-
-
-def _is_written_out(name: str) -> bool:
-    """Return False for a symbol with a prefix or a plural, as pint reads "Grad" and "Nms"."""
-    meant = _pint_registry().parse_unit_name(name)
-    without_plural = _pint_registry().parse_unit_name(name[:-1]) if name.endswith("s") else ()
-    if without_plural and not any(prefix + unit + "s" == name for prefix, unit, _ in without_plural):
-        return False
-    return any(not prefix or name.startswith(prefix) for prefix, _, _ in meant)
-
-
-@functools.cache
-def _pint_registry():  # type: ignore[no-untyped-def] # pint is imported lazily, so its types have no name here
-    import pint
-
-    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)

@@ -116,6 +116,8 @@ class _Parser:
         else:
             raise _NoUnit
         exponent = self.exponent(after_one=token == "1")
+        if not exponent:
+            raise _NoUnit  # "g0" is a standard gravity, and not 1
         return _few({_raised(powers, exponent): None for powers in readings})
 
     def exponent(self, after_one: bool) -> Fraction:

@@ -11,6 +11,7 @@ import math
 from fractions import Fraction
 
 from .measure import BASE_UNITS, Exponents
+from .names import NAMES
 
 _PI = Fraction(math.pi)
 _GRAVITY = Fraction("9.80665")  # standard gravity (3rd CGPM, 1901) [m/s2]
@@ -26,9 +27,11 @@ _PREFIXES = {
     "d": -1, "c": -2, "m": -3, "u": -6, "μ": -6, "n": -9, "p": -12, "f": -15, "a": -18, "z": -21, "y": -24,
     "r": -27, "q": -30,
 }  # fmt: skip # a line for the multiples and two for the parts
+_OF_TONNES = ("k", "M", "G", "T")
 _LONG_PREFIXES = {
-    "giga": "G", "mega": "M", "kilo": "k", "hecto": "h", "deca": "da", "deci": "d", "centi": "c",
-    "milli": "m", "micro": "u", "nano": "n",
+    "exa": "E", "peta": "P", "tera": "T", "giga": "G", "mega": "M", "kilo": "k", "hecto": "h", "deca": "da",
+    "deka": "da", "deci": "d", "centi": "c", "milli": "m", "micro": "u", "nano": "n", "pico": "p",
+    "femto": "f", "atto": "a",
 }  # fmt: skip # those that are met
 
 # with prefixes; angle counts, so that Hz is 2 pi rad a second, and lm holds steradians
@@ -45,7 +48,8 @@ _PREFIXED: dict[str, _Size] = {
     "L": (Fraction(1, 1000), {"m": 3}), "l": (Fraction(1, 1000), {"m": 3}), "t": (1000, {"kg": 1}),
     "bar": (100_000, _PRESSURE), "Wh": (_HOUR, _ENERGY), "Ah": (_HOUR, {"s": 1, "A": 1}), "VA": (1, _POWER),
     "Nm": (1, _ENERGY), "Nms": (1, _ENERGY | {"s": -1}), "Ws": (1, _ENERGY),
-    "As": (1, {"s": 1, "A": 1}), "Vs": (1, _ENERGY | {"A": -1}),
+    "As": (1, {"s": 1, "A": 1}), "Vs": (1, _ENERGY | {"A": -1}), "var": (1, _POWER),
+    "eV": (Fraction("1.602176634e-19"), _ENERGY),
 }  # fmt: skip # related units side by side
 _ALONE: dict[str, _Size] = {
     "%": (Fraction(1, 100), {}), "ppm": (Fraction(1, 1_000_000), {}),
@@ -60,6 +64,10 @@ _ALONE: dict[str, _Size] = {
     "lb": (_POUND, {"kg": 1}), "short_ton": (2000 * _POUND, {"kg": 1}), "lbf": (_POUND * _GRAVITY, _FORCE),
     "psi": (_POUND * _GRAVITY / _INCH**2, _PRESSURE), "atm": (101_325, _PRESSURE),
     "mmHg": (Fraction("133.322387415"), _PRESSURE), "gal": (231 * _INCH**3, {"m": 3}),
+    "kgf": (_GRAVITY, _FORCE), "kcal": (4184, _ENERGY), "cP": (Fraction(1, 1000), _PRESSURE | {"s": -1}),
+    "cSt": (Fraction(1, 1_000_000), {"m": 2, "s": -1}), "cmH2O": (Fraction("98.0665"), _PRESSURE),
+    "inH2O": (Fraction("249.08891"), _PRESSURE),
+    "inHg": (_INCH * 1000 * Fraction("133.322387415"), _PRESSURE),
     "hp": (550 * 12 * _INCH * _POUND * _GRAVITY, _POWER), "PS": (75 * _GRAVITY, _POWER),
 }  # fmt: skip # related units side by side
 _OFFSETS = {"degC": Fraction("273.15"), "degF": Fraction("459.67") * Fraction(5, 9)}
@@ -67,11 +75,15 @@ _LONG = {
     "meter": "m", "metre": "m", "gram": "g", "second": "s", "ampere": "A", "amp": "A", "hertz": "Hz",
     "newton": "N", "pascal": "Pa", "joule": "J", "watt": "W", "volt": "V", "liter": "L", "litre": "L",
     "kelvin": "K", "radian": "rad", "coulomb": "C", "farad": "F", "siemens": "S", "henry": "H", "tesla": "T",
-    "ohm": "ohm", "watthour": "Wh", "amperehour": "Ah",
+    "ohm": "ohm", "watthour": "Wh", "amperehour": "Ah", "watt_hour": "Wh", "ampere_hour": "Ah",
+    "volt_ampere": "VA", "candela": "cd", "mole": "mol", "lumen": "lm", "lux": "lx", "weber": "Wb",
+    "becquerel": "Bq", "gray": "Gy", "sievert": "Sv", "katal": "kat", "steradian": "sr", "tonne": "t",
+    "bar": "bar",
+    "electronvolt": "eV", "electron_volt": "eV",
 }  # fmt: skip # as they are written out, with a long prefix or none
 
 LEVELS = frozenset({"Np", "neper", "Bel", "bel", "decibel", "db", "octave", "decade", "phon"})
-"""Names of logarithmic units beside those that begin with dB; pint would convert them as factors."""
+"""Names of logarithmic units beside those that begin with dB: no factor converts them."""
 
 Size = tuple[Fraction, Exponents, Fraction]
 """Factor, exponents and offset of a symbol."""
@@ -87,7 +99,7 @@ def symbol(name: str) -> Size | None:
     """Return what a symbol, or a name that is written out, stands for; None where it is no such symbol."""
     found = _ALONE.get(name) or _PREFIXED.get(name)
     if found is None:
-        found = _prefixed(name, _PREFIXED) or _written_out(name)
+        found = _prefixed(name, _PREFIXED) or _written_out(name) or _named(name)
     if found is None:
         return None
     factor, powers = found
@@ -97,8 +109,11 @@ def symbol(name: str) -> Size | None:
 
 def _prefixed(name: str, symbols: dict[str, _Size]) -> _Size | None:
     for prefix in (name[:1], name[:2]):
-        if prefix in _PREFIXES and name[len(prefix) :] in symbols:
-            factor, powers = symbols[name[len(prefix) :]]
+        rest = name[len(prefix) :]
+        if rest == "t" and prefix not in _OF_TONNES:
+            continue  # "ct" is a carat, and "pt" a pint
+        if prefix in _PREFIXES and rest in symbols:
+            factor, powers = symbols[rest]
             return Fraction(10) ** _PREFIXES[prefix] * factor, powers
     return None
 
@@ -112,3 +127,17 @@ def _written_out(name: str) -> _Size | None:
     if base is None:
         return None
     return _prefixed(_LONG_PREFIXES[prefix] + base, _PREFIXED) if prefix else _PREFIXED[base]
+
+
+def _named(name: str) -> _Size | None:
+    """Return the unit of a name of NAMES, of its plural, or of one behind a prefix that is written out."""
+    prefixes = ["", *(long for long in _LONG_PREFIXES if name.startswith(long))]
+    for prefix in prefixes:
+        rest = name.removeprefix(prefix)
+        found = NAMES.get(rest) or NAMES.get(rest.removesuffix("s"))
+        if found is not None:
+            factor, base = found
+            size, powers = _ALONE.get(base) or _PREFIXED.get(base) or _prefixed(base, _PREFIXED) or (0, {})
+            scale = Fraction(10) ** _PREFIXES[_LONG_PREFIXES[prefix]] if prefix else 1
+            return scale * factor * size, powers
+    return None

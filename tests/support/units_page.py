@@ -1,4 +1,4 @@
-"""docs/units.md: its tables of spellings from cosim/units/spellings.py.
+"""docs/units.md: its tables from cosim/units/spellings.py and cosim/units/names.py.
 
 .venv/bin/python tests/support/units_page.py   # writes the page anew, after a change of the tables
 """
@@ -6,8 +6,11 @@
 from __future__ import annotations
 
 import re
+import textwrap
+from collections.abc import Iterable
 from pathlib import Path
 
+from evcosim.cosim.units.names import DOUBTFUL, NAMES
 from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, Row
 from evcosim.cosim.writing import markdown_table
 
@@ -24,9 +27,20 @@ def rewritten(page: str) -> str:
 def _table(name: str) -> str:
     if name == "none":
         return ", ".join(f"`{text}`" for text in NO_UNIT if text) + "\n"
+    if name == "names":
+        return "\n" + _wrapped(f"`{text}`" for text in NAMES) + "\n"
+    if name == "doubtful":
+        return (
+            "\n".join(markdown_table(("name", "may be"), [(f"`{n}`", m) for n, m in DOUBTFUL.items()])) + "\n"
+        )
     return (
         "\n".join(markdown_table(("written", "means", "met in"), [_row(row) for row in _ROWS[name]])) + "\n"
     )
+
+
+def _wrapped(words: Iterable[str]) -> str:
+    """Return words in lines of a page's width."""
+    return textwrap.fill(", ".join(words), 120, break_long_words=False, break_on_hyphens=False)
 
 
 def _row(row: Row) -> tuple[str, str, str]:

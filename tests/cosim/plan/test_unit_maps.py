@@ -150,6 +150,29 @@ def test_a_difference_keeps_its_zero():
             made(celsius, absolute)
 
 
+@pytest.mark.parametrize(
+    ("text", "other"), [("mil", "rad"), ("bbl", "L"), ("gal", "L"), ("hp", "kW"), ("floops", "m")]
+)
+def test_a_doubtful_unit_is_refused_with_the_ways_out(text, other):
+    bus, variable = End("c.M.S", text, bus="c"), End("a.x", text)
+    for end, said in (
+        (
+            bus,
+            rf'say what it is in the system file, \[buses.c.units\]: "{text}" = "{other}", or `factor` with',
+        ),
+        (
+            variable,
+            r"say what a.x is in: `unit` in the unit's `map`, or `factor` with `convert = false` in its",
+        ),
+    ):
+        for ends in ((end, End("b.y", other)), (End("b.y", other), end)):
+            with pytest.raises(ConfigError, match=said):
+                unit_map(*ends, (), "here", [])
+    assert scaled_map(
+        variable, End("b.y", other), Scaling(factor=2.0, convert=False), (), "here", []
+    ) == Affine(2.0)
+
+
 def test_the_units_of_a_bus():
     signal = Signal("S", 0, 8, unit="Unit_X")
     assert with_unit(signal, {"Unit_X": "V"}).unit == "V"

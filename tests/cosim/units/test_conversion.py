@@ -137,7 +137,7 @@ def test_offsets():
         ("rpm", "s-1", r"\[s-1\] may count turns \(1 is 60 \[rpm\]\) or radians \(1 is 9.5493 \[rpm\]\)"),
         ("1", "rad", "differ by an angle, which may count radians or turns"),
         ("N.m/rad", "N.m", "differ by an angle"),
-        ("ton/h", "kg/s", r"1 \[ton/h\] may be 0.277778 or 0.251996 \[kg/s\]"),
+        ("ton/h", "kg/s", r"1 \[ton/h\] may be 0.277778 or 0.251996 or 0.282235 \[kg/s\]"),
         ("grad", "rad", r"1 \[grad\] may be 0.0174533 or 0.015708 \[rad\]"),
         ("dB", "1", r"\[dB\] is logarithmic, and converts to nothing but itself"),
         ("W", "dBm", r"\[dBm\] is logarithmic"),

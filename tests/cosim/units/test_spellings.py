@@ -20,7 +20,7 @@ def test_a_spelling_means_what_the_table_says(spelling, meaning, source):
     assert meanings(plain(spelling)) == tuple(part.strip() for part in meaning.split("|"))
     for part in meanings(plain(spelling)):
         ((*powers,),) = parse(part)
-        assert all(symbol(name) is not None for name, _ in powers)  # a meaning needs no table and no pint
+        assert all(symbol(name) is not None for name, _ in powers)  # a meaning needs no table of spellings
     unit = by_text(spelling)
     assert unit is not None and len(unit.readings) == len(meaning.split("|"))
     for reading, part in zip(unit.readings, meanings(plain(spelling)), strict=True):

@@ -1,0 +1,161 @@
+"""The table of names: pint's value for each; of all that pint knows, what is read is read alike."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import pint
+import pytest
+
+from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.units.conversion import between
+from evcosim.cosim.units.definition import by_text, defined
+from evcosim.cosim.units.measure import BASE_UNITS, OpenUnitError, UnitOfMeasure, UnknownUnitError
+from evcosim.cosim.units.names import DOUBTFUL, NAMES, doubt
+from evcosim.cosim.units.symbols import is_level, symbol
+
+REGISTRY = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+SYMBOLS = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol"}
+SYMBOLS |= {"candela": "cd", "radian": "rad"}
+IN_PINT = {
+    "US_gallon": "gallon", "US_quart": "quart", "US_fluid_ounce": "fluid_ounce",
+    "US_liquid_ounce": "fluid_ounce", "US_liquid_pint": "US_pint", "survey_feet": "survey_foot",
+    "cubic_inches": "cubic_inch", "gauss": "1e-4 tesla", "maxwell": "1e-8 weber", "curie": "3.7e10 / second",
+    "mechanical_horsepower": "horsepower", "revolution_per_minute": "revolutions_per_minute",
+    "revolution_per_second": "revolutions_per_second",
+}  # fmt: skip # names that pint has not, or defines in other base units
+OTHERWISE = {
+    "G": "standard gravity or gauss; pint defines it in units of the CGS system", "gauss": "as G",
+    "maxwell": "as G", "Gal": "a gallon in capitals; pint: galileo", "hbar": "a hectobar; pint: a constant",
+    "\u210e": "h in plain characters; pint: a constant", "kG": "kg in capitals",
+    "Nm": "newton meter; pint: a yarn", "Tt": "teratonne; pint: a yarn",
+    "kmph": "km/h; pint: 1000 mph", "kMPH": "as kmph", "Min": "minutes; pint: megainches",
+    "Msec": "ms in capitals; pint: megaseconds", "mcd": "millicandela; pint: a micro-day",
+}  # fmt: skip # what is read otherwise, and why
+
+
+def otherwise(text: str) -> bool:
+    """Return True for a text of OTHERWISE, or for one with a prefix."""
+    return text in OTHERWISE or text.endswith(("gauss", "maxwell", "Nm"))
+
+
+def in_base_units(text: str) -> tuple[float, dict[str, float]] | None:
+    """Return pint's factor of a unit in SI base units, and their exponents; None where pint has others."""
+    try:
+        zero, one = (REGISTRY.Quantity(x, text).to_base_units() for x in (0.0, 1.0))
+    except (pint.PintError, ArithmeticError, TypeError, ValueError, AttributeError):
+        return None
+    powers = {str(base): power for base, power in one.unit_items()}
+    if not powers.keys() <= SYMBOLS.keys():
+        return None
+    return one.magnitude - zero.magnitude, {SYMBOLS[base]: power for base, power in powers.items()}
+
+
+def same(unit: UnitOfMeasure, factor: float, powers: dict[str, float]) -> bool:
+    """Return True for a reading that pint has too, but for the angle, which pint leaves out."""
+    own = {base: e for base, e in zip(BASE_UNITS, unit.exponents or (), strict=False) if e and base != "rad"}
+    angles = {2.0 * math.pi, 1.0} if unit.exponents[-1] else {1.0}
+    return own == {b: e for b, e in powers.items() if e and b != "rad"} and any(
+        math.isclose(unit.factor, factor * angle, rel_tol=1e-5) for angle in angles
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_is_pints(name):
+    unit = by_text(name)
+    assert unit is not None and not unit.also
+    amount = REGISTRY.Quantity(IN_PINT.get(name, name))
+    factor, powers = in_base_units(str(amount.units))
+    assert same(unit, factor * amount.magnitude, powers)
+
+
+@functools.cache
+def known_to_pint() -> list[str]:
+    return sorted(set(dir(REGISTRY)) | set(REGISTRY._units))
+
+
+def test_of_all_that_pint_knows_what_is_read_is_read_alike():
+    """Each of its names and aliases, or one of its readings, where the other end decides."""
+    wrong, read = [], 0
+    for name in known_to_pint():
+        unit = by_text(name) if name.isidentifier() else None
+        if unit is None or unit.logarithmic or (found := in_base_units(name)) is None:
+            continue
+        read += 1
+        if not (otherwise(name) or any(same(reading, *found) for reading in unit.readings)):
+            wrong.append((name, unit.dimension, unit.factor, found))
+    assert wrong == []
+    assert read > 250
+
+
+@pytest.mark.parametrize("prefix", ["kilo", "micro", "mega", "k", "M", "m", "da", "c"])
+def test_of_all_with_a_prefix_what_is_read_is_read_alike(prefix):
+    wrong = []
+    for name in known_to_pint():
+        text = prefix + name
+        unit = by_text(text) if text.isidentifier() and text not in REGISTRY._units else None
+        if unit is None or unit.logarithmic or (found := in_base_units(text)) is None:
+            continue
+        if not (otherwise(text) or any(same(reading, *found) for reading in unit.readings)):
+            wrong.append((text, unit.dimension, unit.factor, found))
+    assert wrong == []
+
+
+@pytest.mark.parametrize("name", DOUBTFUL)
+def test_a_doubtful_name_is_no_unit_and_the_message_says_why(name):
+    with pytest.raises(UnknownUnitError) as caught:
+        defined(name)
+    assert str(caught.value) == f"unit of measure '{name}' is not known: {name} may be {DOUBTFUL[name]}"
+    if len(name) > 2:  # U/s is a turn a second, and us a microsecond
+        for text in (f"{name}/s", f"{name}s", f"kg.{name}2"):
+            with pytest.raises(UnknownUnitError, match=f"is not known: {name}s? may be"):
+                defined(text)
+    assert doubt(["m", name]) == f": {name} may be {DOUBTFUL[name]}" and doubt(["m", "s"]) == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("gal", "L"), ("gallon/h", "L/h"), ("quart", "L"), ("pint", "mL"), ("fluid_ounce", "mL"),
+        ("oz", "g"), ("ounces", "g"), ("hp", "W"), ("HP", "kW"), ("horsepower", "W"), ("ton", "kg"),
+        ("hundredweight", "kg"), ("cwt", "kg"), ("BTU/h", "W"), ("cal", "J"), ("calorie", "J"),
+        ("therm", "J"), ("year", "s"), ("yr", "d"), ("grad", "rad"),
+    ],
+)  # fmt: skip # a table
+def test_a_name_that_trades_and_countries_have_several_of_is_open(text, target):
+    for ends in ((text, target), (target, text)):
+        with pytest.raises(OpenUnitError, match="the text has several meanings"):
+            between(*ends)
+    assert between(text, text).identity
+
+
+@pytest.mark.parametrize(
+    ("text", "target", "factor"),
+    [
+        ("imperial_gallon", "L", 4.54609), ("US_gallons", "L", 3.785411784),
+        ("mechanical_horsepower", "W", 745.69987158), ("metric_horsepower", "W", 735.49875),
+        ("long_ton", "kg", 1016.0469088), ("troy_ounce", "g", 31.1034768), ("kcal", "J", 4184.0),
+        ("Btu_it", "J", 1055.05585262), ("thou", "mm", 0.0254), ("keV", "J", 1.602176634e-16),
+        ("milliarcsecond", "rad", math.pi / 648e6), ("kilotonne", "kg", 1e6), ("centistokes", "mm2/s", 1.0),
+        ("kvar", "W", 1000.0), ("cmH2O", "Pa", 98.0665), ("kt", "m/s", 1852 / 3600), ("kt", "kg", 1e6),
+        ("micromole", "mol", 1e-6), ("weeks", "d", 7.0),
+    ],
+)  # fmt: skip # a table
+def test_names_that_are_one_unit_convert(text, target, factor):
+    assert between(text, target).scale == pytest.approx(factor, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    "text", ["alpha", "pi", "standard_gravity", "g0", "speed_of_light", "avogadro_number", "ct", "at",
+             "count", "bit", "circle", "zeta", "statfarad", "Bi", "degree_day", "of_mine",
+             "m0", "kg^0"]
+)  # fmt: skip # a list
+def test_constants_and_what_nobody_has_reviewed_are_no_units(text):
+    assert by_text(text) is None
+    with pytest.raises(ConfigError):
+        between(text, "1")
+
+
+def test_nothing_of_the_tables_is_doubtful():
+    assert not {name for name in DOUBTFUL if name in NAMES or symbol(name) or is_level(name)}
