@@ -102,8 +102,8 @@ def prepare(
     if options.get("record"):
         read, driven, unmeasured = recorded_alone(read, driven, names)
     read, driven, undrawn = without_undrawn(read, driven, names)
-    plan = dataclasses.replace(plan, warnings=(*plan.warnings, *unmeasured, *undrawn))
-    check_specs(read, driven, (*plan.columns, *plan.text_columns))
+    unchecked = check_specs(read, driven, (*plan.columns, *plan.text_columns))
+    plan = dataclasses.replace(plan, warnings=(*plan.warnings, *unmeasured, *undrawn, *unchecked))
     ordered_links(plan)  # refuses an algebraic loop
     named = {
         unit: fmu.path for unit, fmu in loaded.items() if unit not in fmus and not _is_a_name(read, unit)

@@ -58,10 +58,10 @@ def panel_conversion(variable: ResultVariable, unit: str, place: str) -> Affine:
         raise ConfigError(f"{signal} in [{unit}]: {error}") from error
 
 
-def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> None:
+def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVariable]) -> list[str]:
     """Check before the run what would be wrong after it: a figure or metric of what is not recorded.
 
-    Raises ConfigError naming the files.
+    Return a sentence on what cannot be checked. Raises ConfigError naming the files.
     """
     recorded = {v.name: v for v in variables}
     places = [str(path) for path in (system.path, scenario.path) if path is not None]
@@ -70,3 +70,14 @@ def check_specs(system: System, scenario: Scenario, variables: Iterable[ResultVa
     if spec is not None:
         place = system.path if scenario.file.figure is None else scenario.path
         check(spec, recorded, f"{place}: figure")
+        return _unit_unknown(spec, recorded, f"{place}: figure.until")
+    return []
+
+
+def _unit_unknown(spec: FigureSpec, recorded: Mapping[str, ResultVariable], place: str) -> list[str]:
+    """Return a sentence on an end of the axis whose value has a unit of measure that its signal lacks."""
+    end = spec.until
+    if end is None or not end.unit or recorded[end.signal].unit:
+        return []
+    value = f"{end.below:g} {end.unit}"
+    return [f"{place}: '{end.signal}' declares no unit of measure; {value} is compared with its bare numbers"]

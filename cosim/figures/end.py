@@ -10,7 +10,8 @@ from .check import panel_conversion
 def until(results: Results, spec: EndSpec | None) -> Results:
     """Return the rows before the one in which the signal is first at or below its value; all if it never is.
 
-    A run that begins there has nothing else to show: all of it is returned too. Raises ConfigError as
+    A run that begins there, or comes there in its first step, has no stretch of time before it: all of it is
+    returned too. Raises ConfigError as
     `panel_conversion` does.
     """
     if spec is None:
@@ -19,6 +20,6 @@ def until(results: Results, spec: EndSpec | None) -> Results:
     scaled = panel_conversion(variable, spec.unit or variable.unit, "figure.until")
     low = scaled.scale * results.column(spec.signal) + scaled.offset <= spec.below
     end = int(low.argmax())
-    if not low.any() or end == 0:
+    if not low.any() or end < 2:
         return results
     return results.part(slice(0, end), [*results.names, *results.texts])

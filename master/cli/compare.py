@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from ...cosim.results.results import Results
 
 
 def compare(
@@ -57,5 +60,16 @@ def compare(
     if rows:
         print_table(headers, rows, right=headers[2:6])
         print()
+    if not (signals or found.equal) and (metrics := _metrics(first, second)):
+        print_table(("metric", str(a), str(b)), metrics)
+        print()
     print_paragraph(found.summary())
     return 0 if found.equal else 1
+
+
+def _metrics(first: Results, second: Results) -> list[tuple[str, str, str]]:
+    """Return the metrics that both runs have, and that differ, with their values."""
+    from ...cosim.report.facts import kept_metrics, plain
+
+    one, other = (dict(kept_metrics(plain(results.manifest))) for results in (first, second))
+    return [(name, text, other[name]) for name, text in one.items() if other.get(name, text) != text]

@@ -41,6 +41,9 @@ def test_the_commands_run_in_their_order(tmp_path: Path, name: str) -> None:
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
             with (folder / file).open("w" if action == "write" else "a", encoding="utf-8") as stream:
                 stream.write(text)
+        if language == "console":
+            check_shown(text, folder, programs)
+            ran += 1
         for command in text.splitlines() if language == "sh" else ():
             if command.startswith("cd "):
                 folder /= command.split()[1]
@@ -50,3 +53,17 @@ def test_the_commands_run_in_their_order(tmp_path: Path, name: str) -> None:
             assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
             ran += 1
     assert ran
+
+
+def check_shown(text: str, folder: Path, programs: dict[str, str]) -> None:
+    """Run the command of a block that shows its output: line by line the same words, to the digits shown."""
+    command, _, shown = text.removeprefix("$ ").partition("\n")
+    done = warm.run(command, folder, programs)
+    assert done.returncode in (0, 1), f"{command}\n{done.stdout}{done.stderr}"
+    said, expected = (part.splitlines() for part in (done.stdout, shown))
+    assert [len(line.split()) for line in said] == [len(line.split()) for line in expected], done.stdout
+    for word, other in zip(" ".join(said).split(), " ".join(expected).split(), strict=True):
+        try:
+            assert float(word) == pytest.approx(float(other), rel=0.01), done.stdout
+        except ValueError:  # no number
+            assert word == other, done.stdout

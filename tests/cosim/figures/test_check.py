@@ -84,3 +84,26 @@ def test_every_scenario_asks_for_what_its_system_records(name: str) -> None:
         shown = [signal.name for panel in spec.panels for signal in panel.signals]
         with pytest.raises(ConfigError, match=r"\.toml"):
             check_specs(system, scenario, [ResultVariable(shown[0])])
+
+
+def test_the_unit_of_an_end_whose_signal_has_none_is_told() -> None:
+    """Its value is compared with numbers of which nobody knows the unit."""
+    system = load_system("scooter")
+    panels = [{"unit": "m/s", "signals": ["vehicle.speed"]}]
+    for end, unit, said in (
+        (
+            {"unit": "m/s"},
+            "",
+            "'vehicle.speed' declares no unit of measure; 0.5 m/s is compared with its bare",
+        ),
+        ({"unit": "km/h"}, "m/s", ""),
+        ({}, "", ""),
+    ):
+        until = {"signal": "vehicle.speed", "below": 0.5} | end
+        figure = FigureSpec.model_validate({"panels": panels, "until": until})
+        none = {"figure": figure, "metrics": []}
+        given = dataclasses.replace(system, file=system.file.model_copy(update=none))
+        scenario = load_scenario(given, "fig8")
+        found = check_specs(given, scenario, [ResultVariable("vehicle.speed", unit)])
+        assert len(found) == bool(said)
+        assert all(said in text and "scooter.toml: figure.until: " in text for text in found)

@@ -25,6 +25,7 @@ RUN = Results(TIME, np.column_stack([SPEED]), [ResultVariable("vehicle.speed", "
         ({"below": 0.0}, 2.5),  # what follows later does not count
         ({"below": -1.0}, 4.0),
         ({"below": 20.0}, 4.0),  # nothing would be left
+        ({"below": 15.0}, 4.0),  # a point is no axis
     ],
     ids=str,
 )
@@ -33,6 +34,14 @@ def test_the_rows_before_the_signal_is_low_are_shown(end: dict, last: float) -> 
     assert shown.time[-1] == last
     assert np.array_equal(shown["vehicle.speed"], SPEED[: len(shown)])
     assert shown.names == RUN.names
+
+
+def test_no_axis_begins_before_the_run() -> None:
+    table = {
+        "until": {"signal": "vehicle.speed", "below": 15.0},
+        "panels": [{"unit": "m/s", "signals": ["vehicle.speed"]}],
+    }
+    assert draw(RUN, FigureSpec.model_validate(table)).axes[0].get_xlim() == (0.0, 4.0)
 
 
 def test_without_an_end_the_run_is_shown() -> None:

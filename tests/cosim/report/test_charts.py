@@ -41,6 +41,9 @@ def test_a_figure_that_ends_before_its_run():
     spec = FigureSpec(until=until, panels=[PanelSpec(unit="m/s", signals=[SignalSpec(name="car.speed")])])
     part = charts(small_run(step=0.1), spec)  # at once: the run begins there
     assert data_in(part)[0]["time"]["shown"] == [0.0, 40.0]
+    low = until.model_copy(update={"signal": "car.wind", "below": 3.59, "unit": None})
+    part = charts(small_run(step=0.1), spec.model_copy(update={"until": low}))  # in the first step: a point
+    assert data_in(part)[0]["time"]["shown"] == [0.0, 40.0] and "The figure ends" not in part
     spec = spec.model_copy(update={"until": until.model_copy(update={"signal": "car.wind"})})
     part = charts(small_run(step=0.1), spec)
     assert (data_in(part)[0]["time"]["shown"], data_in(part)[0]["time"]["end"]) == ([0.0, 1.5], 40.0)

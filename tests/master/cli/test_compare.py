@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from evcosim.cosim.results.results import Results
+
 
 def test_compare(evcosim, two_runs):
     same = evcosim("compare", "a", "a")
@@ -10,7 +12,12 @@ def test_compare(evcosim, two_runs):
     assert other.code == 1
     assert "vehicle.speed" in other.out
     assert (two_runs / "both.png").stat().st_size > 10_000
-    assert evcosim("compare", "a", "b", "--tolerance", "1e9").code == 0
+    in_range = evcosim("compare", "a", "b", "--tolerance", "1e9")
+    assert in_range.code == 0
+    assert "metric " in other.out and not any("metric " in answer.out for answer in (same, in_range))
+    line = next(line for line in other.out.splitlines() if line.startswith("mean speed "))
+    said = [Results.read(name).manifest["metrics"]["mean speed"]["value"] for name in ("a", "b")]
+    assert line.split()[2::2] == [f"{value:.6g}" for value in said]
     data = evcosim("compare", "a", "b", "--json").json
     assert data["equal"] is False
     assert evcosim("compare", "a", "b", "--tolerance", "-1").code == 2
