@@ -68,6 +68,17 @@ def test_built_in_systems(system, scenario, algorithm):
     assert len({row.tobytes() for row in bits}) > 5  # there is something to compare
 
 
+def test_a_detailed_plant_in_the_place_of_the_plain_one_here_and_in_a_process_of_its_own():
+    """Its states are stiff between the steps, and its rear wheel leaves the road within the 0.3 s."""
+    plant = {"fmus": {"vehicle": "DetailedTwoWheeler"}}
+    bits, *_, error = same("braking", "known_speed", 30, **plant)
+    assert not error
+    assert np.array_equal(same("braking", "known_speed", 30, isolation="process", **plant)[0], bits)
+    with Simulation("braking", "known_speed", isolation="none", **plant) as simulation:
+        simulation.step(30)
+        assert simulation.results["vehicle.rear_load"].min() == 0.0
+
+
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
 @pytest.mark.parametrize("overflow", ["saturate", "wrap"])
 @pytest.mark.parametrize("rounding", ["nearest", "half_even", "truncate"])
