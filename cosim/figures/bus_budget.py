@@ -53,7 +53,7 @@ def _scale(budget: Budget) -> tuple[float, float]:
     span = span or abs(budget.limit) or 1.0
     seen = [budget.limit, *(p.value for p in points if abs(p.value - budget.limit) <= _ROOM * span)]
     low, high = min(seen), max(seen)
-    above, below = (0.35, 0.12) if budget.kind == "max" else (0.12, 0.35)
+    above, below = (0.35, 0.2) if budget.kind == "max" else (0.2, 0.35)
     return low - below * (high - low or span), high + above * (high - low or span)
 
 
@@ -79,8 +79,9 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
                 markeredgecolor=COLORS[3], zorder=3, label="as it is",
             )  # fmt: skip # where, then how
         text = _text(point)
-        # not over the edge, and not over the line of the limit
+        # not over the edge, and not over the line of the limit, nor a steep one to the next point
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)
+        under = under or any(p.value - y > 0.3 * (high - low) for k, p in shown if abs(k - i) == 1)
         panel.annotate(
             text, (i, y), xytext=(0, -11 if under else 11), textcoords="offset points", ha="center",
             va="top" if under else "bottom", fontsize=8.5, zorder=4,

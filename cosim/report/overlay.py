@@ -12,6 +12,7 @@ from ..figures.axes import TimeAxis
 from ..figures.check import panel_conversion
 from ..figures.default_figure import MAX_PANELS
 from ..figures.style import COLORS, DASHES, Stroke
+from ..figures.text import pretty
 from ..results.compare import Comparison, difference, worst
 from ..results.results import Results
 from ..results.variable import ResultVariable
@@ -165,7 +166,8 @@ def _events(labels: Labels, about: Sequence[Mapping[str, Any]]) -> list[Event]:
 
 def _differences(found: Comparison) -> str:
     headers, rows = found.table(all_rows=False)
-    made = table(headers, rows, right=headers[2:6])
+    printed = [(name, pretty(unit), *rest) for name, unit, *rest in rows]
+    made = table((*headers[:-1], "judged"), printed, right=headers[2:6])
     return section("What differs", made if len(rows) <= _ROWS else folded(f"{len(rows)} variables", made))
 
 
