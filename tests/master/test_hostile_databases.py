@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-import traceback
 from pathlib import Path
 
 import pytest
 
 from evcosim.cosim.can.dbc import load_dbc
-from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.master.simulation import Simulation
 from support.forked import forked
+from support.said import said_of
 from support.small_bench import bench
 
 NUMBERS = [
@@ -87,18 +86,14 @@ def database(at: int = -1, value: str = "") -> str:
 def outcome(folder: Path, text: str, engine: str = "python") -> str:
     """Run the system over a database, write its frames, and return what was said, or "done"."""
     (folder / "a.dbc").write_text(text)
-    try:
+
+    def run() -> None:
         load_dbc(folder / "a.dbc")  # first, since it is quick and refuses most
         with Simulation(folder / "s.toml", log_frames=True, engine=engine) as simulation:
             simulation.run()
             simulation.write_can_log(folder / "can.log")
-    except ConfigError as error:
-        return f"refused: {error}"
-    except RunError as error:
-        return f"ended: {error}"
-    except Exception:  # to name the value beside it
-        return traceback.format_exc()
-    return "done"
+
+    return said_of(run)
 
 
 @pytest.fixture

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 import os
 import tomllib
-import traceback
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pydantic import BaseModel
 
-from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.swap.swap_file import SwapFile
 from evcosim.cosim.system.scenario import ScenarioFile, load_scenario
 from evcosim.cosim.system.system import SystemFile, load_system
@@ -20,6 +18,7 @@ from evcosim.master.simulation import Simulation
 from support.every_key import SCENARIO, SWAP, SYSTEM
 from support.forked import forked
 from support.numeric_keys import Place, numeric_places, with_value
+from support.said import said_of
 from support.small_bench import DATABASE
 
 HOSTILE = [1e308, -1e308, 5e-324, math.inf, math.nan, 0, -1, 1e-10, 2**63, -(2**63) - 1, 10**400, 10**5000]
@@ -71,23 +70,19 @@ def outcome(paths: dict[str, Path], kind: str, place: Place = ()) -> str:
     """Run, evaluate and draw what a place is of, and return what was said, or "done"."""
     swaps = {"vehicle": paths["swap"]} if kind == "swap" else {}
     scenario = paths["scenario"] if kind == "scenario" else None
-    try:
+
+    def run() -> None:
         if place[:1] in (("identification",), ("budget",)):  # which no run reads
             load_scenario(load_system(str(paths["system"])), str(paths["scenario"]))
-            return "done"
+            return
         with Simulation(paths["system"], scenario, swaps=swaps, engine="python") as simulation:
             simulation.run()
         results = simulation.results
         results.metrics()
         if "figure" in place:
             results.plot(paths["system"].with_name("figure.png"))
-    except ConfigError as error:
-        return f"refused: {error}"
-    except RunError as error:
-        return f"ended: {error}"
-    except Exception:  # to name the value beside it
-        return traceback.format_exc()
-    return "done"
+
+    return said_of(run)
 
 
 def test_the_files_run_as_they_are(tmp_path):

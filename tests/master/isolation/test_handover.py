@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from evcosim.master.isolation import framing, handover
 from evcosim.master.isolation.handover import Side, spin_time
 from evcosim.master.simulation import simulate
 from support.pairs import pair
+from support.turns import hand_over
 
 
 def test_units_give_the_same_where_both_sides_only_sleep(
@@ -43,24 +43,7 @@ def sides(request: pytest.FixtureRequest) -> Iterator[tuple[Side, Side, memoryvi
 
 def test_turns_are_handed_over_in_order(sides: tuple[Side, Side, memoryview]) -> None:
     first, second, _ = sides
-    seen = []
-
-    def answer() -> None:
-        for number in range(1, 501):
-            if not second.comes(float(number)):
-                second.sleep_until(float(number), 100)
-            seen.append(number)
-            second.post(float(number))
-
-    thread = threading.Thread(target=answer)
-    thread.start()
-    for number in range(1, 501):
-        first.post(float(number))
-        if not first.comes(float(number)):
-            assert first.sleep_until(float(number), 100) == b""
-        assert seen[-1] == number
-    thread.join()
-    assert len(seen) == 500
+    hand_over(first, second, 500)
 
 
 def test_a_frame_that_comes_before_the_number_is_returned(sides: tuple[Side, Side, memoryview]) -> None:

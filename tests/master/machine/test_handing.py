@@ -19,6 +19,7 @@ from evcosim.master.machine import slots as S
 from evcosim.master.machine import tables as L
 from evcosim.master.machine.hands import POSSIBLE
 from evcosim.master.machine.surroundings import Surroundings
+from support.turns import hand_over
 
 pytestmark = pytest.mark.skipif(
     not POSSIBLE, reason="a handover needs futexes and the order of stores of x86"
@@ -91,24 +92,7 @@ def sides(request: pytest.FixtureRequest) -> Iterator[tuple[Any, Any]]:
 
 def test_turns_are_handed_over_in_order(sides: tuple[Any, Any]) -> None:
     master, process = sides
-    seen = []
-
-    def answer() -> None:
-        for number in range(1, 301):
-            if not process.comes(float(number)):
-                process.sleep_until(float(number), 100)
-            seen.append(number)
-            process.post(float(number))
-
-    thread = threading.Thread(target=answer)
-    thread.start()
-    for number in range(1, 301):
-        master.post(float(number))
-        if not master.comes(float(number)):
-            assert master.sleep_until(float(number), 100) == b""
-        assert seen[-1] == number
-    thread.join()
-    assert len(seen) == 300
+    hand_over(master, process, 300)
 
 
 def test_a_side_that_waits_in_vain_gives_up_and_is_awake() -> None:
