@@ -62,6 +62,7 @@ from = "vehicle.speed"
 to = ["ecu.speed_measured"]
 via = "can0.EMD_Status.EMD_VehicleSpeed"
 initial = 0.0
+needed_where = { "ecu.gain" = 0.05 }
 [[connect]]
 from = "ecu.throttle"
 to = ["vehicle.throttle"]
