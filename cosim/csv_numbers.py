@@ -31,6 +31,7 @@ from .csv_text import (
 )
 from .errors import ConfigError, counted
 from .row_store import Array
+from .shortage import reason
 
 _NUMPY_PAYS = 3  # numpy reads the numbers of all columns: faster where a third or more of them is wanted
 _TRUTHS = {"true": 1.0, "false": 0.0}
@@ -75,7 +76,7 @@ class CsvFile:
         try:
             row = cut_row(self.path)
         except OSError as error:
-            raise ConfigError(f"{self.path}: cannot be read: {error.strerror or error}") from error
+            raise ConfigError(f"{self.path}: cannot be read: {reason(error)}") from error
         if row is None:
             return None
         if self._is_ours():

@@ -21,6 +21,7 @@ from typing import NamedTuple, TextIO
 
 from .errors import ConfigError, counted
 from .reading import LARGEST, require_file
+from .shortage import reason
 
 SEPARATORS = (";", "\t", ",")
 """In the order in which they are tried: a ';' or a tab that stands in each line is no part of a name."""
@@ -85,7 +86,7 @@ def encoding_of(path: Path) -> str:
             file.seek(0)
             return _of_bytes(path, iter(lambda: file.read(_BLOCK), b""))
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error
 
 
 def _of_bytes(path: Path, blocks: Iterable[bytes]) -> str:
@@ -119,7 +120,7 @@ def opened(path: Path, encoding: str, skipped: int = 0) -> Iterator[TextIO]:
                 file.readline()
             yield file
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error
     except UnicodeError as error:
         kind = "UTF-16 or UTF-32" if encoding.startswith(("utf-16", "utf-32")) else "UTF-8 or Windows-1252"
         where = f" at byte {error.start}" if isinstance(error, UnicodeDecodeError) else ""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .errors import ConfigError
 from .file_names import check_name, flaw_of_name, near_file
+from .shortage import reason
 
 LARGEST = 64 << 20
 """Bytes of a file that is read whole: a system, a scenario, a swap or a CAN database."""
@@ -25,7 +26,7 @@ def require_file(path: Path, about: str = "") -> os.stat_result:
     except FileNotFoundError as error:
         raise ConfigError(f"{start}cannot be read: {error.strerror}{near_file(path)}") from error
     except OSError as error:
-        raise ConfigError(f"{start}cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{start}cannot be read: {reason(error)}") from error
     if stat.S_ISDIR(found.st_mode):
         raise ConfigError(f"{start}cannot be read: it is a folder, not a file")
     if not stat.S_ISREG(found.st_mode):
@@ -47,4 +48,4 @@ def content(path: Path, about: str = "") -> bytes:
         with path.open("rb") as file:
             return file.read(min(size + 1, LARGEST))  # as much as it asks for, Python takes at once
     except OSError as error:
-        raise ConfigError(f"{path}: {about}cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: {about}cannot be read: {reason(error)}") from error

@@ -46,6 +46,16 @@ def reason(error: OSError) -> str:
     return said + _limited(error.errno)
 
 
+def reason_of_import(error: Exception) -> str:
+    """Return why a module cannot be loaded where a limit is the reason; "" for another reason."""
+    if isinstance(error, OSError):
+        return reason(error) if is_shortage(error) else ""
+    for number in (errno.EMFILE, errno.ENOMEM):  # the loader of libraries says it in words or by number
+        if os.strerror(number) in str(error) or f"Error {number}" in str(error):
+            return os.strerror(number) + _limited(number)
+    return ""
+
+
 def of_temporary_files(error: OSError) -> str:
     """Return why a temporary file or folder was refused: the folder of all of them, and what to do."""
     if error.errno not in _NO_FOLDER:

@@ -22,6 +22,7 @@ from ..clock import WHOLE, Clock
 from ..errors import ConfigError, short
 from ..reading import require_file
 from ..row_store import Array, Grid, Table, rows_in, write_all
+from ..shortage import reason
 from .manifest import described, from_json, manifest_text, variables_in
 from .variable import ResultVariable
 
@@ -110,7 +111,7 @@ def read(path: Path) -> SavedRows:
         clock, manifest = _clock(about["clock"]), dict(about["manifest"])
         data = rows_in(path, len(line), len(variables))
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error
     except (ValueError, TypeError, KeyError) as error:
         if isinstance(error, ConfigError):
             raise

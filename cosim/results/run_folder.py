@@ -237,7 +237,7 @@ class RunFolder(FolderLock):
             if row is not None:
                 os.truncate(path, row.begin)
         except OSError as error:
-            raise ConfigError(f"{path}: cannot be mended: {error.strerror or error}") from error
+            raise ConfigError(f"{path}: cannot be mended: {reason(path, error)}") from error
         return row is not None
 
     def foreign_files(self) -> list[str]:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ..errors import ConfigError
+from ..shortage import reason
 from ..writing import create
 from .manifest import described, from_json, manifest_text, variables_in
 from .text_table import Change, TextTable
@@ -104,7 +105,7 @@ def read_text_rows(path: Path, count: int) -> TextTable:
     try:
         lines = path.read_bytes().split(b"\n")[:-1]  # half a line at the end counts for nothing
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error
     variables = _variables(path, lines[0]) if lines else []
     changes: list[Change] = []
     for number, line in enumerate(lines[1:], 2):

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..csv_text import both
 from ..errors import ConfigError
 from ..row_store import Array
+from ..shortage import reason
 from ..writing import replacing
 from .variable import ResultVariable
 
@@ -142,7 +143,7 @@ def read_texts(path: Path, times: Array, names: Sequence[str] = ()) -> TextTable
                 rows.append(cells)
                 lines.append(reader.line_num)
     except OSError as error:
-        raise ConfigError(f"{beside}: cannot be read: {error.strerror or error}") from error
+        raise ConfigError(f"{beside}: cannot be read: {reason(error)}") from error
     except (csv.Error, UnicodeDecodeError) as error:
         raise ConfigError(f"{beside}: is no table of texts: {error}") from error
     _check_names(header, [*names], beside)

@@ -25,20 +25,34 @@ from collections.abc import Sequence
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (default: that of the process) and return the exit code."""
-    if arguments is None:  # the process is ours
-        from . import interrupts
+    if arguments is not None:
+        return _main(arguments)
+    try:  # the process is ours
+        return _of_process()
+    except (OSError, ImportError) as error:  # even the modules that report errors cannot be read
+        from ...cosim import shortage  # loaded by now, or this is a traceback of Python's own
 
-        interrupts.install()  # before anything that takes time
-        _calculate_in_one_thread()
-        from . import early_exit
+        if not (said := shortage.reason_of_import(error)):
+            raise
+        import sys
 
-        early_exit.install()
-        try:
-            return _main(None)
-        finally:
-            early_exit.leave()
-            interrupts.leave()
-    return _main(arguments)
+        print(f"evcosim: {said}", file=sys.stderr)
+        return 1
+
+
+def _of_process() -> int:
+    from . import interrupts
+
+    interrupts.install()  # before anything that takes time
+    _calculate_in_one_thread()
+    from . import early_exit
+
+    early_exit.install()
+    try:
+        return _main(None)
+    finally:
+        early_exit.leave()
+        interrupts.leave()
 
 
 def _calculate_in_one_thread() -> None:

@@ -124,6 +124,8 @@ def _judged(error: Exception) -> tuple[int, str]:
         return FAILED, shortage.no_memory()
     if isinstance(error, RuntimeError) and str(error) == _NO_THREAD:
         return FAILED, shortage.no_thread()
+    if isinstance(error, ImportError) and (said := shortage.reason_of_import(error)):
+        return FAILED, said
     said = f": {error}" if str(error) else ""
     return FAILED, f"unexpected error: {type(error).__name__}{said}\n--debug shows where it happened"
 

@@ -20,7 +20,7 @@ from typing import IO
 
 from ...cosim import leftovers
 from ...cosim.errors import ConfigError, ShortageError
-from ...cosim.shortage import is_shortage, of_temporary_files
+from ...cosim.shortage import is_shortage, of_temporary_files, reason
 
 _VARIABLE = "EVCOSIM_FMU_LIMITS"
 _BLOCK = 1 << 20
@@ -76,7 +76,7 @@ def entries_of(path: Path) -> tuple[zipfile.ZipInfo, ...]:
     except FileNotFoundError as error:
         raise FmuError(f"{path}: there is no such file") from error
     except OSError as error:
-        raise FmuError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise FmuError(f"{path}: cannot be read: {reason(error)}") from error
     except Exception as error:  # zipfile raises four unrelated types for damaged archives
         raise FmuError(f"{path}: is not an FMU: {_reason(path, error)}") from error
     for entry in found:  # some tools for Windows separate folders as no archive should

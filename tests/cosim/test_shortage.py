@@ -51,6 +51,25 @@ def test_a_limit_is_named_with_its_value(number: int, kind: int, most: int, word
         assert re.search(words, text), text
 
 
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (OSError(errno.EMFILE, "Too many open files"), "Too many open files"),
+        (OSError(errno.ENOENT, "No such file or directory"), ""),
+        (
+            ImportError("libm.so: cannot open shared object file: Too many open files"),
+            "Too many open files",
+        ),
+        (ImportError("libm.so: cannot open shared object file: Error 24"), "Too many open files"),
+        (ImportError("libm.so: cannot open shared object file: No such file or directory"), ""),
+        (ModuleNotFoundError("No module named 'fmpy'"), ""),
+    ],
+)
+def test_a_limit_behind_a_module_that_cannot_be_loaded_is_named(error: Exception, said: str) -> None:
+    text = limited(resource.RLIMIT_NOFILE, 50, lambda: shortage.reason_of_import(error))
+    assert text == (f"{said}: the limit of open files is 50 (`ulimit -n`)" if said else "")
+
+
 def test_a_full_disk_is_named_with_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", "/some/folder")
     full = OSError(errno.ENOSPC, "No space left on device")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import resource
 import shlex
 import shutil
 import subprocess
@@ -325,3 +326,23 @@ def test_no_file_gets_the_number_of_a_closed_stream(tmp_path):
     )
     subprocess.run(f"{shlex.join([sys.executable, '-c', code])} >&-", shell=True, cwd=tmp_path, check=True)
     assert (tmp_path / "file").read_text() == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="how few files Python itself needs is known for Linux")
+@pytest.mark.parametrize("most", range(5, 13))
+def test_every_number_of_open_files_works_or_is_named(most, process):
+    """Python itself needs four: the standard streams, and one file after the other of what it imports."""
+    run = process(
+        *("run", "scooter", "--stop-time", "0.1", "-o", "out"),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most)),
+        close_fds=True,
+    )
+    err = run.communicate(timeout=60)[1]
+    if run.returncode == 0:
+        assert err == ""
+        return
+    assert run.returncode in (1, 2)
+    first, *more = err.splitlines()
+    assert first.startswith("evcosim: ")
+    assert first.endswith(f"Too many open files: the limit of open files is {most} (`ulimit -n`)")
+    assert more in ([], ["in out: results.csv, run.json"])
