@@ -141,13 +141,13 @@ class _Reader:
 
     def _selection(self, s: SignalEntry) -> tuple[str, tuple[tuple[int, int], ...], str]:
         """Return the multiplexer of a signal and its raw values, "" and () for all frames; and a problem."""
+        if s.marker and (found := self.entries.selectors.get((self.entry.dbc_id, s.name))):
+            return *found, ""
         if s.marker in ("", "M"):
             return "", (), ""
         number_of = s.marker[1:].removesuffix("M")
         if not (s.marker.startswith("m") and number_of.isdigit()):
             return "", (), f"line {s.line}: '{s.marker}' is no multiplexer's mark: M, m3 or m3M"
-        if found := self.entries.selectors.get((self.entry.dbc_id, s.name)):
-            return *found, ""
         multiplexers = [other.name for other in self.entry.signals if other.marker.endswith("M")]
         roots = [other.name for other in self.entry.signals if other.marker == "M"]
         if s.marker.endswith("M") or len(multiplexers) != 1 or roots != multiplexers:

@@ -96,7 +96,7 @@ def _bus(name: str, title: str, wires: Iterable[Wire], numbers: Mapping[str, int
     for wire in wires:
         if not wire.via or wire.via.split(".")[0] != name:
             continue
-        signal = wire.via.rpartition(".")[2]
+        signal = wire.via.split(".", 2)[2]
         signals[numbers[_unit(wire.source)], True][signal] = None
         for sink in wire.sinks:
             signals[numbers[_unit(sink)], False][signal] = None

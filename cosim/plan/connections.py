@@ -287,7 +287,7 @@ def _coarser(
 
 def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signal]:
     """Return message and signal of "bus.message.signal". Raises ConfigError when there is none."""
-    bus, message_name, signal_name = via.split(".")
+    bus, message_name, signal_name = via.split(".", 2)  # some long names of signals have a dot
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
     message = as_sent(work.databases[bus].require(message_name, place), work.system.file.buses[bus])

@@ -24,7 +24,8 @@ _TABLE = (
 _BY_SUFFIX = {
     ".dbc": (
         "a CAN database (DBC)",
-        "a system file names it in [buses.NAME] by `dbc`, and `evcosim new` makes an example",
+        "`evcosim info FILE.dbc` shows its messages, a system file names it in [buses.NAME] by `dbc`, and "
+        "`evcosim new` makes an example",
     ),
     ".csv": _TABLE, ".txt": ("a text", "a system is a TOML file"),
     ".ssp": ("a package of SSP", "SSP is not read yet; a system is a TOML file, with the FMUs that it names"),

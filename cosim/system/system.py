@@ -55,7 +55,7 @@ def _variable(name: str) -> str:
 
 
 def _signal(name: str) -> str:
-    if len(name.split(".")) != 3:
+    if name.count(".") < 2:
         raise ValueError("a signal is written bus.message.signal")
     return name
 
@@ -66,7 +66,7 @@ _NAME = r"^[A-Za-z_\u0080-\uffff][A-Za-z0-9_\u0080-\uffff]*$"
 Identifier = Annotated[str, AfterValidator(_identifier), text_type("name", _NAME)]
 VariableName = Annotated[str, AfterValidator(_variable), text_type("unit.variable", r"^[^.]+\.[^\n]+$")]
 SignalName = Annotated[
-    str, AfterValidator(_signal), text_type("bus.message.signal", r"^[^.]*\.[^.]*\.[^.]*$")
+    str, AfterValidator(_signal), text_type("bus.message.signal", r"^[^.]*\.[^.]*\.[^\n]*$")
 ]
 
 

@@ -1,9 +1,10 @@
-"""`evcosim info`: the interface of an FMU, or the connections of a system."""
+"""`evcosim info`: the interface of an FMU, the connections of a system, or the messages of a CAN database."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -16,10 +17,13 @@ def info(
         str,
         typer.Argument(
             metavar="FILE|NAME",
-            help="An FMU or a system: a file, or a built-in name.",
+            help="An FMU or a system: a file, or a built-in name. Or a CAN database (.dbc).",
             autocompletion=completion.systems_and_fmus,
         ),
     ],
+    message: Annotated[
+        str | None, typer.Argument(metavar="[MESSAGE]", help="Database: the message whose signals are shown.")
+    ] = None,
     causality: Annotated[
         list[str] | None,
         typer.Option(metavar="C", help="FMU: only variables of it, as in 'input'; can be given again."),
@@ -30,34 +34,56 @@ def info(
     diagram: Annotated[
         Path | None, typer.Option(metavar="FILE", help="System: draw its units and connections (.png, .svg).")
     ] = None,
+    bitrate: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Database: show the load at N bit/s.")
+    ] = None,
+    data_bitrate: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Database: CAN FD payloads at N bit/s.")
+    ] = None,
     strict: StrictOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Show what an FMU offers or how a system is connected."""
+    """Show what an FMU offers, how a system is connected, or what a CAN database has."""
     from ...cosim.errors import ConfigError
-    from ...cosim.system.system import system_names
-    from . import info_fmu, info_system
     from .console import print_json
 
-    if what.endswith(".toml") or what in system_names():
-        if causality or search or strict:
-            raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")
-        if diagram is not None and as_json:
-            raise ConfigError("--diagram draws and --json prints: give one of them")
-        about = info_system.described(what)
-        show = info_system.show
-        if diagram is not None:
-            _draw(what, diagram)
-            return
-    else:
-        if diagram is not None:
-            raise ConfigError(f"--diagram draws a system; {what} is none")
-        about = info_fmu.described(fmu_path(what), causality or [], search, strict)
-        show = info_fmu.show
-    if as_json:
+    if diagram is not None and as_json:
+        raise ConfigError("--diagram draws and --json prints: give one of them")
+    about, show = _report(what, (causality or [], search, strict), diagram, (message, bitrate, data_bitrate))
+    if diagram is not None:
+        _draw(what, diagram)
+    elif as_json:
         print_json(about)
     else:
         show(about)
+
+
+def _report(
+    what: str,
+    of_fmu: tuple[list[str], str | None, bool],
+    diagram: Path | None,
+    of_database: tuple[str | None, int | None, int | None],
+) -> tuple[dict[str, Any], Callable[[dict[str, Any]], None]]:
+    """Return the report and what prints it. Raises ConfigError for options of another kind of file."""
+    from ...cosim.errors import ConfigError
+    from ...cosim.system.system import system_names
+    from . import info_database, info_fmu, info_system
+
+    if what.lower().endswith(".dbc"):
+        if any(of_fmu) or diagram:
+            options = "--causality, --search, --strict and --diagram"
+            raise ConfigError(f"{options} are not for a CAN database, as {what}")
+        return info_database.described(Path(what), *of_database), info_database.show
+    if any(of_database):
+        options = "MESSAGE, --bitrate and --data-bitrate"
+        raise ConfigError(f"{options} are for a CAN database (.dbc); {what} is none")
+    if what.endswith(".toml") or what in system_names():
+        if any(of_fmu):
+            raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")
+        return info_system.described(what), info_system.show
+    if diagram is not None:
+        raise ConfigError(f"--diagram draws a system; {what} is none")
+    return info_fmu.described(fmu_path(what), *of_fmu), info_fmu.show
 
 
 def _draw(system: str, path: Path) -> None:

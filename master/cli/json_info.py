@@ -107,6 +107,35 @@ INFO_SYSTEM = record(
     },
 )
 
+_DATABASE_SIGNAL = record(
+    "A signal.",
+    {
+        "name": text("Its name."),
+        "start": whole("Its start bit, as a DBC counts."),
+        "length": whole("Its bits."),
+        "little_endian": flag("Whether it is in Intel's byte order."),
+        "signed": flag("Whether its raw values are signed."),
+        "float": flag("Whether it is sent as a floating-point number."),
+        "scale": or_null(number("Physical value of a step.")),
+        "offset": or_null(number("Physical value of raw 0.")),
+        "minimum": or_null(number("Least value; null: none.")),
+        "maximum": or_null(number("Greatest value; null: none.")),
+        "unit": text("Its unit of measure."),
+        "unit_known": flag("Whether evcosim knows that."),
+        "choices": by_name("Descriptions by raw value.", text("A description.")),
+        "not_available": or_null(whole('The raw code of "not available".')),
+        "is_multiplexer": flag("Whether it selects others."),
+        "multiplexer": text('What selects it; "": it is in every frame.'),
+        "multiplexer_ranges": listed(
+            "The raw values that do.", listed("The first and the last of a range.", whole("A raw value."))
+        ),
+        "receivers": listed("The nodes that receive it."),
+        "comment": text("Its comment."),
+        "note": text("What its user should know."),
+        "refused": text('Why no connection can use it; "": one can.'),
+    },
+)
+
 _ABILITY = record(
     "An entry.", {"what": text("What the FMU declares."), "here": text("What that means here.")}
 )
@@ -150,5 +179,44 @@ INFO_FMU = record(
                 },
             ),
         ),
+    },
+)
+
+INFO_DATABASE = record(
+    "A CAN database.",
+    {
+        "file": text("Its file."),
+        "nodes": listed("Its nodes."),
+        "bitrate": or_null(whole("The bit rate that was given [bit/s].")),
+        "data_bitrate": or_null(whole("That of CAN FD payloads, as given [bit/s].")),
+        "load": or_null(
+            listed(
+                "Of all cyclic messages: without and with all stuff bits, 1 a full bus.", number("A part.")
+            )
+        ),
+        "messages": listed(
+            "Its messages, or the one that was asked for.",
+            record(
+                "A message.",
+                {
+                    "name": text("Its name."),
+                    "id": whole("Its identifier."),
+                    "extended": flag("Whether that has 29 bits."),
+                    "length": whole("Bytes in the database."),
+                    "frame_length": whole("Bytes of the frame."),
+                    "fd": flag("Whether it is a CAN FD frame."),
+                    "j1939": flag("Whether it is a parameter group of J1939."),
+                    "cycle_time": or_null(number("Time from one to the next [s]; null: none is given.")),
+                    "start_delay": number("Time of the first [s]."),
+                    "send_type": text("Its GenMsgSendType."),
+                    "senders": listed("Its nodes."),
+                    "load": or_null(listed("As that of all.", number("A part."))),
+                    "comment": text("Its comment."),
+                    "signals": listed("Its signals.", _DATABASE_SIGNAL),
+                    "unread": by_name("Signals whose statement is not valid.", text("The reason.")),
+                },
+            ),
+        ),
+        "flaws": listed("Sentences on what contradicts itself in it, with the line."),
     },
 )

@@ -5,7 +5,7 @@ Numbers that are not finite are null in JSON, so that a measured number may be n
 
 from __future__ import annotations
 
-from .json_info import INFO_FMU, INFO_SYSTEM, LIST
+from .json_info import INFO_DATABASE, INFO_FMU, INFO_SYSTEM, LIST
 from .json_parts import VALUE, Schema, by_name, flag, listed, number, of, or_null, record, text, whole
 
 _FILES = {"folder": text("The folder of the files."), "files": listed("The names of the files in it.")}
@@ -294,7 +294,10 @@ _REPRODUCE = by_name(
 SCHEMAS: dict[str, Schema] = {
     "run": _RUN,
     "list": LIST,
-    "info": {"description": "A system or an FMU.", "oneOf": [INFO_SYSTEM, INFO_FMU]},
+    "info": {
+        "description": "A system, an FMU or a CAN database.",
+        "oneOf": [INFO_SYSTEM, INFO_FMU, INFO_DATABASE],
+    },
     "check": _CHECK,
     "compare": _COMPARE,
     "identify": _IDENTIFY,

@@ -219,6 +219,17 @@ def test_a_message_that_a_classic_bus_cannot_send_is_named(tmp_path):
         paged(tmp_path, "All", fd=False)
 
 
+def test_a_signal_may_have_a_dot_in_its_name(tmp_path):
+    long = 'BA_DEF_ SG_ "SystemSignalLongSymbol" STRING ;\nBA_ "SystemSignalLongSymbol" SG_ 256 All'
+    (tmp_path / "p.dbc").write_text(f'{PAGES}{long} "Temp. of all";\n')
+    connect = [{"from": "a.y", "via": "can0.M.Temp. of all"}]
+    buses = {"can0": {"dbc": str(tmp_path / "p.dbc"), "cycle_time": 0.02}}
+    (message,) = plan_of(
+        [MockUnit("a", [real("y", "output")])], {"connect": connect, "buses": buses}
+    ).messages
+    assert list(message.senders) == ["Temp. of all"]
+
+
 def test_a_coarser_signal_is_in_the_message_and_in_the_route():
     made = plan([SENT], buses={"can0": {"dbc": "can/ev.dbc", "resolution": 4.0}})
     (message,) = made.messages

@@ -7,6 +7,7 @@ import json
 import jsonschema
 import pytest
 
+from evcosim.cosim.system.toml import DATA
 from evcosim.master.cli import app
 from evcosim.master.cli.json_schemas import SCHEMAS, schema_of
 from support import json_page
@@ -17,6 +18,7 @@ COMMANDS = [
     ("list",),
     ("info", "scooter"),
     ("info", "Scooter"),
+    ("info", str(DATA / "can" / "ev.dbc"), "--bitrate", "500000"),
     ("check", "Scooter", "--as", "scooter.vehicle", "--try", "500ms"),
     ("check", "Battery", "--as", "scooter.vehicle"),
     ("compare", "a", "b"),

@@ -1,0 +1,108 @@
+"""`evcosim info FILE.dbc`: messages, signals, what cannot be used and why, and the load of the bus."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from evcosim.cosim.can.dbc import load_dbc
+from evcosim.cosim.errors import ConfigError
+from evcosim.master.cli.info_database import described
+from evcosim.master.cli.json_info import INFO_DATABASE
+from support.databases import EV, HEAD
+
+CAR = f"""{HEAD}
+BO_ 256 Fast: 8 A
+ SG_ Page M : 0|4@1+ (1,0) [0|3] "" B
+ SG_ Speed : 8|16@1- (0.1,-5) [0|255] "km/h" B
+ SG_ P1 m1 : 32|8@1+ (1,0) [0|255] "Spannung" B
+ SG_ P2 m2 : 32|8@1+ (1,0) [0|255] "" B
+ SG_ Q : 40|2@1+ (1,0) [0|3] "" B
+BO_ 257 Big: 10 A
+ SG_ Byte : 0|8@1+ (1,0) [0|255] "" B
+ SG_ Flag : 3|1@1+ (1,0) [0|1] "" B
+ SG_ Odd : eight|8@1+ (1,0) [0|0] "" B
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_ "GenMsgCycleTime" BO_ 256 10;
+VAL_ 256 Q 3 "SNA" ;
+"""
+
+
+@pytest.fixture
+def car(tmp_path: Path) -> Path:
+    path = tmp_path / "car.dbc"
+    path.write_text(CAR)
+    return path
+
+
+@pytest.mark.parametrize("arguments", [(), ("Fast",), (None, 500_000), (None, 500_000, 2_000_000)])
+def test_the_report_is_what_its_schema_says(car, arguments):
+    for path in (car, EV):
+        about = described(path, *(arguments if path == car else arguments[1:] and (None, *arguments[1:])))
+        jsonschema.Draft202012Validator(INFO_DATABASE).validate(about)
+        assert list(about) == list(INFO_DATABASE["properties"])
+
+
+def test_the_load_is_that_of_all_cyclic_frames(car):
+    """A classic frame: 44 + 8 n bits, 3 between frames, stuff bits up to (34 + 8 n - 1) / 4 (Davis 2007)."""
+    about = described(car, None, 500_000)
+    least, most = (44 + 64 + 3) / 500_000 / 0.01, (44 + 64 + 3 + 24) / 500_000 / 0.01
+    fast, big = about["messages"]
+    assert fast["load"] == pytest.approx([least, most]) == about["load"]
+    assert big["load"] is None  # it has no cycle time
+    assert described(car, "Fast", 250_000)["load"] == pytest.approx([2 * least, 2 * most])
+
+
+def test_the_load_of_the_project_s_own_database():
+    """Davis' bound: every frame with all its stuff bits, at 500 kbit/s."""
+    own = sum(
+        (44 + 8 * m.length + 3 + (34 + 8 * m.length - 1) // 4) / 500_000 / (m.cycle_time or 1.0)
+        for m in load_dbc(EV).messages.values()
+    )
+    assert described(EV, None, 500_000)["load"][1] == pytest.approx(own)
+
+
+def test_what_cannot_be_used_and_why(car):
+    fast, big = described(car)["messages"]
+    refused = {s["name"]: s["refused"] for m in (fast, big) for s in m["signals"] if s["refused"]}
+    assert refused == {name: f"line 14: Big.{name}: 'Byte' and 'Flag' overlap in bit 3".replace("14", line)
+                       for name, line in (("Byte", "13"), ("Flag", "14"))}  # fmt: skip # two lines of a file
+    assert "line 15: not valid in a DBC file" in big["unread"]["Odd"]
+    assert {s["name"]: s["unit_known"] for s in fast["signals"] if not s["unit_known"]} == {"P1": False}
+    assert next(s["note"] for s in fast["signals"] if s["name"] == "Q").startswith("its maximum 3")
+
+
+def test_a_message_alone_has_its_own_flaws(car):
+    assert described(car, "Fast")["flaws"] == []
+    assert len(described(car, "Big")["flaws"]) == 2
+    assert len(described(car)["flaws"]) == 3
+    with pytest.raises(ConfigError, match=r"car.dbc: no message 'Fats' \(did you mean 'Fast'\?\)"):
+        described(car, "Fats")
+
+
+def test_what_is_printed(car, evcosim):
+    answer = evcosim("info", str(car), "--bitrate", "500000").out
+    assert "2, 1 of them without a cycle time" in answer and "8, of which 6 can be used" not in answer
+    assert "7, of which 5 can be used" in answer
+    said = " ".join(answer.split())
+    assert "2.2 % to 2.7 % at 500000 bit/s, by the stuff bits, without the 1 that have no cycle" in said
+    assert "Big 0x101 10 in 12 CAN FD" in said
+    assert "not known: Spannung" in answer and "3 flaws" in answer
+    answer = evcosim("info", str(car), "Fast").out
+    said = " ".join(answer.split())
+    assert "P1 32|8 1 [0, 255] Spannung (?) Page 1 B" in said
+    assert "Speed 8|16 signed 0.1 - 5 [0, 255] km/h B" in said
+    assert "note: Q: its maximum 3 would be sent as raw 3" in said
+
+
+def test_json_and_options_of_others(car, evcosim):
+    assert json.loads(evcosim("info", str(car), "Fast", "--json").out)["messages"][0]["name"] == "Fast"
+    for arguments in (("scooter", "EMD_Status"), ("Scooter", "--bitrate", "5")):
+        answer = evcosim("info", *arguments)
+        assert answer.code == 2
+        assert "are for a CAN database (.dbc)" in answer.err
+    assert evcosim("info", str(car), "--search", "x").code == 2
