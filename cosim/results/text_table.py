@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..csv_text import both
+from ..csv_text import both, cut_row
 from ..errors import ConfigError
 from ..row_store import Array
 from ..shortage import reason
@@ -142,10 +142,16 @@ def read_texts(path: Path, times: Array, names: Sequence[str] = ()) -> TextTable
             for cells in reader:
                 rows.append(cells)
                 lines.append(reader.line_num)
+        cut = cut_row(beside)
     except OSError as error:
         raise ConfigError(f"{beside}: cannot be read: {reason(error)}") from error
     except (csv.Error, UnicodeDecodeError) as error:
         raise ConfigError(f"{beside}: is no table of texts: {error}") from error
+    if cut is not None:
+        raise ConfigError(
+            f"{beside}: line {cut.line}, the last, does not end: {cut.text!r}; the file was cut off; if "
+            "nothing is missing, end the line"
+        )
     _check_names(header, [*names], beside)
     variables = [ResultVariable(name, type="String", variability="discrete") for name in header[1:]]
     changes: list[Change] = []

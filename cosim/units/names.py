@@ -95,6 +95,7 @@ NAMES: dict[str, tuple[Fraction | int, str]] = {
     "poise": (100, "cP"), "stokes": (100, "cSt"), "curie": (37 * 10**9, "Bq"),
     "rem": (Fraction(1, 100), "Sv"), "permille": (Fraction(1, 10), "%"), "strain": (100, "%"),
     "degree_Rankine": (Fraction(5, 9), "K"), "rankine": (Fraction(5, 9), "K"),
+    "degRk": (Fraction(5, 9), "K"),
 }  # fmt: skip # related units side by side
 """Names with a factor and a symbol; in the plural, and with a prefix that is written out, too."""
 

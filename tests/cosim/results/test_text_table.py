@@ -73,6 +73,19 @@ def test_results_that_were_cut_off_have_the_texts_up_to_their_end(tmp_path: Path
         assert kept.changes == tuple(change for change in table.changes if change[0] < count)
 
 
+def test_a_table_that_was_cut_off_is_refused_wherever(tmp_path: Path) -> None:
+    table = TextTable(VARIABLES, [(0, ("x", "y")), (2, ('say "on"', 'say "off"'))])
+    write_texts(tmp_path / "x.csv", table, TIMES)
+    path = tmp_path / "x.texts.csv"
+    whole = path.read_bytes()
+    for end in range(whole.index(b"say"), len(whole)):
+        path.write_bytes(whole[:end])
+        with pytest.raises(
+            ConfigError, match=r"x.texts.csv: (line 3, the last, does not end|is no table of)"
+        ):
+            read_texts(tmp_path / "x.csv", TIMES)
+
+
 def test_a_text_of_any_length_reads(tmp_path: Path) -> None:
     before = csv.field_size_limit()
     table = TextTable(VARIABLES, [(0, ("x" * 300_000, '"' * 200_000))])

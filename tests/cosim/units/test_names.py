@@ -23,7 +23,7 @@ IN_PINT = {
     "US_liquid_ounce": "fluid_ounce", "US_liquid_pint": "US_pint", "survey_feet": "survey_foot",
     "cubic_inches": "cubic_inch", "gauss": "1e-4 tesla", "maxwell": "1e-8 weber", "curie": "3.7e10 / second",
     "mechanical_horsepower": "horsepower", "revolution_per_minute": "revolutions_per_minute",
-    "revolution_per_second": "revolutions_per_second",
+    "revolution_per_second": "revolutions_per_second", "degRk": "degree_Rankine",
 }  # fmt: skip # names that pint has not, or defines in other base units
 OTHERWISE = {
     "G": "standard gravity or gauss; pint defines it in units of the CGS system", "gauss": "as G",
