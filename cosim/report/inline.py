@@ -6,6 +6,7 @@ import base64
 
 from ..errors import ConfigError
 from ..figures.asked import plot
+from ..figures.default_figure import title_of
 from ..figures.shown import ShownFigure
 from ..results.results import Results
 from .markup import escaped
@@ -13,13 +14,8 @@ from .markup import escaped
 
 def shown(results: Results) -> str:
     """Return the HTML of some results, of which whatever cannot be made is named with the reason."""
-    line = f"<p><b>{_title(results)}</b> {escaped(repr(results))}</p>"
+    line = f"<p><b>{escaped(title_of(results))}</b> {escaped(repr(results))}</p>"
     return f"<div>{line}{_metrics(results)}{_figure(results)}</div>"
-
-
-def _title(results: Results) -> str:
-    parts = [results.manifest.get(key) for key in ("system", "scenario")]
-    return escaped(", ".join(part for part in parts if isinstance(part, str) and part))
 
 
 def _metrics(results: Results) -> str:

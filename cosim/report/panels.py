@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..figures.check import panel_conversion
+from ..figures.lines import drawing_of
 from ..figures.panels import strokes
 from ..figures.states import course
 from ..figures.style import COLORS, SHADES, Stroke
@@ -22,7 +22,7 @@ _SPANS = 20_000  # shaded stretches at most
 
 
 def figure_panels(results: Results, spec: FigureSpec, found: Recorded) -> list[dict[str, Any]]:
-    """Return the panels of a figure as data. Raises ConfigError as `panel_conversion` does."""
+    """Return the panels of a figure as data. Raises ConfigError as `drawing_of` does."""
     return [_panel(results, panel, found) for panel in spec.panels]
 
 
@@ -59,12 +59,7 @@ def items_data(items: Items) -> list[tuple[int, str]]:
 
 
 def _line(results: Results, signal: SignalSpec, unit: str, stroke: Stroke, found: Recorded) -> dict[str, Any]:
-    variable = results.variable(signal.name)
-    convert = panel_conversion(variable, unit, "figure")
-    label = signal.label or signal.name
-    if not variable.unit and unit not in ("", "1"):
-        label += " (no unit declared)"
-    held = variable.held if signal.step is None else signal.step
+    convert, held, label = drawing_of(results, signal, unit)
     line = line_data(found.columns[signal.name], label, held, stroke, signal.weight)
     return line | {"scale": convert.scale, "offset": convert.offset}
 

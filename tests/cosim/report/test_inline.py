@@ -34,7 +34,7 @@ def some(n: int = 11, **options) -> Results:
 def test_the_metrics_and_the_figure_are_shown():
     top = MetricSpec(name="top speed", signal="vehicle.speed", reduce="max", unit="km/h")
     shown = some(metrics=[top])._repr_html_()
-    assert "scooter, fig8" in shown
+    assert "scooter · fig8" in shown
     assert "11 communication points, 0 to 1 s" in shown
     assert re.search(r"<td[^>]*>top speed</td><td[^>]*>3\.6 km/h</td>", shown)
     picture = re.search(r'src="data:image/png;base64,([^"]+)"', shown)
