@@ -107,13 +107,19 @@ def wrong_bit(w: Wire, bus: int, i: int, bits: int) -> int:
     b, m = w.buses, w.messages
     attempt = m[i, T.CARRIED] + m[i, T.ERRORS]
     purpose = _ERROR | m[i, T.PAGE] << 8
-    draw = drawn(b[bus, T.SEED], b[bus, T.NAME], m[i, T.ID], attempt, purpose)
+    draw = drawn(b[bus, T.SEED], b[bus, T.NAME], number_of(w, i), attempt, purpose)
     if draw >= w.chances[bus, bits]:
         return -1
     bit = 0
     while draw >= w.chances[bus, bit + 1]:
         bit += 1
     return bit
+
+
+def number_of(w: Wire, i: int) -> int:
+    """Return the number of message i in draws, which no other has: bit 29 is set in extended frames."""
+    number: int = w.messages[i, T.ID] | w.messages[i, T.EXTENDED] << 29
+    return number
 
 
 def count_errors(w: Wire, bus: int, sender: int, wrong: int) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..timing.draws import drawn
 from . import tables as T
-from .arbitration import contend
+from .arbitration import contend, number_of
 from .log import log
 from .tables import Wire
 from .values import pack, sample, unpack
@@ -47,7 +47,7 @@ def queue(w: Wire, i: int, now: int) -> None:
     m[i, T.SAMPLED] = m[i, T.SINCE] = now
     if m[i, T.JITTER]:
         purpose = _JITTER | m[i, T.PAGE] << 8
-        draw = drawn(w.buses[bus, T.SEED], w.buses[bus, T.NAME], m[i, T.ID], m[i, T.INSTANCE], purpose)
+        draw = drawn(w.buses[bus, T.SEED], w.buses[bus, T.NAME], number_of(w, i), m[i, T.INSTANCE], purpose)
         m[i, T.SINCE] += int(draw * m[i, T.JITTER])
     for byte in range(m[i, T.LENGTH]):
         w.waiting[i, byte] = w.frame[byte]

@@ -93,7 +93,7 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
     name = int(path.arrays["buses"][0, T.NAME])
     expected = carried(
         sent, payloads, STEPS, 10**9, round(1e12 / use.bitrate),
-        lambda m, n: drawn(use.seed, name, m.identifier, n, 1),
+        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1),
     )  # fmt: skip # one call
     log = path.log_of("can0").frames
     assert [(end, m.name, data) for _, end, m, data in log.frames()] == [

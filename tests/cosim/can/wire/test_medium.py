@@ -54,6 +54,15 @@ def test_a_frame_that_waits_is_replaced_by_the_newest():
     assert w.messages[0, [T.CARRIED, T.ARRIVED]].tolist() == [1, 1]
 
 
+def test_a_standard_and_an_extended_message_of_one_number_have_draws_of_their_own():
+    w = wire(0, rows=4)
+    w.buses[0, [T.TIMED, T.MESSAGES, T.BIT]] = 1, 2, 10**10
+    for i in range(2):
+        w.messages[i, [T.LENGTH, T.ID, T.EXTENDED, T.JITTER]] = 1, 256, i, 10**11
+        assert medium.send(Wire(*(table.data for table in w)), i, 0) == T.DONE  # in integers of Python
+    assert 0 < w.messages[0, T.SINCE] != w.messages[1, T.SINCE] > 0
+
+
 def test_the_pages_of_a_message_have_one_buffer():
     w = wire(0, rows=4)
     w.buses[0, [T.TIMED, T.MESSAGES, T.BIT]] = 1, 2, 10**10
