@@ -48,7 +48,7 @@ def main() -> None:
     arguments = parser.parse_args()
     peaks = []
     for length in arguments.lengths or LENGTHS:
-        alone, with_frames = peak(length), peak(length, ["--can-log"])
+        alone, with_frames = peak(length), peak(length, ["--can-log", "can.blf"])
         peaks.append((alone, with_frames))
         print(f"{shown(length)}: {alone}, {with_frames}", file=sys.stderr, flush=True)
     text = report(peaks)

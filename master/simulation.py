@@ -15,12 +15,13 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping
+from datetime import datetime
 from numbers import Integral
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Unpack
 
-from ..cosim.can.frames import write_can_log
+from ..cosim.can.logs.writing import write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest, short
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
@@ -300,18 +301,16 @@ class Simulation:
             texts=self._engine.text_notes.table(self._engine.k, self._engine.whole),
         )
 
-    def write_can_log(self, path: str | Path) -> int:
-        """Write the frames that crossed the buses; the suffix (.log candump, .blf, .asc) names the format.
+    def write_can_log(self, path: str | Path, start: datetime | None = None) -> int:
+        """Write the frames that crossed the buses as .log (candump), .asc, .blf, .mf4 or .pcapng.
 
-        Return their number. Raises ConfigError if the run did not keep them (`log_frames`), for another
-        suffix, and if the file cannot be written.
+        `start` is the moment of 0 s, with a time zone (default: 2000 begins in UTC). Return their number.
+        Raises ConfigError if the run did not keep them (`log_frames`) or the file cannot be written.
         """
         if not self.log_frames:
-            raise ConfigError(
-                "the frames of this run were not kept; make the simulation with log_frames=True"
-            )
+            raise ConfigError("the frames of this run were not kept: simulate with log_frames=True")
         logs = [self._engine.frames.log_of(bus) for bus in self.system.file.buses]
-        return write_can_log(path, logs, self.plan.clock)
+        return write_can_log(path, logs, self.plan.clock, start)
 
     def manifest(self) -> dict[str, Any]:
         """Return what made these results: versions, FMU digests, parameters, settings, counts (JSON-able)."""

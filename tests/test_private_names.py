@@ -48,7 +48,7 @@ NAMES = {
     ),
     "fmpy.sundials.nvector_serial": ("master/fmi/cvode.py", "_N_VectorContent_Serial.data.offset"),
     "can": (
-        "cosim/can/frames.py",
+        "cosim/can/logs/vector.py",
         "Message BLFWriter.on_message_received BLFWriter.stop ASCWriter._format_header_datetime "
         "ASCWriter.log_event ASCWriter.on_message_received ASCWriter.stop",
     ),
@@ -109,7 +109,7 @@ def test_fmpy_has_the_headers_of_fmi():
 
 
 def test_python_can_s_writers_have_what_is_set():
-    """cosim/can/frames.py sets both, so that times count from the start of the run."""
+    """cosim/can/logs/vector.py sets both, so that times count from the start of the run."""
     import can
 
     assert can.BLFWriter(io.BytesIO()).start_timestamp is None

@@ -34,7 +34,7 @@ from .variable import ResultVariable
 
 FIGURES = ("figure.png", "figure.svg")
 REPORT = "report.html"
-CAN_LOGS = ("can.log", "can.blf", "can.asc")
+CAN_LOGS = ("can.log", "can.asc", "can.blf", "can.mf4", "can.pcapng")
 _SPARE = 4096  # bytes of run.json for how the run ended, which a full disk has no room for
 _SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
 FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, REPORT, *CAN_LOGS)

@@ -15,7 +15,7 @@ _LIBRARY = (
 )
 _MATLAB = ("a file of MATLAB or Simulink", "export an FMU from there, and give that")
 _C = ("C code", "a description beside it and `evcosim compile` make an FMU of it (docs/how-to/c-vehicle.md)")
-_CAN_LOG = ("a log of CAN frames", "`evcosim run SYSTEM --can-log` writes one; none is read")
+_CAN_LOG = ("a log of CAN frames", "`evcosim run SYSTEM --can-log FILE` writes one; none is read")
 _TABLE = (
     "a table of numbers",
     "`--input NAME=FILE.csv` gives it to an FMU by itself, a [[stimulus]] of a scenario to a system, and "

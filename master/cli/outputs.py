@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from ...cosim.results.run_folder import RunFolder
     from ...cosim.system.figure_spec import FigureSpec
     from ...cosim.system.run_options import RunOptions
-    from ..simulation import Simulation
 
 _LONGEST = 60  # characters of a suffix
 _MOST = 1000  # folders with a number
@@ -180,12 +179,3 @@ def write_report(folder: Path, results: Results) -> list[str]:
     from ...cosim.results.run_folder import REPORT
 
     return [results.report(folder / REPORT).name]
-
-
-def write_can_logs(folder: Path, simulation: Simulation) -> list[str]:
-    """Write the frames of the run in each format and return the names of the files. Raises ConfigError."""
-    from ...cosim.results.run_folder import CAN_LOGS
-
-    for name in CAN_LOGS:
-        simulation.write_can_log(folder / name)
-    return list(CAN_LOGS)

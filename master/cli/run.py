@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from . import completion
+from .can_logs import CanLogOption, CanLogs, CanLogStartOption
 from .options import QuietOption, ScenarioOption, takes_run_options
 from .repeat import repeating
 
@@ -45,9 +46,8 @@ def run(
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace results of other settings in DIR.")
     ] = False,
-    can_log: Annotated[
-        bool, typer.Option("--can-log", help="Write the CAN frames (.log .blf .asc).")
-    ] = False,
+    can_log: CanLogOption = None,
+    can_log_start: CanLogStartOption = None,
     no_plot: Annotated[bool, typer.Option("--no-plot", help="Draw no figure.")] = False,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no page (report.html).")] = False,
     profile: Annotated[bool, typer.Option("--profile", help="Show what takes the time of a step.")] = False,
@@ -56,7 +56,7 @@ def run(
 ) -> int:
     """Run a system, or an FMU by itself; write results.csv, run.json, a figure and a page (report.html)."""
     bar = not (as_json or quiet)
-    files = Wanted(can_log, not no_plot, not no_report)
+    files = Wanted(CanLogs.asked(can_log, can_log_start), not no_plot, not no_report)
     command = repeating(context, "output", "replace", "as_json", "quiet", "profile")
     order = Order(system, scenario, options, output, replace, files, profile, bar, command)
     return _carry_out(order, as_json, quiet)
@@ -65,7 +65,7 @@ def run(
 class Wanted(NamedTuple):
     """The files of a run that are wanted beside its results."""
 
-    can_log: bool
+    can_logs: CanLogs
     figure: bool
     report: bool
 
@@ -143,13 +143,13 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
     from .interrupts import Interrupted, Interrupts
     from .outputs import default_folder, run_folder, suffix_of
 
-    if order.files.can_log and order.options.get("ideal"):
+    if order.files.can_logs and order.options.get("ideal"):
         raise ConfigError("--can-log and --ideal contradict each other: without buses there are no frames")
     error: BaseException | None = None
     simulation = Simulation(
         order.system,
         order.scenario,
-        log_frames=order.files.can_log,
+        log_frames=bool(order.files.can_logs),
         profile=order.profile,
         to_stop=True,
         **order.options,
@@ -256,9 +256,8 @@ def _draw(finished: FinishedRun, wanted: Wanted) -> None:
 
 
 def _write_logs(finished: FinishedRun, order: Order) -> None:
-    from .outputs import write_can_logs
-
-    if order.files.can_log and not finished.simulation.plan.messages:
+    logs = order.files.can_logs
+    if logs and not finished.simulation.plan.messages:
         finished.remarks.append("no CAN log: no connection of the system is over a bus")
-    elif order.files.can_log:
-        finished.files += write_can_logs(finished.folder.path, finished.simulation)
+    elif logs:
+        finished.files += logs.write(finished.folder.path, finished.simulation)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.can.frames import BusLog
+from ...cosim.can.logs.frames import BusLog
 from ...cosim.can.quantization import ChannelError, decode, quantize
 from ...cosim.can.transmissions import FrameLog, frame_store
 from ...cosim.can.wire import medium
@@ -126,4 +126,6 @@ class FramePath:
         self.flush()
         values = [s.channel.log for s in self._all if s.plan.bus == bus and s.plan.framing is None]
         messages = {i: s.plan.message for i, s in enumerate(self.senders) if s.plan.bus == bus}
-        return BusLog(bus, values, FrameLog(messages, self._kept.table()))
+        settings = next((s.plan.settings for s in self._all if s.plan.bus == bus), None)
+        switch = settings is not None and settings.data_bitrate is not None
+        return BusLog(bus, values, FrameLog(messages, self._kept.table()), switch)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...cosim.can.channel import SignalRoute
 from ...cosim.can.database import Message, Signal
-from ...cosim.can.frames import encoder
+from ...cosim.can.logs.frames import encoder
 from ...cosim.can.quantization import SignalOperation
 from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.dbc import load_dbc
-from evcosim.cosim.can.frames import encoder
+from evcosim.cosim.can.logs.frames import encoder
 from evcosim.cosim.can.pages import pages
 from evcosim.cosim.errors import ConfigError
 

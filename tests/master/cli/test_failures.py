@@ -57,7 +57,7 @@ SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
         (["run", "scooter", "--stop-time", "-1"], ["--stop-time -1.0 s is not after start_time 0.0 s"]),
         (["run", "scooter", "--stop-time", "0.015"], ["0.015 s is not a multiple", "0.01 s"]),
         (["run", "scooter", "--algorithm", "gauss"], ["'gauss'", "gauss_seidel"]),
-        (["run", "scooter", "--ideal", "--can-log"], ["--can-log and --ideal"]),
+        (["run", "scooter", "--ideal", "--can-log", "a.log"], ["--can-log and --ideal"]),
         (["run"], ["SYSTEM", "'evcosim run --help'"]),
         (["run", "scooter", "--scenari", "fig8"], ["--scenari", "'evcosim run --help'"]),
         (["rnu"], ["'rnu'", "'evcosim --help'"]),

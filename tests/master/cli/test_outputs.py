@@ -29,7 +29,7 @@ from support.small_disk import small_disk
 
 
 def test_files_of_an_earlier_run_do_not_stay(evcosim, tmp_path):
-    assert evcosim("run", "scooter", "--stop-time", "0.5", "--can-log", "-o", "out").code == 0
+    assert evcosim("run", "scooter", "--stop-time", "0.5", "--can-log", "can.log", "-o", "out").code == 0
     assert evcosim("run", "scooter", "--stop-time", "0.5", "--no-plot", "-o", "out").code == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"results.csv", "run.json", "report.html"}
 

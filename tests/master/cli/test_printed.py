@@ -54,7 +54,7 @@ COMMANDS = [
     ["check", "swap.toml", "--as", "marked.toml.bad", "--json"],
     ["check", "bad.fmu", "--as", "marked.toml.bad", "--try", "20ms"],
     ["run", "marked.toml", "-o", "out"],
-    ["run", "marked.toml", "-o", "out", "--json", "--can-log", "--replace"],
+    ["run", "marked.toml", "-o", "out", "--json", "--can-log", "can.asc", "--replace"],
     ["run", "marked.toml", "-s", SCENARIO, "-o", "out", "-q", "--replace", "--engine", "python"],
     ["run", "marked.toml", "-o", "alone", "--isolation", "none"],
     ["run", "marked.toml", "--set", "bad.gian=3"],

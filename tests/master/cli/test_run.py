@@ -16,7 +16,7 @@ from support.needs import need_linux
 
 
 def test_run_says_and_writes_what_happened(evcosim, tmp_path):
-    answer = evcosim("run", "scooter", "--stop-time", "3", "--can-log")
+    answer = evcosim("run", "scooter", "--stop-time", "3", "--can-log", "can.log", "--can-log", "can.pcapng")
     assert (answer.code, answer.err) == (0, "")
     for text in (
         "scooter fig8",
@@ -28,7 +28,7 @@ def test_run_says_and_writes_what_happened(evcosim, tmp_path):
     assert len(answer.out.splitlines()) < 24
     folder = tmp_path / "results" / "scooter-fig8"
     expected = {"results.csv", "run.json", "figure.png", "figure.svg", "report.html"}
-    expected |= {"can.log", "can.blf", "can.asc"}
+    expected |= {"can.log", "can.pcapng"}
     assert {path.name for path in folder.iterdir()} == expected
     assert "\nin results/scooter-fig8: results.csv, run.json" in answer.out
     manifest = json.loads((folder / "run.json").read_text(encoding="utf-8"))

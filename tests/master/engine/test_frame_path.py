@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from evcosim.cosim.can.bus_settings import BusSettings, BusVariation
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
-from evcosim.cosim.can.frames import encoder
 from evcosim.cosim.can.framing import Framing
+from evcosim.cosim.can.logs.frames import encoder
 from evcosim.cosim.errors import RunError
 from evcosim.cosim.plan.plan import MessagePlan
 from evcosim.cosim.system.system import system_names

@@ -107,7 +107,7 @@ def a_database(random: random.Random) -> Input:
             ["info", "s.toml"],
             ["run", "s.toml", *SHORT, "--no-plot", *engine],
             ["run", "s.toml", *SHORT, "--no-plot", *engine],
-            ["run", "s.toml", *SHORT, "--no-plot", "--can-log"],
+            ["run", "s.toml", *SHORT, "--no-plot", "--can-log", "can.asc"],
             ["check", "Scooter", "--as", "s.toml.vehicle"],
         )
     )

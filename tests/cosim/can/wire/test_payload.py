@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evcosim.cosim.can.database import Message, Signal
-from evcosim.cosim.can.frames import encoder
+from evcosim.cosim.can.logs.frames import encoder
 from evcosim.cosim.can.wire.payload import high_bits, low_bits, put, whole, words
 from support.framed import layouts
 
