@@ -25,6 +25,7 @@ def good_rows() -> list[float]:
     return y
 
 
+@pytest.mark.usefixtures("warm_units")
 @pytest.mark.parametrize(("case", "fmi"), [pytest.param(*key, id=f"{key[0].name}-{key[1]}") for key in CASES])
 def test_the_master_survives(tmp_path: Path, case: Case, fmi: int) -> None:
     need_linux()

@@ -115,15 +115,15 @@ def watched(folder: Path) -> Iterator[list[str]]:
         after = _state(folder)
         left += [f"{name}: {state[name]} -> {after[name]}" for name in state if state[name] != after[name]]
         left += [f"temporary {name}" for name in sorted(os.listdir(temporary))]
-        for process, command in _lasting(mark):
+        for process, command in _lasting(mark, folder):
             left.append(f"process {command}")
             os.kill(process, signal.SIGKILL)
 
 
-def _lasting(mark: str) -> list[tuple[int, str]]:
-    """The marked processes that are still there after a moment: the system takes one to end a killed one."""
+def _lasting(mark: str, folder: Path) -> list[tuple[int, str]]:
+    """The processes of a run that are there after a moment: the system takes one to end a killed one."""
     until = time.monotonic() + _ENDING
-    while (found := _marked(mark)) and time.monotonic() < until:
+    while (found := _of_the_run(mark, folder)) and time.monotonic() < until:
         time.sleep(0.02)
     return found
 
@@ -144,12 +144,16 @@ def _state(folder: Path) -> dict[str, Any]:
     }
 
 
-def _marked(mark: str) -> list[tuple[int, str]]:
-    """The processes that have the mark in their environment: number and command line."""
+def _of_the_run(mark: str, folder: Path) -> list[tuple[int, str]]:
+    """The processes that have the mark in their environment, or work in the folder: number and command line.
+
+    The mark is seen in those that were started; the folder in those that were forked, too.
+    """
     found = []
-    for folder in Path("/proc").glob("[0-9]*"):
+    for process in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
-            if mark.encode() in (folder / "environ").read_bytes():
-                line = (folder / "cmdline").read_bytes().replace(b"\0", b" ")
-                found.append((int(folder.name), line.decode("utf-8", "replace")))
+            here = os.readlink(process / "cwd").startswith(f"{folder}/")
+            if here or mark.encode() in (process / "environ").read_bytes():
+                line = (process / "cmdline").read_bytes().replace(b"\0", b" ")
+                found.append((int(process.name), line.decode("utf-8", "replace")))
     return found

@@ -11,6 +11,8 @@ from evcosim.cosim.system.system import MapTables, UnitEntry, load_system
 from evcosim.master.studies.trial.trial import Trial, try_unit
 from support.c_fmu import mixed_fmu, vehicle_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 MAP = {
     "inputs": {"throttle": "pedal", "brake_force": {"variable": "F_brake", "invert": True}},
     "outputs": {"speed": {"variable": "v", "unit": "m/s"}, "power": "P", "distance": "s"},
