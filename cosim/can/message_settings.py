@@ -5,10 +5,40 @@ A new setting of a message is a key of MessageSettings; what acts on it asks `Bu
 
 from __future__ import annotations
 
+from typing import Annotated, Literal
+
 from pydantic import BaseModel, ConfigDict, Field
 
 SLOWEST = 3600.0
 """The longest cycle time and start delay [s] that a system file gives a message."""
+
+
+_DataId = Annotated[int, Field(ge=0, le=0xFFFF)]
+
+
+class E2eSettings(BaseModel):
+    """End-to-end protection of a message by a profile of AUTOSAR: what fills its checksum and its counter."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    profile: Literal["1A", "1B", "1C", "2", "5"]
+    """The profile; 1A, 1B and 1C are profile 1 with both bytes of the data ID in the checksum, with one by
+    turns, and with the low one alone."""
+
+    data_id: _DataId | list[_DataId]
+    """Number that sender and receiver know, from 0 to 65535; profile 2 has 16 from 0 to 255."""
+
+    crc: str
+    """The signal of the checksum: 8 bits that are one byte, in profile 5 16 that are two, low byte first."""
+
+    counter: str
+    """The signal of the counter: 4 bits, in profile 5 8."""
+
+    nibble: str | None = None
+    """The signal of 4 bits that has a part of the data ID, in profile 1C."""
+
+    max_delta: int = Field(default=1, ge=1, le=255)
+    """Steps of the counter from one frame that is taken to the next, one more for each cycle without."""
 
 
 class MessageSettings(BaseModel):
@@ -28,3 +58,18 @@ class MessageSettings(BaseModel):
 
     fd: bool | None = None
     """Send it as a CAN FD frame (true) or as a classic one (false); without it as the bus' `fd` says."""
+
+    timeout: int | None = Field(default=None, ge=1, le=10**6)
+    """Cycles without a frame that is taken until the receivers get what `on_timeout` says."""
+
+    on_timeout: Literal["hold", "initial", "sna"] = "hold"
+    """Values of the receivers after a timeout: the last ones (hold), those before the first frame (initial),
+    or those of the signals' "not available" codes, where they have one (sna)."""
+
+    e2e: E2eSettings | None = None
+    """Protection by counter and checksum: frames that break it are not taken."""
+
+    status: list[str] = []
+    """Inputs that receive the status of the last frame, as "unit.input": with `e2e` 0 ok, 1 no new data,
+    2 wrong CRC, 4 the first one, 8 repeated, 32 some lost, 64 wrong sequence; with `timeout`
+    alone 1 after one."""

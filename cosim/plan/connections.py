@@ -316,7 +316,11 @@ def _message(
     delay = 0
     if settings.timing == "instant":
         delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
-    framing = framing_of(message, settings)
+    where = f"{work.system.path}: buses.{bus}"
+    framing = framing_of(message, settings, [route.signal.name for route in routes], where)
+    if framing is not None:
+        own = settings.of_message(name)
+        framing = dataclasses.replace(framing, status=_status_inputs(work, own.status, message, where))
     check_jitter(message, settings, every * settings.cycle * step_size, f"{work.system.path}: buses.{bus}")
     senders = work.senders[bus, name]
     after = None
@@ -350,6 +354,21 @@ def _message(
             framing=framing,
             page=page.selected,
         )
+
+
+def _status_inputs(work: _Connector, names: Sequence[str], message: Message, place: str) -> tuple[int, ...]:
+    """Return the mailboxes of the inputs that receive a message's status; those left out have none."""
+    place = f"{place}.messages.{message.name}.status"
+    found = []
+    for full in names:
+        if full.partition(".")[0] not in work.system.file.units:
+            raise ConfigError(f"{place}: there is no unit of '{full}'{nearest(full, work.interfaces)}")
+        if full.partition(".")[0] in work.interfaces:
+            unit, name = _split(full, ("input",), work.interfaces, place)
+            check_no_text(full, _variable(work, (unit, name)), f"the status of {message.name}", place)
+            work.network.drive(full, InputPlan(work.slots.valid[unit, name], None, ""), place)
+            found.append(work.network.add_mailbox(unit, name, work.slots, f"the status of {message.name}"))
+    return tuple(found)
 
 
 def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:

@@ -90,6 +90,12 @@ class MessagePlan:
     page: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
     @property
+    def watched(self) -> bool:
+        """True where somebody looks, once a cycle, whether a frame came."""
+        own = self.settings.of_message(self.message.name)
+        return self.framing is not None and self.framing.watched(own)
+
+    @property
     def timed(self) -> bool:
         """True where its frames take time on the bus."""
         return self.settings.timing == "frame"

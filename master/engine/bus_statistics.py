@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...cosim.can.protection.counters import STATUSES
 from ...cosim.can.wire import tables as T
 from .frame_path import FramePath
 
@@ -33,7 +34,8 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     messages, state = frames.arrays["messages"], frames.arrays["state"]
     elapsed = max(1, steps * int(state[T.STEP_TIME]))
-    for row, sender in zip(messages, frames.senders, strict=False):
+    for i, sender in enumerate(frames.senders):
+        row = messages[i]
         about = found.setdefault(sender.plan.bus, {"load": 0.0, "messages": {}, "nodes": {}})
         load = float(row[T.BUSY]) / elapsed
         about["load"] += load
@@ -42,12 +44,24 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
             "load": load,
             **{name: int(row[column]) for name, column in _COUNTS.items()},
             "latency": _times(row, T.LATENCY_LEAST, int(row[T.CARRIED])),
+            **_judged(row, frames.arrays["verdicts"][i]),
             "seen": _times(row, T.SEEN_LEAST, int(row[T.ARRIVED])),
         }
     for (bus, node), row in zip(frames.nodes, frames.arrays["nodes"], strict=False):
         found[bus]["nodes"][node] = {
             "tec": int(row[T.ERROR_COUNT]), "rec": int(row[T.RECEIVE_COUNT]), "bus_off": int(row[T.BUS_OFFS]),
         }  # fmt: skip # a row
+    return found
+
+
+def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the counts of timeouts, of frames that were not taken and of statuses, where there are any."""
+    found: dict[str, Any] = {}
+    if row[T.TIMEOUT]:
+        found["timeouts"] = int(row[T.TIMEOUTS])
+    if row[T.PROFILE]:
+        found["rejected"] = int(row[T.REJECTED])
+        found["statuses"] = {name: int(verdicts[code]) for code, name in STATUSES.items() if verdicts[code]}
     return found
 
 

@@ -178,7 +178,7 @@ class Engine:
         self.ending = Ending()
         self.turns = [Turn(units[p.name], p, self.view, plan.clock, self.ending) for p in plan.units]
         self.senders = senders_of(plan, self.view, self.late, log_raw)
-        self.frames = FramePath(self.senders, self.memory, plan.clock.step, log_raw)
+        self.frames = FramePath(self.senders, self.memory, plan.clock.step, log_raw, plan.initial)
         self._events = list(plan.events)
         self._turn_of_input = {
             group.slot + i: turn

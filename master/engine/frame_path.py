@@ -6,7 +6,7 @@ module, the compiled engine has them in machine code.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +27,16 @@ class FramePath:
     """The frames of those messages of `senders`, all of a run, that have a framing.
 
     `memory` is the run's, shape (size,), `step` [s] its step. With `logs` the frames are kept for `log_of`.
+    `initial` are the values of mailboxes before the first frame, by slot.
     """
 
     def __init__(
-        self, senders: Sequence[Sender], memory: NDArray[np.float64], step: float, logs: bool
+        self,
+        senders: Sequence[Sender],
+        memory: NDArray[np.float64],
+        step: float,
+        logs: bool,
+        initial: Mapping[int, float] | None = None,
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
@@ -38,7 +44,7 @@ class FramePath:
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}
-        self.arrays = wire_arrays(self.senders, memory, step, logs)
+        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {})
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
@@ -57,11 +63,13 @@ class FramePath:
                 if action.kind == "arrive"
                 else (T.CONTEND, int(bus))
             )
-        if action.kind not in ("send", "deliver") or action.index not in self._rows:
+        if action.kind not in ("send", "deliver", "watch") or action.index not in self._rows:
             return None
         row = self._rows[action.index]
         if action.kind == "send":
             return T.SEND, row
+        if action.kind == "watch":
+            return T.WATCH, row
         return T.ARRIVE, int(self.arrays["messages"][row, T.RING])
 
     def help(self, what: int, i: int, k: int) -> int:

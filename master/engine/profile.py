@@ -13,7 +13,7 @@ Part = tuple[str, str]
 
 _WHAT: dict[Kind, str] = {
     "drive": "drive", "arrive": "channel", "contend": "channel",
-    "deliver": "channel", "send": "channel", "take": "set", "begin": "set and step",
+    "deliver": "channel", "watch": "channel", "send": "channel", "take": "set", "begin": "set and step",
     "end": "get", "record": "record", "note": "note texts", "publish": "get",
 }  # fmt: skip # a table
 
@@ -35,7 +35,7 @@ def part_of(action: Action, plan: Plan, what: str = "", apart: bool = False) -> 
         name = "results"
     elif action.kind in ("arrive", "contend"):
         name = plan.timed_buses[action.index]
-    elif action.kind in ("send", "deliver"):
+    elif action.kind in ("send", "deliver", "watch"):
         message = plan.messages[action.index]
         name = f"{message.bus}.{message.message.name}"
     else:

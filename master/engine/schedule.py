@@ -24,13 +24,25 @@ one communication step to arrive.
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Literal
 
 from ...cosim.plan.plan import MessagePlan, Plan
 from ...cosim.plan.turns import cut_short
 
 Kind = Literal[
-    "drive", "arrive", "deliver", "send", "take", "begin", "end", "contend", "record", "note", "publish"
+    "drive",
+    "arrive",
+    "deliver",
+    "send",
+    "watch",
+    "take",
+    "begin",
+    "end",
+    "contend",
+    "record",
+    "note",
+    "publish",
 ]
 
 
@@ -45,6 +57,7 @@ class Action:
         deliver   copy the values that the message sampled `delay` steps ago to the mailboxes, or unpack the
                   frame that was sent then
         send      sample the message and write its values to the mailboxes (with a delay: waiting slots too)
+        watch     look whether a frame of the message came in this cycle
         take      write the unit's inputs from their routes
         begin     apply overrides and biases, set the unit's inputs, read the outputs with direct feedthrough,
                   and begin the step
@@ -76,7 +89,7 @@ def schedule(plan: Plan) -> tuple[Action, ...]:
     # 1. the stimuli at t_k
     drives = [Action("drive", i) for i in range(len(plan.drives))]
     # the frames that ended by t_k
-    arrive = [Action("arrive", i) for i in range(len(plan.timed_buses))]
+    arrive = [Action("arrive", i) for i in range(len(plan.timed_buses))] + _timed_watches(plan)
     # 2. and 3. messages and units, as the algorithm orders them
     steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
     # the frames that start before t_k+1; all that were queued at t_k contend, whichever turn sent them
@@ -129,9 +142,23 @@ def _messages(plan: Plan, after: int | None) -> list[Action]:
 def _message(plan: Plan, index: int) -> list[Action]:
     message = plan.messages[index]
     send = Action("send", index, message.every, message.first)
-    if not message.delay:
+    watch = [Action("watch", index, message.every, message.first + message.delay)] if message.watched else []
+    if message.timed:
         return [send]
-    return [dataclasses.replace(send, kind="deliver", first=message.first + message.delay), send]
+    if not message.delay:
+        return [send, *watch]
+    deliver = dataclasses.replace(send, kind="deliver", first=message.first + message.delay)
+    return [deliver, *watch, send]
+
+
+def _timed_watches(plan: Plan) -> list[Action]:
+    """Return the actions that look at messages whose frames take time, from one cycle after the first on."""
+    found = []
+    for i, message in enumerate(plan.messages):
+        if message.timed and message.watched:
+            late = math.ceil(message.settings.delay / plan.clock.step)
+            found.append(Action("watch", i, message.every, message.first + message.every + late))
+    return found
 
 
 @dataclasses.dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, assert_never
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...cosim.can.channel import SignalRoute
 from ...cosim.can.database import Message, Signal
 from ...cosim.can.logs.frames import encoder
-from ...cosim.can.quantization import SignalOperation
+from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.tables import Wire
@@ -28,17 +28,26 @@ _MOST_BITS = 1024  # no frame is longer
 _LOG_ROWS = 1024  # frames that are logged between two calls of Python
 
 
-def wire_arrays(senders: Sequence[Sender], memory: NDArray[np.float64], step: float, logs: bool) -> Arrays:
+def wire_arrays(
+    senders: Sequence[Sender],
+    memory: NDArray[np.float64],
+    step: float,
+    logs: bool,
+    initial: Mapping[int, float] | None = None,
+) -> Arrays:
     """Return the tables of the messages of `senders`; message i is that of sender i.
 
     They stand bus by bus, on each in the order in which they win it. `memory` is the run's, shape (size,);
     `step` [s] that of the run. `logs`: frames are logged.
+    `initial` are the values of mailboxes before the first frame, by slot.
     """
     plans = [sender.plan for sender in senders]
     made: Arrays = {
         "messages": _table(len(plans), T.MESSAGE),
         "base": _table(len(plans), T.BYTES),
         "waiting": _table(len(plans), T.BYTES),
+        "verdicts": _table(len(plans), T.VERDICTS),
+        "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
         "memory": memory,
         "frame": np.zeros(T.BYTES, dtype=np.int64),
@@ -49,13 +58,15 @@ def wire_arrays(senders: Sequence[Sender], memory: NDArray[np.float64], step: fl
     made["single_bits"], made["double_bits"] = made["single"].view(np.int32), made["double"].view(np.int64)
     made["state"][T.STEP_TIME] = picoseconds(step)
     _add_signals(made, senders)
+    _add_fallback(made, plans, initial or {})
+    _add_protection(made, plans)
     _add_buses(made, plans, step)
     _add_rings(made, plans)
     same = [(plan.bus, key_of(plan.message)) for plan in plans]
     for i, plan in enumerate(plans):
         pages = {T.PAGE: i - same.index(same[i]), T.PAGES: same.count(same[i])}
         _fill(made["messages"], i, _message_row(plan) | pages | {T.LOGGED: logs})
-        made["base"][i, : plan.message.length] = list(_base(plan.message, plan.routes))
+        made["base"][i, : plan.message.length] = list(_base(plan))
     return made
 
 
@@ -125,10 +136,54 @@ def views(arrays: Arrays, helper: Any) -> Wire:
     return Wire(**{name: array.data for name, array in arrays.items()}, helper=helper)
 
 
-def _base(message: Message, routes: Sequence[SignalRoute]) -> bytes:
-    """Return the payload with the start values of signals that no connection feeds, and 0 in all others."""
-    start = {signal.name: signal.start_raw for signal in message.signals.values()}
-    return encoder(message)(start | {route.signal.name: 0 for route in routes})
+def _base(plan: MessagePlan) -> bytes:
+    """Return the payload with the start values of signals that nothing fills, and 0 in all others."""
+    start = {signal.name: signal.start_raw for signal in plan.message.signals.values()}
+    filled = [route.signal for route in plan.routes]
+    if plan.framing is not None and plan.framing.protection is not None:
+        filled += plan.framing.protection.signals
+    return encoder(plan.message)(start | {signal.name: 0 for signal in filled})
+
+
+def _add_fallback(made: Arrays, plans: Sequence[MessagePlan], initial: Mapping[int, float]) -> None:
+    """Add what receivers get after a timeout, for each row of sinks; NaN: the last value."""
+    found: list[float] = []
+    for plan in plans:
+        choice = plan.settings.of_message(plan.message.name).on_timeout
+        for route in plan.routes:
+            code = route.signal.not_available
+            for slot, map_ in route.sinks:
+                value = math.nan
+                if choice == "initial":
+                    value = initial.get(slot, math.nan)
+                elif choice == "sna" and code is not None:
+                    value = map_(decode(route.signal, code))
+                found.append(value)
+    made["fallback"] = np.array(found or [math.nan])
+
+
+def _add_protection(made: Arrays, plans: Sequence[MessagePlan]) -> None:
+    """Add the protection of messages, their timeouts, and the inputs that receive their status."""
+    statuses: list[int] = []
+    for i, plan in enumerate(plans):
+        if plan.framing is None:
+            continue
+        own, slots = plan.settings.of_message(plan.message.name), plan.framing.status
+        row: dict[int, Any] = {T.TIMEOUT: own.timeout or 0, T.LAST: -1}
+        row |= {T.FIRST_STATUS: len(statuses), T.STATUSES: len(slots)}
+        statuses += slots
+        if (protection := plan.framing.protection) is not None:
+            made["ids"][16 * i : 16 * i + len(protection.ids)] = protection.ids
+            start, little = place_of(protection.counter)
+            row |= {
+                T.PROFILE: protection.profile, T.CRC_AT: protection.crc.start // 8,
+                T.COUNTER_START: start, T.COUNTER_LITTLE: little, T.COUNTER_BITS: protection.counter.length,
+                T.MAX_DELTA: protection.max_delta, T.GAP: protection.max_delta,
+            }  # fmt: skip # a row
+            if protection.nibble is not None:
+                row[T.NIBBLE_START], row[T.NIBBLE_LITTLE] = place_of(protection.nibble)
+        _fill(made["messages"], i, row)
+    made["statuses"] = np.array(statuses or [0], dtype=np.int64)
 
 
 def _add_signals(made: Arrays, senders: Sequence[Sender]) -> None:

@@ -57,6 +57,13 @@ timing = "frame"
 [buses.can0.messages.EMD_Status]
 cycle_time = 0.01
 jitter = 0.001
+timeout = 3
+[buses.can0.messages.EMD_Status.e2e]
+profile = "2"
+data_id = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]
+crc = "EMD_Crc"
+counter = "EMD_Counter"
+max_delta = 1
 [[connect]]
 from = "vehicle.speed"
 to = ["ecu.speed_measured"]

@@ -12,6 +12,8 @@ BO_ 256 VCU_Request: 2 VCU
  SG_ VCU_ThrottleRequest : 0|8@1+ (0.4,0) [0|100] "%" EMD
 BO_ 328 EMD_Status: 8 EMD
  SG_ EMD_VehicleSpeed : 0|8@1+ (1,0) [0|254] "km/h" VCU
+ SG_ EMD_Crc : 8|8@1+ (1,0) [0|255] "" VCU
+ SG_ EMD_Counter : 16|4@1+ (1,0) [0|14] "" VCU
 BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
 BA_DEF_ SG_ "GenSigSNA" INT -32768 65535;
 BA_DEF_DEF_ "GenMsgCycleTime" 10;

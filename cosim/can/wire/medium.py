@@ -8,6 +8,7 @@ from ..timing.draws import drawn
 from . import tables as T
 from .arbitration import contend, number_of
 from .log import log
+from .protect import accepted, protect, watch
 from .tables import Wire
 from .values import pack, sample, unpack
 
@@ -19,6 +20,7 @@ def send(w: Wire, i: int, k: int) -> int:
     if sample(w, i, k) != T.DONE:
         return T.RAISED
     pack(w, i)
+    protect(w, i)
     m, now = w.messages, k * w.state[T.STEP_TIME]
     m[i, T.SENT] += 1
     m[i, T.INSTANCE] += 1
@@ -112,7 +114,7 @@ def deliver(w: Wire, i: int, k: int, sampled: int) -> int:
     m = w.messages
     note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
     m[i, T.ARRIVED] += 1
-    return unpack(w, i, k)
+    return unpack(w, i, k) if accepted(w, i) else T.DONE
 
 
 def note(m: Any, i: int, least: int, time: int, before: int) -> None:
@@ -128,7 +130,7 @@ def note(m: Any, i: int, least: int, time: int, before: int) -> None:
 
 
 def act(w: Wire, what: int, i: int, k: int) -> int:
-    """Do an action of step k: SEND message i, let the frames of ring i ARRIVE, let those of bus i CONTEND.
+    """Do an action of step k: SEND or WATCH message i, let the frames of ring i ARRIVE or of bus i CONTEND.
 
     Return DONE or RAISED.
     """
@@ -136,4 +138,7 @@ def act(w: Wire, what: int, i: int, k: int) -> int:
         return send(w, i, k)
     if what == T.ARRIVE:
         return arrive(w, i, k)
+    if what == T.WATCH:
+        watch(w, i)
+        return T.DONE
     return run_bus(w, i, k)

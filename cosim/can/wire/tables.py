@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 class Wire(NamedTuple):
     """The tables, each a two-dimensional array (for Python a memoryview) but for those in one dimension.
 
-    `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64; `frame`, the
-    bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double` (float64)
-    with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
+    `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64, as
+    `fallback`, which has a number for each row of sinks; `ids`, 16 data IDs of each message; `statuses`;
+    `frame`, the bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double`
+    (float64) with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
     """
 
     messages: Any
@@ -32,9 +33,13 @@ class Wire(NamedTuple):
     buses: Any
     nodes: Any
     chances: Any
+    verdicts: Any
     log: Any
+    fallback: Any
     memory: Any
     frame: Any
+    ids: Any
+    statuses: Any
     single: Any
     single_bits: Any
     double: Any
@@ -61,7 +66,18 @@ by a wire error, and that arrived; the time that the bus was busy with them."""
 """Time from the sampling to the end of the frame; and to the communication point at which it is seen."""
 (PAGE, PAGES) = range(31, 33)
 """Which of the pages of a multiplexed message it is, and the number of them; they have one buffer."""
-MESSAGE = 33
+(PROFILE, CRC_AT, COUNTER_START, COUNTER_BITS, COUNTER_LITTLE, NIBBLE_START, NIBBLE_LITTLE) = range(33, 40)
+(MAX_DELTA, COUNTER, LAST, GAP, REJECTED) = range(40, 45)
+"""The profile of its protection (0: none), the byte of its checksum, the layouts of counter and of profile
+1C's nibble; the greatest step of the counter, the next one to send, the last that was taken and the greatest
+step at present (`protection.counters`); the number of frames that were not taken."""
+(TIMEOUT, MISSED, TIMED_OUT, TIMEOUTS, FRESH, TAKEN, FIRST_STATUS, STATUSES) = range(45, 53)
+"""Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
+it, and how often that was; 1 if a frame came, and was taken, since `watch` looked; STATUSES slots of inputs
+from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
+MESSAGE = 53
+VERDICTS = 0x41
+"""Columns of `verdicts`, the number of frames of each message by the number of their status."""
 
 # ---- columns of signals
 
@@ -127,5 +143,5 @@ RAW, VALUE, FLUSH = range(3)
 """The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log."""
 DONE, RAISED = range(2)
 
-SEND, ARRIVE, CONTEND = range(3)
+SEND, ARRIVE, CONTEND, WATCH = range(4)
 """Actions of a step."""

@@ -9,11 +9,15 @@ import pytest
 from evcosim.master.engine.schedule import Action, Waiting, schedule, waiting
 
 
-def message(after=None, every=1, first=0, delay=0, width=2):
+def message(after=None, every=1, first=0, delay=0, width=2, **more):
     arrivals = [(10 + i, 20 + i) for i in range(width if delay else 0)]
-    return SimpleNamespace(
-        framing=None, after=after, every=every, first=first, delay=delay, arrivals=arrivals
-    )
+    values = {
+        "framing": None,
+        "timed": False,
+        "watched": False,
+        "settings": SimpleNamespace(delay=0.015),
+    } | more
+    return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals, **values)
 
 
 def plan(
@@ -22,7 +26,7 @@ def plan(
     units = [SimpleNamespace(every=every) for every in periods]
     return SimpleNamespace(
         algorithm=algorithm,
-        clock=SimpleNamespace(steps=steps, told=told),
+        clock=SimpleNamespace(steps=steps, told=told, step=0.01),
         units=units,
         messages=messages,
         timed_buses=timed,
@@ -46,6 +50,17 @@ def test_timed_buses_arrive_before_all_messages_and_contend_behind_all_turns(alg
     actions = words(schedule(plan(algorithm, messages=[message()], drives=1, timed=("a", "b"))))
     assert actions.startswith("drive0 arrive0 arrive1 send0 take0")
     assert actions.endswith("end1 contend0 contend1 record publish0 publish1")
+
+
+def test_a_message_is_watched_once_a_cycle_behind_what_brings_it():
+    watched = message(every=5, first=2, watched=True, framing=1)
+    late = message(every=5, first=2, delay=3, watched=True, framing=1)
+    timed = message(every=5, first=2, watched=True, framing=1, timed=True)
+    assert words(schedule(plan(messages=[watched]))).startswith("send0 watch0 take0")
+    assert words(schedule(plan(messages=[late]))).startswith("deliver0 watch0 send0 take0")
+    actions = schedule(plan(messages=[timed], timed=("a",)))
+    assert words(actions).startswith("arrive0 watch0 send0 take0")
+    assert actions[1] == Action("watch", 0, 5, 2 + 5 + 2)  # a cycle and the bus' delay after the first one
 
 
 def test_gauss_seidel_sends_first_then_takes_each_unit_with_its_discrete_messages():
