@@ -38,6 +38,7 @@ _ABOUT_VEHICLE = (
 _ABOUT_DELAY = "Beyond the paper: brakes later than the published 10 ms (ideal signals)"
 _OTHER_SLIPS = (0.1, 0.5, 0.9)  # the last is chosen for a misprint
 _SLIPS = np.linspace(0.0, 1.0, 201)
+_HALF_A_SECOND = 0.5
 
 
 def pictures(
@@ -50,7 +51,7 @@ def pictures(
         Picture("psi-roads", _ABOUT_PSI, _psi()),
         Picture("propositions", _ABOUT_PROPOSITIONS, _portraits()),
         *braking_maneuvers.pictures(found),
-        Picture("lock", "Fig. 5 enlarged: the first half second", _lock(found["estimated_speed"])),
+        _lock(found["estimated_speed"]),
         Picture("vehicle", _ABOUT_VEHICLE, _vehicle(found, heights, inertias)),
         Picture("delay", _ABOUT_DELAY, _delay(found, extra)),
     )
@@ -160,10 +161,14 @@ def _portraits() -> Any:
     return figure
 
 
-def _lock(results: Results) -> Any:
-    figure = figures.draw(results, results.figure, title="Braking: (b) full slip control, speed estimated")
-    figure.axes[0].set_xlim(0.0, 0.5)  # all panels share it
-    return figure
+def _lock(results: Results) -> Picture:
+    rows = slice(int(np.searchsorted(results.time, _HALF_A_SECOND, "right")))
+    begin = results.part(rows, results.names)
+    title = "Braking: (b) full slip control, speed estimated"
+    if results.figure is None:
+        raise ValueError("the run has no figure")
+    spec = results.figure.model_copy(update={"title": title, "until": None, "note": None})
+    return Picture.over_time("lock", "Fig. 5 enlarged: the first half second", begin, spec)
 
 
 def _vehicle(found: dict[str, Any], heights: Sequence[float], inertias: Sequence[float]) -> Any:
