@@ -48,7 +48,12 @@ def check_alone(options: RunOptions) -> None:
     """Raise ConfigError for an option of a system's run that is for an FMU by itself."""
     for name in ALONE:
         if options.get(name):
-            raise ConfigError(f"{name} is for an FMU by itself; what a system takes stands in its files")
+            instead = (
+                "a [[stimulus]] of a scenario drives an input of a system; where nothing does, a start value "
+                "(--start, in Python `start`) is a constant"
+            )
+            said = instead if name == "inputs" else "what a system takes stands in its files"
+            raise ConfigError(f"{name} is for an FMU by itself; {said}")
 
 
 def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System, Scenario, RunOptions]:

@@ -236,7 +236,9 @@ def _over_bus(
     key = (bus, message.name)
     senders = work.senders.setdefault(key, {})
     if signal.name in senders:
-        raise ConfigError(f"{place}: {connection.via} is sent already, by {senders[signal.name]}")
+        first = senders[signal.name]
+        more = "; name all its receivers in the `to` of that connection" if first == connection.source else ""
+        raise ConfigError(f"{place}: {connection.via} is sent already, by {first}{more}")
     for other, sender in senders.items():
         check_one_sender(work.system, message, (source[0], sender.split(".")[0]), (signal.name, other), place)
     senders[signal.name] = connection.source

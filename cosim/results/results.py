@@ -24,7 +24,7 @@ from .folder_lock import MANIFEST_NAME, status
 from .formats.format import Format
 from .formats.suffixes import CSV, format_of, reader_of
 from .manifest import check_whole, read_manifest, write_manifest
-from .rows_file import ROWS_NAME
+from .rows_file import ROWS_NAME, file_of_run
 from .rows_file import read as read_rows
 from .text_rows import TEXT_ROWS_NAME, read_text_rows
 from .text_table import TextTable, read_texts, write_texts
@@ -291,8 +291,7 @@ class Results:
         check_name(path)
         path = Path(path)
         if path.is_dir():
-            rows, path = path / ROWS_NAME, path / CSV_NAME
-            path = rows if rows.exists() and not path.exists() else path
+            path = file_of_run(path, CSV_NAME)
         if path.name == ROWS_NAME:
             return _of_rows(path)
         held = reader_of(path).read(path)

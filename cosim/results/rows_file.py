@@ -31,6 +31,21 @@ _FORMAT = "evcosim rows 1"
 _LONGEST = 1 << 28  # bytes of the line
 
 
+def file_of_run(folder: Path, whole: str) -> Path:
+    """Return the file with the rows of a run's folder: that of the `whole` run, or results.rows.
+
+    Raises ConfigError for a folder without either, naming those below it that have results.
+    """
+    path, rows = folder / whole, folder / ROWS_NAME
+    if path.exists():
+        return path
+    if rows.exists():
+        return rows
+    below = sorted(f.parent for pattern in ("*", "*/*") for f in folder.glob(f"{pattern}/{whole}"))
+    there = f"; it has {', '.join(map(str, below[:5]))}" if below else ""
+    raise ConfigError(f"{folder}: is a folder without results of a run ({whole}){there}")
+
+
 def head(clock: Clock, variables: Sequence[ResultVariable], manifest: Mapping[str, Any]) -> bytes:
     """Return the begin of the file of a run whose rows are at the times of a clock."""
     about = {

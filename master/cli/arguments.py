@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from ...cosim.errors import ConfigError
@@ -31,7 +32,12 @@ def parse_settings(
             raise ConfigError(f"{typed} {option}: it is written {written}")
         _note(given, typed, option, name)
         values[name] = scalar(text)
+        if isinstance(values[name], str) and text[0] not in "\"'" and _TWO.search(text):
+            raise ConfigError(f"{typed} {option}: two values; {typed} is given for each of them")
     return values
+
+
+_TWO = re.compile(r"[,;\s]\s*[A-Za-z_][\w.\[\]]*\s*=")  # another name and '=' behind a value
 
 
 def parse_inputs(options: Sequence[str]) -> dict[str, Value | Path]:
@@ -102,9 +108,14 @@ def as_typed(
     fmus: Sequence[str] = (),
     inputs: Sequence[str] = (),
     starts: Sequence[str] = (),
+    *,
+    names: Mapping[str, str | None] | None = None,
 ) -> Iterator[None]:
-    """Put the option that was typed into an error: `--set` for its parameter, `--fmu` for its unit."""
-    places: dict[str, str] = {}
+    """Put the option that was typed into an error: `--set` for its parameter, `--fmu` for its unit.
+
+    `names` are options of one name each: `input` with the text of `--input`.
+    """
+    places = {f"{name} {text}:": f"--{name} {text}:" for name, text in (names or {}).items() if text}
     for word, flag, given in (("parameter", "--set", settings), ("start", "--start", starts)):
         for option in given:
             typed = f"{flag} {option}:"
@@ -136,8 +147,6 @@ def _name(option: str) -> str:
 
 def seconds(option: str, text: str) -> float:
     """Return the time [s] that is written as "5s", "500ms" or "5". Raises ConfigError."""
-    import re
-
     found = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ms|s|)\s*", text)
     value = float(found[1]) * (1e-3 if found[2] == "ms" else 1.0) if found else 0.0
     if not 0.0 < value <= 3600.0:

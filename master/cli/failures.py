@@ -130,10 +130,21 @@ def _judged(error: Exception) -> tuple[int, str]:
     return FAILED, f"unexpected error: {type(error).__name__}{said}\n--debug shows where it happened"
 
 
+_NUMBERS = {
+    "Input should be a valid number, unable to parse string as a number": (
+        "a number is needed, as 10 or 0.5, without a unit of measure"
+    ),
+    "Input should be a valid integer, unable to parse string as an integer": "a whole number is needed",
+}
+"""Sentences of pydantic on a text that is no number, each with the one that is said."""
+
+
 def _usage(error: Any) -> str:
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "evcosim"
     message = error.format_message().replace("Value error, ", "")  # typer shows what pydantic says
+    for said, rule in _NUMBERS.items():
+        message = message.replace(said, rule)
     return f"{message}\n'{path} --help' shows how it is used"
 
 

@@ -98,6 +98,7 @@ def identify(
     from ...cosim.analysis.sweep import sweep_of
     from ...cosim.results.repeat import given_options
     from ..studies.identification_target import is_fmu
+    from .arguments import as_typed
     from .failures import complain
     from .studies import study_folder
 
@@ -106,7 +107,9 @@ def identify(
         "amplitude": amplitude, "duration": duration, "repeats": repeats,
         "sweep": _pair(sweep, "--sweep"), "band": _pair(band, "--band"),
     }  # fmt: skip # related options side by side
-    spec = _spec(target, scenario, {key: value for key, value in given.items() if value not in (None, [])})
+    ends = {"input": input, "output": output}
+    with as_typed((), names=ends):
+        spec = _spec(target, scenario, {k: value for k, value in given.items() if value not in (None, [])})
     sweep_of(spec)
     if is_fmu(target):
         _check_options_of_one_fmu(target, options)
@@ -116,7 +119,8 @@ def identify(
     named = (*_names(target, scenario), "identify")
     where, remarks = study_folder(folder, named, DATA, kept, "--output-folder")
     bar = not (as_json or quiet)
-    found = _measure(target, spec, scenario, (settings or [], starts or []), options, bar)
+    with as_typed(settings or [], starts=starts or [], names=ends):
+        found = _measure(target, spec, scenario, options, bar)
     files = _write(where, found, not no_plot, kept)
     _report(found, where, files, as_json, quiet)
     for remark in remarks:
@@ -209,20 +213,14 @@ def _measure(
     target: str,
     spec: IdentificationSpec,
     scenario: str | None,
-    given: tuple[Sequence[str], Sequence[str]],
     options: RunOptions,
     bar: bool,
 ) -> list[Identification]:
-    """Identify the target at each working point of the spec, with a bar over all of them.
-
-    `given` are the options `--set` and `--start`.
-    """
+    """Identify the target at each working point of the spec, with a bar over all of them."""
     from ..studies.identification import each_working_point, identify
-    from .arguments import as_typed
     from .console import progress_bar
     from .interrupts import Interrupts
 
-    settings, starts = given
     points = each_working_point(spec)
     found = []
     with Interrupts() as interrupts, progress_bar(target, 0.0, float(len(points)), bar) as show:
@@ -233,8 +231,7 @@ def _measure(
                 show(done + begin + length * share)
                 interrupts.check()
 
-            with as_typed(settings, starts=starts):
-                found.append(identify(target, point, scenario, progress=progress, **options))
+            found.append(identify(target, point, scenario, progress=progress, **options))
     return found
 
 

@@ -62,7 +62,8 @@ def test_ideal_leaves_the_bus_out():
         ),
         ([SENT | {"via": "can0.EMD_Status.EMD_Speed"}], "no signal 'EMD_Speed'"),
         ([SENT | {"from": "car.force"}], r"car.force \[N\] cannot feed .* \[km/h\]"),
-        ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed"),
+        ([SENT, SENT | {"from": "ecu.throttle", "to": []}], "is sent already, by car.speed$"),
+        ([SENT, SENT | {"to": []}], "is sent already, by car.speed; name all its receivers in the `to`"),
         (
             [SENT, {"from": "ecu.throttle", "via": "can0.EMD_Status.EMD_Power", "factor": 1.0}],
             r"EMD_Status.EMD_Power is sent by unit 'ecu', and EMD_Status.EMD_VehicleSpeed by 'car': one node",

@@ -139,6 +139,8 @@ def test_results_without_a_row_read_back(tmp_path: Path) -> None:
 
 def test_a_missing_file_and_broken_companions_are_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"results.csv: cannot be read: No such file"):
+        Results.read(tmp_path / "results.csv")
+    with pytest.raises(ConfigError, match=r": is a folder without results of a run \(results\.csv\)$"):
         Results.read(tmp_path)
     some().write(tmp_path)
     (tmp_path / "results.csv").write_bytes(b"time,\x81\n0,1\n")

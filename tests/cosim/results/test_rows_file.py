@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.results import Results
-from evcosim.cosim.results.rows_file import head, read
+from evcosim.cosim.results.rows_file import file_of_run, head, read
 from evcosim.cosim.results.variable import ResultVariable
 
 VARIABLES = [ResultVariable("a.x", "m/s"), ResultVariable("b.n", type="Integer", variability="discrete")]
@@ -73,3 +73,15 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 def test_a_run_that_records_nothing_has_no_rows(tmp_path: Path) -> None:
     (tmp_path / "results.rows").write_bytes(head(Clock.counted(0.0, 0.1, 4), [], {}))
     assert read(tmp_path / "results.rows").data.shape == (0, 0)
+
+
+def test_the_folders_of_runs_below_a_folder_are_named(tmp_path: Path) -> None:
+    for name in ("results/a", "b"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "results.csv").touch()
+        assert file_of_run(tmp_path / name, "results.csv") == tmp_path / name / "results.csv"
+    with pytest.raises(ConfigError) as refused:
+        file_of_run(tmp_path, "results.csv")
+    assert str(refused.value).endswith(f"; it has {tmp_path / 'b'}, {tmp_path / 'results' / 'a'}")
+    (tmp_path / "results.rows").touch()  # of a run that lives
+    assert file_of_run(tmp_path, "results.csv").name == "results.rows"

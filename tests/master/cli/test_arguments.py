@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.master.cli.arguments import parse_files, parse_inputs, parse_settings, scalar, seconds
+from evcosim.master.cli.arguments import as_typed, parse_files, parse_inputs, parse_settings, scalar, seconds
 
 
 @pytest.mark.parametrize(
@@ -77,3 +77,18 @@ def test_times(text, value):
 def test_times_out_of_range(text):
     with pytest.raises(ConfigError, match="written 5s or 500ms"):
         seconds("--try", text)
+
+
+@pytest.mark.parametrize("text", ["180,ecu.gain=1", "180 ecu.gain=1", "180; x[1].y = 2", "slow,b=2"])
+def test_two_values_in_one_option_are_told(text):
+    with pytest.raises(ConfigError, match="two values; --set is given for each of them"):
+        parse_settings([f"a.b={text}"])
+    assert parse_settings([f'a.b="{text}"']) == {"a.b": text}
+
+
+def test_an_option_of_one_name_is_put_into_an_error_as_it_was_typed():
+    names = {"input": "throtle", "output": None}
+    with pytest.raises(ConfigError, match=r"^--input throtle: it is not there"), as_typed((), names=names):
+        raise ConfigError("input throtle: it is not there")
+    with pytest.raises(ConfigError, match=r"^output x: it"), as_typed((), names=names):
+        raise ConfigError("output x: it is not there")

@@ -346,3 +346,24 @@ def test_every_number_of_open_files_works_or_is_named(most, process):
     assert first.startswith("evcosim: ")
     assert first.endswith(f"Too many open files: the limit of open files is {most} (`ulimit -n`)")
     assert more in ([], ["in out: results.csv, run.json"])
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (
+            ("run", "scooter", "--stop-time", "10s"),
+            "'--stop-time': a number is needed, as 10 or 0.5, without",
+        ),
+        (("budget", "scooter", "--workers", "x"), "'--workers': a whole number is needed"),
+        (
+            ("run", "scooter", "--input", "ecu.throttle_request=3"),
+            "a [[stimulus]] of a scenario drives an input",
+        ),
+        (("identify", "scooter", "--input", "throtle"), "--input throtle: it is not there"),
+        (("plot", "."), ".: is a folder without results of a run (results.csv)"),
+    ],
+    ids=lambda part: part[0] if isinstance(part, tuple) else "",
+)
+def test_what_was_typed_wrong_is_said_with_what_to_type(evcosim, command, said):
+    refused(evcosim(*command), said)
