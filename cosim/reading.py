@@ -49,3 +49,11 @@ def content(path: Path, about: str = "") -> bytes:
             return file.read(min(size + 1, LARGEST))  # as much as it asks for, Python takes at once
     except OSError as error:
         raise ConfigError(f"{path}: {about}cannot be read: {reason(error)}") from error
+
+
+def text_of(data: bytes) -> str:
+    """Return the text of a file in UTF-8 or, where it is no UTF-8, in cp1252, the usual encoding."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")  # five bytes have no meaning

@@ -14,7 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from ..errors import ConfigError
-from ..reading import content
+from ..reading import content, text_of
 from .database import Database, Message, Signal
 from .dbc_entries import Attribute, Entries, Key, MessageEntry, SignalEntry, entries, number, whole
 from .dbc_statements import statements
@@ -40,21 +40,12 @@ def load_dbc(path: str | Path) -> Database:
     Raises ConfigError when the file cannot be read, or is no DBC.
     """
     path = Path(path)
-    text = _read(path)
-    found = entries(statements(text))
+    found = entries(statements(text_of(content(path, "the CAN database "))))
     if not found.valid:
         line, said = found.notes[0] if found.notes else (1, "not valid in a DBC file: ''")
         raise ConfigError(f"{path}: line {line}: {said}")
     messages = [_Reader(path, found, entry).message() for entry in found.messages]
     return database_of(path, messages, found.notes, found.nodes)
-
-
-def _read(path: Path) -> str:
-    data = content(path, "the CAN database ")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")  # five bytes have no meaning
 
 
 @dataclasses.dataclass

@@ -81,16 +81,24 @@ def _flaws_of(message: Message) -> Iterator[tuple[int, str]]:
 
 def checked(message: Message) -> Message:
     """Return the message with the `problem` of each signal that has one, and the others `clipped`."""
-    signals = {}
-    for name, signal in message.signals.items():
-        problem = signal.problem or _own_flaw(message, signal)
-        signals[name] = dataclasses.replace(signal, problem=problem) if problem else clipped(signal)
-    for one, other in _overlapping(signals):
+    signals = dict(message.signals)
+
+    def note(name: str, problem: str) -> None:
+        if problem and not signals[name].problem:
+            signals[name] = dataclasses.replace(signals[name], problem=problem)
+
+    for name, signal in signals.items():
+        note(name, _own_flaw(message, signal))
+    for name in signals:
+        note(name, _chain_flaw(signals, name))
+    for one, other in list(_overlapping(signals)):
         shared = sorted(set(signals[one].bits) & set(signals[other].bits))
         bits = f"bits {shared[0]} to {shared[-1]}" if len(shared) > 1 else f"bit {shared[0]}"
-        said = f"'{one}' and '{other}' overlap in {bits}"
         for name in (one, other):
-            signals[name] = dataclasses.replace(signals[name], problem=signals[name].problem or said)
+            note(name, f"'{one}' and '{other}' overlap in {bits}")
+    for name in signals:
+        note(name, _chain_flaw(signals, name))  # by an overlap of its multiplexer
+    signals = {name: signal if signal.problem else clipped(signal) for name, signal in signals.items()}
     return dataclasses.replace(message, signals=signals)
 
 
@@ -100,8 +108,6 @@ def _own_flaw(message: Message, signal: Signal) -> str:
         return f"{signal.length} bits from bit {signal.start} on are no signal"
     if any(not 0 <= bit < 8 * message.length for bit in signal.bits):
         return f"start bit {signal.start}, {signal.length} bits: it does not fit into {message.length} bytes"
-    if signal.multiplexer and (problem := _chain_flaw(message, signal)):
-        return problem
     if signal.is_float and signal.length not in (32, 64):
         return ""  # said when it is used, with the lengths that a float has
     first, last = signal.raw_type_range
@@ -111,20 +117,24 @@ def _own_flaw(message: Message, signal: Signal) -> str:
     return ""
 
 
-def _chain_flaw(message: Message, signal: Signal) -> str:
+def _chain_flaw(signals: Mapping[str, Signal], name: str) -> str:
     """Return what is wrong with the multiplexers that select a signal; "" for nothing."""
-    seen = [signal.name]
-    while multiplexer := message.signals[seen[-1]].multiplexer:
-        if multiplexer not in message.signals:
-            return f"its multiplexer '{multiplexer}' is no signal of the message"
+    seen = [name]
+    while multiplexer := signals[seen[-1]].multiplexer:
         if multiplexer in seen:
             return f"it selects itself: {' <- '.join([*seen, multiplexer])}"
+        if multiplexer not in signals or signals[multiplexer].problem:
+            return f"its multiplexer '{multiplexer}' is no signal that can be used"
+        low, high = signals[multiplexer].raw_type_range
+        if not any(low <= first <= high for first, _ in signals[seen[-1]].multiplexer_ranges):
+            kind = bits_text(signals[multiplexer])
+            return f"no value of its multiplexer '{multiplexer}' that selects it is one of {kind}"
         seen.append(multiplexer)
     return ""
 
 
 def _overlapping(signals: Mapping[str, Signal]) -> Iterator[tuple[str, str]]:
-    """Yield the names of two signals that share bits in a frame, each signal with the first that it meets."""
+    """Yield the names of each two signals that share bits in a frame."""
     taken: dict[int, list[str]] = {}
     for name, signal in signals.items():
         if signal.problem:
@@ -135,8 +145,7 @@ def _overlapping(signals: Mapping[str, Signal]) -> Iterator[tuple[str, str]]:
                 if other not in met:
                     met[other] = together(signals, name, other)
             taken.setdefault(bit, []).append(name)
-        if other := next((other for other, shared in met.items() if shared), ""):
-            yield other, name
+        yield from ((other, name) for other, shared in met.items() if shared)
 
 
 def together(signals: Mapping[str, Signal], one: str, other: str) -> bool:

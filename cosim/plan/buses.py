@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from ..can.database import Database, Message
-from ..can.dbc import load_dbc
+from ..can.formats import load_database
 from ..errors import ConfigError, nearest
 from ..system.system import System
 from ..system.toml import data_file
@@ -23,7 +23,7 @@ def open_buses(system: System, warnings: list[str]) -> dict[str, Database]:
     found: dict[str, Database] = {}
     for name, entry in system.file.buses.items():
         place = f"{system.path}: buses.{name}"
-        database = load_dbc(data_file(entry.dbc, system.path, f"{place}.dbc"))
+        database = load_database(data_file(entry.dbc, system.path, f"{place}.dbc"))
         found[name] = database
         warnings += [said for said in _first(database) if said not in warnings]  # of two buses with one file
         texts = {signal.unit for message in database.messages.values() for signal in message.signals.values()}

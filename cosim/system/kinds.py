@@ -21,12 +21,16 @@ _TABLE = (
     "`--input NAME=FILE.csv` gives it to an FMU by itself, a [[stimulus]] of a scenario to a system, and "
     "`evcosim plot` and `compare` read results",
 )
+_DATABASE = (
+    "a CAN database",
+    "`evcosim info FILE` shows its messages, a system file names it in [buses.NAME] by `dbc`, and "
+    "`evcosim new` makes an example",
+)
+_MATRIX = ("a table of CAN messages", "make a DBC of it, and look at signs, offsets and codes in that")
 _BY_SUFFIX = {
-    ".dbc": (
-        "a CAN database (DBC)",
-        "`evcosim info FILE.dbc` shows its messages, a system file names it in [buses.NAME] by `dbc`, and "
-        "`evcosim new` makes an example",
-    ),
+    ".dbc": ("a CAN database (DBC)", _DATABASE[1]),
+    ".kcd": _DATABASE, ".sym": _DATABASE, ".arxml": _DATABASE,
+    ".xlsx": _MATRIX, ".xls": _MATRIX, ".dbf": _MATRIX,
     ".csv": _TABLE, ".txt": ("a text", "a system is a TOML file"),
     ".ssp": ("a package of SSP", "SSP is not read yet; a system is a TOML file, with the FMUs that it names"),
     ".ssd": ("a system of SSP", "SSP is not read yet; a system is a TOML file"),

@@ -209,7 +209,7 @@ class _BusFile(FileModel):
     """The key of a bus that is no setting; a base of its own, so that it comes first."""
 
     dbc: str
-    """The bus' CAN database (DBC), beside the system file or built in."""
+    """The bus' CAN database (DBC, KCD, SYM or ARXML), beside the system file or built in."""
 
 
 class BusEntry(BusSettings, _BusFile):

@@ -9,7 +9,7 @@ from typing import Any
 from ...cosim.can.as_sent import as_sent
 from ...cosim.can.bus_settings import BusSettings
 from ...cosim.can.database import Database, Message, Signal
-from ...cosim.can.dbc import load_dbc
+from ...cosim.can.formats import load_database
 from ...cosim.can.timing.lengths import least_bits, most_bits
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
@@ -27,7 +27,7 @@ def described(
     With a `bitrate` [bit/s] it has the load of the bus, of frames without and with all stuff bits that they
     can have; CAN FD frames switch to `data_bitrate`. Raises ConfigError for no such file or message.
     """
-    database = load_dbc(path)
+    database = load_database(path)
     chosen = list(database.messages.values()) if message is None else [database.require(message)]
     messages = [_message(m, bitrate, data_bitrate) for m in chosen]
     return {

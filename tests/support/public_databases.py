@@ -37,7 +37,7 @@ from evcosim.master.engine.python_engine import PythonEngine
 from support.mocks import MockUnit, plan_of, real
 
 TABLE = Path(__file__).with_suffix(".csv")
-_ROUNDS = 4
+_ROUNDS = 3
 _FAR = 1e300
 _NAME_OR_NUMBER = re.compile(r"'[^']*'|\b0x[0-9a-f]+\b|-?\b\d[\d.e+-]*|\[[^\]]*\]")
 
@@ -194,7 +194,7 @@ def _value(message: Message, signal: Signal, turn: int, chance: random.Random) -
     low, high = max(min(low, high), -_FAR), min(max(low, high), _FAR)
     low = low if signal.minimum is None else max(low, float(signal.minimum))
     high = high if signal.maximum is None else min(high, float(signal.maximum))
-    return (low, high, chance.uniform(low, high), chance.uniform(low, high))[turn]
+    return (low, high, chance.uniform(low, high))[turn]
 
 
 def _received(

@@ -51,9 +51,20 @@ def test_multiplexers_that_select_each_other_are_a_flaw_and_no_endless_loop():
     other = Signal("b", 4, 4, is_multiplexer=True, multiplexer="a", multiplexer_ranges=((0, 0),))
     assert problems(one, other) == {
         "a": "it selects itself: a <- b <- a",
-        "b": "it selects itself: b <- a <- b",
+        "b": "its multiplexer 'a' is no signal that can be used",
     }
-    assert problems(of("c", "gone", (0, 0)))["c"] == "its multiplexer 'gone' is no signal of the message"
+    assert problems(of("c", "gone", (0, 0)))["c"] == "its multiplexer 'gone' is no signal that can be used"
+    signed = Signal("Page", 0, 4, is_multiplexer=True, signed=True)
+    said = "no value of its multiplexer 'Page' that selects it is one of 4 signed bits"
+    assert problems(signed, of("c", "Page", (8, 9)), of("d", "Page", (3, 9))) == {"c": said}
+
+
+def test_a_flaw_of_a_multiplexer_is_one_of_what_it_selects():
+    sub = dataclasses.replace(SUB, start=6, length=4)
+    said = problems(PAGE, sub, of("a", "Sub", (0, 0), start=16), of("b", "Page", (2, 2)), Signal("c", 9, 1))
+    assert said["Sub"] == said["c"] == "'Sub' and 'c' overlap in bit 9"
+    assert said["a"] == "its multiplexer 'Sub' is no signal that can be used"
+    assert set(said) == {"Sub", "c", "a", "b"}  # b, of another page than Sub, meets c
 
 
 def test_three_signals_of_one_bit_all_have_a_flaw():
