@@ -18,6 +18,8 @@ from support.databases import WAY
 from support.equations import equations_fmu
 from support.watch import watch_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 SYSTEM = """
 name = "ends"
 [experiment]

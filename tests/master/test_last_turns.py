@@ -15,6 +15,8 @@ from support.databases import WAY
 from support.equations import equations_fmu
 from support.watch import watch_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 PERIODS = {1: 1, 2: 3, 3: 1, 4: 2, 7: 1}  # steps of a period, and substeps within
 UNIT = """
 [units.{name}]

@@ -15,6 +15,8 @@ from support.c_fmu import mixed_fmu
 from support.descriptions import GOOD, described
 from support.equations import equations_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 WITH_TIMES = GOOD.replace("<ModelVariables>", "<DefaultExperiment {}/><ModelVariables>")
 
 

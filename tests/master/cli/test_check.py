@@ -18,6 +18,8 @@ from evcosim.cosim.system.toml import read_toml
 from evcosim.master.simulation import simulate
 from support.c_fmu import mixed_fmu, vehicle_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 
 def check(evcosim, *arguments: object):
     return evcosim("check", *arguments)

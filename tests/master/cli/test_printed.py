@@ -18,6 +18,8 @@ from support import marks
 from support.hostile import units
 from support.hostile.case import WHOLE, Case
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 SCENARIO = "sc\x1b[2J\u202e\nevcosim: all is well.toml"
 
 

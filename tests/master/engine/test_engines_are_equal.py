@@ -17,6 +17,8 @@ from support.c_fmu import mixed_fmu
 from support.mocks import MockUnit, plan_of, real, started
 from support.needs import need_c_compiler
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 BUILT_IN = [(s, c) for s in system_names() for c in (None, *scenario_names(load_system(s)))]
 EVENTS = """
 [[event]]

@@ -16,6 +16,8 @@ from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu
 from support.equations import equations_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 REFUSES, CHANGES = 23, 66
 STEP = 0.125
 WAYS = [("python", "none"), ("compiled", "none"), ("compiled", "process")]

@@ -14,6 +14,8 @@ from evcosim.master.simulation import simulate
 from support.databases import write
 from support.initial import SHOWN, initial_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 KINDS = [(1, "CS"), (1, "ME"), (2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
 INTERFACES = {"CS": "CoSimulation", "ME": "ModelExchange"}
 DRIVEN = '[[stimulus]]\nto = "a.u"\ntable = [[0.0, 3.0], [0.1, 4.0]]\n'

@@ -8,6 +8,8 @@ import pytest
 from evcosim.master.engine.profile import Profile
 from evcosim.master.simulation import Simulation
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 
 @pytest.mark.parametrize("engine", ["compiled", "python"])
 def test_a_profile_adds_up_to_the_time_of_the_steps_and_changes_no_result(ring, engine):

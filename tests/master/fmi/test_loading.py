@@ -17,6 +17,8 @@ from evcosim.master.simulation import simulate
 from support.c_fmu import mixed_fmu
 from support.equations import equations_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 
 @pytest.mark.parametrize(("fmi", "expected"), [(1, Fmi1Unit), (2, Fmi2Unit), (3, Fmi3Unit)])
 def test_co_simulation_of_every_version(tmp_path: Path, fmi: int, expected: type) -> None:

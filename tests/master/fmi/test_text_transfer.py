@@ -18,6 +18,8 @@ from evcosim.master.fmi.types import STRING, TYPES
 from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu, typed_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 GREEN = "Gr\N{LATIN SMALL LETTER U WITH DIAERESIS}n"
 KIND = next(t for t in TYPES if t.kind is STRING)
 

@@ -12,6 +12,8 @@ from evcosim.master.fmi.tolerance import tolerance_of
 from evcosim.master.simulation import simulate
 from support.initial import initial_fmu
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 KINDS = [(2, "CS"), (3, "CS"), (1, "ME"), (2, "ME"), (3, "ME")]
 _DEFAULT = {"CS": (None, "none"), "ME": (1e-6, "default")}
 

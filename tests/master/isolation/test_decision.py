@@ -20,6 +20,8 @@ from evcosim.models.rider import Rider
 from support.c_fmu import mixed_fmu
 from support.pairs import pair
 
+pytestmark = pytest.mark.usefixtures("warm_units")
+
 
 @pytest.mark.parametrize("fmi", [1, 2, 3])
 def test_what_we_did_not_build_is_isolated(tmp_path: Path, fmi: int) -> None:

@@ -14,9 +14,10 @@ from evcosim.master.simulation import Simulation, simulate
 from support.c_fmu import mixed_fmu
 from support.pairs import pair
 
-pytestmark = pytest.mark.skipif(
-    not POSSIBLE, reason="a handover needs futexes and the order of stores of x86"
-)
+pytestmark = [
+    pytest.mark.usefixtures("warm_units"),
+    pytest.mark.skipif(not POSSIBLE, reason="a handover needs futexes and the order of stores of x86"),
+]
 
 
 @pytest.mark.parametrize("system", ["scooter", "braking"])
