@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import importlib.metadata
 import platform
 import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.swap.sampled import sampled_in
-from ..cosim.system.scenario import Scenario
 from ..cosim.system.system import Isolation, System
-from ..cosim.system.toml import data_file, is_built_in
 from .engine.bus_statistics import bus_statistics
 from .engine.engine import Engine
 from .fmi.tolerance import tolerance_of
@@ -41,8 +37,8 @@ def manifest(
         | {"python": platform.python_version(), "platform": sys.platform},
         "system": plan.system,
         "scenario": plan.scenario,
-        "files": _own_files(system, prepared.scenario),
-        "settings": _digest(prepared),
+        "files": dict(prepared.files),
+        "settings": prepared.digest,
         "options": dict(prepared.options),
         "command": prepared.command,
         "experiment": experiment.model_dump() | {"algorithm": plan.algorithm, "engine": engine.name},
@@ -67,25 +63,6 @@ def manifest(
 @functools.cache  # reading the metadata of a distribution takes a millisecond
 def _version(distribution: str) -> str:
     return importlib.metadata.version(distribution)
-
-
-_NO_SETTINGS = {"title", "source", "figure", "metrics", "identification", "budget"}
-
-
-def _digest(prepared: Prepared) -> str:
-    """Return SHA-256 of what the files say that counts for the numbers of a run, with the files they name."""
-    system, scenario = prepared.system, prepared.scenario
-    named: list[tuple[str, Path | None, str]] = []
-    named += [(entry.dbc, system.path, "dbc") for entry in system.file.buses.values()]
-    named += [(s.csv, scenario.path, "csv") for s in scenario.file.stimuli if s.csv is not None]
-    digest = hashlib.sha256()
-    for model in (system.file, scenario.file):
-        digest.update(model.model_dump_json(exclude=_NO_SETTINGS).encode())
-    digest.update(repr(prepared.options.get("record")).encode() if "record" in prepared.options else b"")
-    for name, beside, key in named:
-        path = data_file(name, beside, key) if beside is not None else Path(name)
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
-    return digest.hexdigest()
 
 
 def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str, Any]:
@@ -160,13 +137,3 @@ def saturations(engine: Engine) -> dict[str, dict[str, float]]:
                 "first_time": min(page["first_time"], first),
             }
     return found
-
-
-def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
-    """Return the paths of the user's own files; the names of built-in ones say enough."""
-    paths = {"system": system.path, "scenario": scenario.path}
-    return {
-        kind: str(path.resolve())
-        for kind, path in paths.items()
-        if path is not None and not is_built_in(path)
-    }

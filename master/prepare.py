@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Unpack
@@ -26,7 +27,7 @@ from ..cosim.system.run_options import RunOptions, check_options
 from ..cosim.system.scenario import Scenario, load_scenario, scenario_names
 from ..cosim.system.selection import recorded_alone, without_undrawn
 from ..cosim.system.system import System, load_system
-from ..cosim.system.toml import is_built_in
+from ..cosim.system.toml import data_file, is_built_in
 from ..cosim.system.variation import varied
 from .builtin import builtin_names, cache_folder, fmu_file, outdated
 from .engine.initialization import ordered_links
@@ -41,7 +42,8 @@ class Prepared:
     """A run that is ready to be loaded: everything that can be checked without an instance was checked.
 
     `outside` are sentences about the files that are read from elsewhere than the folder of who names them;
-    `options` are those that the run was given, and `command` repeats it ("": none can).
+    `options` are those that the run was given, and `command` repeats it ("": none can). `digest` and `files`
+    are of the files as they were read: in the run somebody may remove them.
     """
 
     system: System
@@ -51,6 +53,8 @@ class Prepared:
     outside: tuple[str, ...] = ()
     options: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     command: str = ""
+    digest: str = ""
+    files: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
 
 @reading_once()
@@ -110,7 +114,36 @@ def prepare(
     }
     texts = ["" if isinstance(each, System | Scenario) else str(each or "") for each in (system, scenario)]
     command = "" if isinstance(scenario, Scenario) else command_of(texts[0], texts[1], given)
-    return Prepared(read, driven, loaded, plan, read_outside(read, driven, named), given, command)
+    outside, digest = read_outside(read, driven, named), _digest(read, driven, given)
+    return Prepared(read, driven, loaded, plan, outside, given, command, digest, _own_files(read, driven))
+
+
+_NO_SETTINGS = {"title", "source", "figure", "metrics", "identification", "budget"}
+
+
+def _digest(system: System, scenario: Scenario, options: Mapping[str, Any]) -> str:
+    """Return SHA-256 of what the files say that counts for the numbers of a run, with the files they name."""
+    named: list[tuple[str, Path | None, str]] = []
+    named += [(entry.dbc, system.path, "dbc") for entry in system.file.buses.values()]
+    named += [(s.csv, scenario.path, "csv") for s in scenario.file.stimuli if s.csv is not None]
+    digest = hashlib.sha256()
+    for model in (system.file, scenario.file):
+        digest.update(model.model_dump_json(exclude=_NO_SETTINGS).encode())
+    digest.update(repr(options.get("record")).encode() if "record" in options else b"")
+    for name, beside, key in named:
+        path = data_file(name, beside, key) if beside is not None else Path(name)
+        digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def _own_files(system: System, scenario: Scenario) -> dict[str, str]:
+    """Return the paths of the user's own files; the names of built-in ones say enough."""
+    paths = {"system": system.path, "scenario": scenario.path}
+    return {
+        kind: str(path.resolve())
+        for kind, path in paths.items()
+        if path is not None and not is_built_in(path)
+    }
 
 
 def _is_a_name(system: System, unit: str) -> bool:

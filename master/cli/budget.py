@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,7 +30,7 @@ def budget(
     ] = None,
     workers: WorkersOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
-) -> None:
+) -> int:
     """Find how late, coarse and slow the buses may be.
 
     Bus delay, signal resolution and message cycle are stepped up, each by itself, and the system is judged by
@@ -39,8 +40,7 @@ def budget(
     from ...cosim.results.repeat import given_options
     from ..studies.bus_budget import budget as measure_budget
     from .console import print_json, progress_bar
-    from .failures import complain
-    from .studies import study_folder
+    from .studies import ended, study_folder, written
 
     kept = {"system": system, "scenario": scenario, "options": given_options(options)}
     folder, remarks = study_folder(output, (*_names(system, scenario), "budget"), _DATA, kept)
@@ -52,13 +52,12 @@ def budget(
             progress=lambda done, total, _: show(done / total),
             **options,
         )
-    files = _write(folder, found, kept)
+    files, unwritten = written(_write(folder, found, kept))
     if as_json:
         print_json(as_data(found) | {"folder": str(folder), "files": files})
     else:
-        _show(found, folder, files)
-    for remark in remarks:
-        complain(f"warning: {remark}")
+        _show(found, folder, [] if unwritten else files)
+    return ended(folder, files, unwritten, remarks)
 
 
 def _names(system: str, scenario: str | None) -> tuple[str, str]:
@@ -70,8 +69,8 @@ def _names(system: str, scenario: str | None) -> tuple[str, str]:
     return read.file.name, load_scenario(read, scenario).name
 
 
-def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> list[str]:
-    """Write page, data and figure and return the names of the files. Raises ConfigError."""
+def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> Iterator[str]:
+    """Write page, data and figure and yield the names of the files. Raises ConfigError."""
     from ...cosim.analysis.bus_budget import as_data, as_markdown
     from ...cosim.figures import draw as figures
     from ...cosim.figures.bus_budget import draw_budget
@@ -80,13 +79,15 @@ def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> list[str]:
     from .studies import with_settings
 
     write_text(folder / _PAGE, as_markdown(found, f"{_FIGURE}.png"))
+    yield _PAGE
     data = with_settings(as_data(found), settings)
     write_text(folder / _DATA, visible_json(json.dumps(data, indent=2, ensure_ascii=False)) + "\n")
-    drawn = figures.save(draw_budget(found), folder, _FIGURE)
-    return [_PAGE, _DATA, *(path.name for path in drawn)]
+    yield _DATA
+    for path in figures.save(draw_budget(found), folder, _FIGURE):
+        yield path.name
 
 
-def _show(found: Budget, folder: Path, files: list[str]) -> None:
+def _show(found: Budget, folder: Path, files: Sequence[str]) -> None:
     from .console import print_fields, print_paragraph, print_table
 
     scenario = f" {found.scenario}" if found.scenario else ""
@@ -95,5 +96,6 @@ def _show(found: Budget, folder: Path, files: list[str]) -> None:
     print_table(("variation", "point", "value", "verdict"), found.rows(), right=("value",))
     print()
     print_fields([(each.name, found.summary(each)) for each in found.series])
-    print()
-    print_paragraph(f"in {folder}: {', '.join(files)}")
+    if files:
+        print()
+        print_paragraph(f"in {folder}: {', '.join(files)}")

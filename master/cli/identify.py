@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -99,8 +99,7 @@ def identify(
     from ...cosim.results.repeat import given_options
     from ..studies.identification_target import is_fmu
     from .arguments import as_typed
-    from .failures import complain
-    from .studies import study_folder
+    from .studies import ended, study_folder, written
 
     given: dict[str, Any] = {
         "input": input, "output": output, "unit": unit, "at": at, "at_input": at_input,
@@ -121,11 +120,9 @@ def identify(
     bar = not (as_json or quiet)
     with as_typed(settings or [], starts=starts or [], names=ends):
         found = _measure(target, spec, scenario, options, bar)
-    files = _write(where, found, not no_plot, kept)
-    _report(found, where, files, as_json, quiet)
-    for remark in remarks:
-        complain(f"warning: {remark}")
-    return 0
+    files, unwritten = written(_write(where, found, not no_plot, kept))
+    _report(found, where, files if as_json or not unwritten else [], as_json, quiet)
+    return ended(where, files, unwritten, remarks)
 
 
 def _with_values(
@@ -239,8 +236,10 @@ _SHARES = {"sweep": (0.1, 0.7), "test": (0.8, 0.2)}
 """Begin and length of a phase, as shares of the time of one working point; others share the first 10 %."""
 
 
-def _write(folder: Path, found: list[Identification], figures: bool, settings: dict[str, Any]) -> list[str]:
-    """Write data and figures and return the names of the files. Raises ConfigError."""
+def _write(
+    folder: Path, found: list[Identification], figures: bool, settings: dict[str, Any]
+) -> Iterator[str]:
+    """Write data and figures and yield the names of the files. Raises ConfigError."""
     from ...cosim.writing import write_text
     from .console import finite
     from .studies import with_settings
@@ -248,25 +247,26 @@ def _write(folder: Path, found: list[Identification], figures: bool, settings: d
     data = [with_settings(each.as_data(), settings) for each in found]
     text = json.dumps(finite(data), indent=2, allow_nan=False)
     write_text(folder / DATA, text + "\n")
-    return [DATA, *(_draw(folder, found) if figures else ())]
+    yield DATA
+    if figures:
+        yield from (path.name for path in _draw(folder, found))
 
 
-def _draw(folder: Path, found: list[Identification]) -> list[str]:
+def _draw(folder: Path, found: list[Identification]) -> Iterator[Path]:
     from ...cosim.figures import draw as figures
     from ...cosim.figures import identification as drawing
 
-    paths: list[Path] = []
     for number, each in enumerate(found, 1):
         mark = f"-{number}" if len(found) > 1 else ""
         title = f"{each.target}: {each.input} to {each.output} at {_point(each)}"
         swept = (each.sweep.start, each.sweep.stop)
-        paths += figures.save(
+        yield from figures.save(
             drawing.bode(each.response, each.fit, swept, each.gain_unit, title), folder, f"bode{mark}"
         )
         shown = drawing.prediction(each.prediction, each.output_unit, each.output, title)
-        paths += figures.save(shown, folder, f"prediction{mark}")
+        yield from figures.save(shown, folder, f"prediction{mark}")
     if len(found) > 1:
-        paths += figures.save(
+        yield from figures.save(
             drawing.over_working_points(
                 [each.working_point[1] for each in found],
                 [each.fit for each in found],
@@ -277,7 +277,6 @@ def _draw(folder: Path, found: list[Identification]) -> list[str]:
             folder,
             "working_points",
         )
-    return [path.name for path in paths]
 
 
 def _report(found: list[Identification], folder: Path, files: list[str], as_json: bool, quiet: bool) -> None:
@@ -298,8 +297,9 @@ def _report(found: list[Identification], folder: Path, files: list[str], as_json
         print_fields(_fields(each))
     if len(found) > 1:
         _print_points(found)
-    print()
-    print_paragraph(f"in {folder}: {', '.join(files)}")
+    if files:
+        print()
+        print_paragraph(f"in {folder}: {', '.join(files)}")
 
 
 def _fields(each: Identification) -> list[tuple[str, str]]:

@@ -36,6 +36,7 @@ def reproduce(
     """
     from ..reproduce import papers as library
     from .console import print_json, progress_bar
+    from .failures import FAILED, complain
     from .outputs import output_folder
 
     names = list(dict.fromkeys(papers or library.NAMES))
@@ -43,13 +44,20 @@ def reproduce(
         library.load(name)  # a wrong name is said before anything runs
     folder = output_folder(output)
     begin = time.perf_counter()
+    unwritten = ""
     with progress_bar("reproducing", 0.0, 1.0, not as_json) as show:
-        pages = library.reproduce(names, folder, workers, lambda done, total, _: show(done / total))
+        try:
+            pages = library.reproduce(names, folder, workers, lambda done, total, _: show(done / total))
+        except library.UnwrittenError as error:
+            pages, unwritten = error.pages, str(error)
     seconds = time.perf_counter() - begin
     if as_json:
         print_json({page.name: _as_data(page) for page in pages})
     else:
-        _show(pages, folder, seconds)
+        _show(pages, f"after {seconds:.0f} s", "" if unwritten else str(folder))
+    if unwritten:
+        complain(unwritten)
+        return FAILED
     return 1 if any(page.missed for page in pages) else 0
 
 
@@ -68,7 +76,8 @@ def _as_data(page: Page) -> dict[str, Any]:
     }
 
 
-def _show(pages: list[Page], folder: Path, seconds: float) -> None:
+def _show(pages: list[Page], seconds: str, folder: str) -> None:
+    """Print tables and counts, and the files in a folder ("": not all are there)."""
     from ..reproduce.printed import sentence
     from ..reproduce.render import missed
     from .console import print_paragraph, print_title, print_wrapped
@@ -82,5 +91,6 @@ def _show(pages: list[Page], folder: Path, seconds: float) -> None:
             print_wrapped(["what", "obtained", "to reach"], [[r.what, r.obtained, r.reach] for r in page.own])
     names = ", ".join(f"{page.name}.md and .html" for page in pages)
     print()
-    print_paragraph(f"in {folder}, after {seconds:.0f} s: README.md, index.html, {names}, figures/")
+    if folder:
+        print_paragraph(f"in {folder}, {seconds}: README.md, index.html, {names}, figures/")
     print_paragraph(f"{sentence(row.verdict for page in pages for row in page.rows)}; {missed(pages)}")

@@ -7,7 +7,7 @@ others is in the folder, the settings are added to the name, or a number.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,32 @@ def study_folder(
             moved = f"{first} has results of other settings; these are in {folder}"
             return output_folder(folder, option), [moved] if folder != first else []
     raise ConfigError(f"output folder {first}: there are too many with a number; {option} names another one")
+
+
+def written(names: Iterator[str]) -> tuple[list[str], str]:
+    """Return the names of the files that are written while they are asked for, and why there are no more.
+
+    "": there are all. What a study has found is printed in any case: it may have taken an hour.
+    """
+    from ...cosim.errors import ConfigError
+
+    files: list[str] = []
+    try:
+        files.extend(names)
+    except ConfigError as error:
+        return files, str(error)
+    return files, ""
+
+
+def ended(folder: Path, files: Sequence[str], unwritten: str, remarks: Sequence[str]) -> int:
+    """Print remarks, and why files are lacking, on stderr; return the exit code."""
+    from .failures import FAILED, complain
+
+    for remark in remarks:
+        complain(f"warning: {remark}")
+    if unwritten:
+        complain(f"{unwritten}\nin {folder}: {', '.join(files) or 'nothing'}")
+    return FAILED if unwritten else 0
 
 
 def _settings_in(path: Path) -> Any:

@@ -16,6 +16,14 @@ NAMES = ("scooter", "lane_keeping", "braking", "multi_drive")
 """The papers by the name of their system; each is the module of that name in this package."""
 
 
+class UnwrittenError(ConfigError):
+    """A page or the index of papers, which are reproduced as `pages`, that cannot be written."""
+
+    def __init__(self, message: str, pages: list[Page]) -> None:
+        super().__init__(message)
+        self.pages = pages
+
+
 def load(name: str) -> Paper:
     """Return the paper of a system. Raises ConfigError with the nearest name for an unknown one."""
     if name not in NAMES:
@@ -29,8 +37,8 @@ def reproduce(
 ) -> list[Page]:
     """Reproduce papers and write their pages and an index into `folder`; return the pages.
 
-    Raises ConfigError for an unknown name or a folder that cannot be written, RunError naming the run that
-    failed.
+    Raises ConfigError for an unknown name, UnwrittenError, which has the pages, where the folder cannot be
+    written, RunError naming the run that failed.
     """
     papers = {name: load(name) for name in names}
     runs = {name: paper.runs() for name, paper in papers.items()}
@@ -38,10 +46,18 @@ def reproduce(
         dataclasses.replace(task, name=f"{name}: {task.name}") for name, some in runs.items() for task in some
     ]
     outcomes = iter(run_all(tasks, workers, progress))
-    pages = []
+    pages: list[Page] = []
+    refused: list[ConfigError] = []
     for name, paper in papers.items():
-        page = paper.page({task.name: next(outcomes).result() for task in runs[name]})
-        write_page(page, folder)
-        pages.append(page)
-    write_index(pages, folder)
+        pages.append(paper.page({task.name: next(outcomes).result() for task in runs[name]}))
+        try:
+            write_page(pages[-1], folder)
+        except ConfigError as error:  # the others may be smaller
+            refused.append(error)
+    try:
+        write_index(pages, folder)
+    except ConfigError as error:
+        refused.append(error)
+    if refused:
+        raise UnwrittenError("\n".join(map(str, refused)), pages) from refused[0]
     return pages

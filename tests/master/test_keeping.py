@@ -211,3 +211,25 @@ def test_rows_go_elsewhere_where_the_process_ends_at_once(tmp_path: Path, engine
     saved = Results.read(tmp_path / "place")
     assert np.array_equal(saved.data, now.data[:6])
     assert saved["fmu.text_in"].tolist() == ["first"] * 3 + ["then"] * 3
+
+
+def test_files_that_are_removed_in_the_run_are_needed_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those that it was made of, and the working folder: a digest of them stands in run.json."""
+    (tmp_path / "work").mkdir()
+    monkeypatch.chdir(tmp_path / "work")
+    Path("speed.csv").write_text("time,v\n0,10\n9,50\n")
+    Path("own.toml").write_text(
+        'leave_out = ["rider", "planner", "battery"]\n[parameters.ecu]\nenabled = false\n'
+        '[[stimulus]]\nto = "ecu.throttle_request"\ncsv = "speed.csv"\ncolumn = "v"\n'
+    )
+    whole = simulate("scooter", "own.toml", stop_time=1.0)
+    with Simulation("scooter", "own.toml", stop_time=1.0, to_stop=True) as sim:
+        sim.keep_in(tmp_path / "out")
+        shutil.rmtree(tmp_path / "work")
+        sim.run()
+    kept = Results.read(tmp_path / "out")
+    assert np.array_equal(kept.data, whole.data)
+    for key in ("settings", "files", "units"):
+        assert kept.manifest[key] == whole.manifest[key]

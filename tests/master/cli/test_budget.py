@@ -9,6 +9,8 @@ import time
 
 import pytest
 
+from support.small_disk import small_disk
+
 
 def test_the_scooter_names_its_metric(evcosim):
     data = evcosim(
@@ -16,6 +18,19 @@ def test_the_scooter_names_its_metric(evcosim):
     ).json
     assert (data["metric"], data["limit"], data["unit"]) == ("highest speed over the bound", 1.5, "km/h")
     assert not any(point["broken"] for each in data["series"] for point in each["points"])
+
+
+def test_a_full_disk_hides_no_number(evcosim, tmp_path):
+    """It may have taken an hour: what was found is printed, and the files that are there are named."""
+    with small_disk(tmp_path / "disk", 3):
+        answer = evcosim("budget", "scooter", "--stop-time", "1", "--workers", "1", "-o", "disk/out")
+    assert answer.code == 1
+    assert "holds up to" in answer.out
+    assert "in disk/out" not in answer.out
+    first, second = answer.err.splitlines()
+    full = "cannot be written: No space left on device: make room on the disk"
+    assert first == f"evcosim: disk/out/budget.png: {full}"
+    assert second == "in disk/out: budget.md, budget.json"
 
 
 @pytest.mark.parametrize(

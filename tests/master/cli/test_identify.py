@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+from support.small_disk import small_disk
+
 FMU = ["identify", "Scooter", "--input", "throttle", "--output", "speed", "--unit", "km/h"]
 
 
@@ -29,6 +31,18 @@ def test_command_writes_numbers_and_figures(evcosim, tmp_path):
     assert [each["input"]["value"] for each in data] == [28.2, 40.0]
     assert data[0]["gain"]["unit"] == "km/h per %"
     assert data[0]["gain"]["low"] <= data[0]["gain"]["value"] <= data[0]["gain"]["high"]
+
+
+def test_a_full_disk_hides_no_number(evcosim, tmp_path):
+    with small_disk(tmp_path / "disk", 5):
+        answer = evcosim(*FMU, *QUICK, "--at-input", "28.2", "--band", "0.1,0.3", "-o", "disk/out")
+    assert answer.code == 1
+    assert "gain x pole" in answer.out
+    assert "in disk/out" not in answer.out
+    lines = answer.err.splitlines()
+    assert lines[-2].startswith("evcosim: disk/out/")
+    assert lines[-2].endswith(": cannot be written: No space left on device: make room on the disk")
+    assert lines[-1] == "in disk/out: identification.json"
 
 
 def test_command_as_json(evcosim):

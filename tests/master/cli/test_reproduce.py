@@ -36,6 +36,17 @@ def test_the_last_line_counts_as_the_index_does(evcosim, monkeypatch):
     assert max(map(len, said.splitlines())) <= 100  # the width of the tests' terminal
 
 
+def test_a_full_disk_hides_no_number(evcosim, monkeypatch):
+    def full(*_):
+        raise papers.UnwrittenError("pages/x.html: cannot be written: full", [page_of("reproduced")])
+
+    monkeypatch.setattr(papers, "reproduce", full)
+    answer = evcosim("reproduce", "lane_keeping", "-o", "pages")
+    assert (answer.code, answer.err) == (1, "evcosim: pages/x.html: cannot be written: full\n")
+    assert "missed: none" in answer.out
+    assert "in pages" not in answer.out
+
+
 def test_an_unknown_paper(evcosim, tmp_path):
     refused(evcosim("reproduce", "scoter", "-o", "pages"), "no paper 'scoter' (did you mean 'scooter'?)")
     assert not (tmp_path / "pages").exists()

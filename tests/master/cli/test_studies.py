@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from evcosim import ConfigError
 from evcosim.cosim.results.folder_lock import FolderLock
 from evcosim.master.cli import outputs
-from evcosim.master.cli.studies import study_folder, with_settings
+from evcosim.master.cli.studies import ended, study_folder, with_settings, written
 
 
 def chosen(settings: dict[str, Any], wanted: Path | None = None) -> tuple[str, list[str]]:
@@ -79,3 +80,21 @@ def test_what_identify_switches_off_is_said(evcosim: Any) -> None:
     assert "in results/car-hill-identify: identification.json" in answer.out
     (found,) = json.loads(Path("results/car-hill-identify/identification.json").read_text(encoding="utf-8"))
     assert len(found["switched_off"]) == 3
+
+
+@pytest.mark.parametrize("count", [0, 2, 3])
+def test_the_files_up_to_the_one_that_is_refused_are_named(
+    count: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def names() -> Iterator[str]:
+        yield from ["a.md", "b.json", "c.png"][:count]
+        if count < 3:
+            raise ConfigError("c.png: cannot be written: full")
+
+    files, unwritten = written(names())
+    assert files == ["a.md", "b.json", "c.png"][:count]
+    assert ended(Path("out"), files, unwritten, ["remark"]) == (1 if count < 3 else 0)
+    said = ["evcosim: warning: remark"]
+    if count < 3:
+        said += ["evcosim: c.png: cannot be written: full", f"in out: {', '.join(files) or 'nothing'}"]
+    assert capsys.readouterr().err.splitlines() == said
