@@ -81,7 +81,6 @@ def test_other_refusals_and_their_ways_out():
 
 OWN = End("the stimulus of b.u", "tbd", advice="say what it is in: its own `unit`")
 ON_BUS = r'say what it is in the system file, \[buses.c.units\]: "{}" = "{}"'
-BOTH_OPEN = ON_BUS.format("tbd", r"\.\.\.")
 OF_MAP = "say what {} is in: `unit` in the unit's `map`"
 
 
