@@ -81,7 +81,7 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
         text = _text(point)
         # not over the edge, and not over the line of the limit, nor a steep one to the next point
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)
-        under = under or any(p.value - y > 0.3 * (high - low) for k, p in shown if abs(k - i) == 1)
+        under = under or any(p.value - y > 0.2 * (high - low) for k, p in shown if abs(k - i) == 1)
         panel.annotate(
             text, (i, y), xytext=(0, -11 if under else 11), textcoords="offset points", ha="center",
             va="top" if under else "bottom", fontsize=8.5, zorder=4,
