@@ -102,11 +102,12 @@ def _codec(path: Path, found: Outcome) -> Any:
     text = _text(path)
     for strict in (True, False):
         try:
-            return cantools.database.load_string(text, "dbc", strict=strict)
+            codec = cantools.database.load_string(text, "dbc", strict=strict)
         except Exception as error:  # whatever it raises is its outcome
             found.cantools = f"{type(error).__name__}: {' '.join(str(error).split())[:80]}"
         else:
             found.cantools = "yes" if strict else "not strict"
+            return codec
     return None
 
 
@@ -168,6 +169,7 @@ def _run(path: Path, names: _Names, codec: Any, found: Outcome) -> None:
     chance = random.Random(found.sha256)
     codecs = [_codec_signal(codec, message, signal) for message, signal in names]
     flawed = {m.name for m, _ in names if any(s.problem for s in m.signals.values())}
+    flawed |= {m.name for m, s in names if s.is_multiplexer and not _ids(m, s)}  # cantools reads a page there
     right = [True] * len(names)
     for turn in range(_ROUNDS):
         sent = [_value(message, signal, turn, chance) for message, signal in names]
@@ -185,10 +187,15 @@ def _run(path: Path, names: _Names, codec: Any, found: Outcome) -> None:
     found.usable += sum(right)
 
 
+def _ids(message: Message, multiplexer: Signal) -> list[int]:
+    """Return raw values of a multiplexer that select signals: such that are no multiplexers themselves."""
+    selected = [s for s in message.signals.values() if s.multiplexer == multiplexer.name and not s.problem]
+    return [s.multiplexer_ranges[0][0] for s in selected if not s.is_multiplexer]
+
+
 def _value(message: Message, signal: Signal, turn: int, chance: random.Random) -> float:
     """Return a value that the signal can carry: the least, the greatest, any; of a multiplexer, a page's."""
-    ids = [s.multiplexer_ranges[0][0] for s in message.signals.values() if s.multiplexer == signal.name]
-    if ids:
+    if ids := _ids(message, signal):
         return float(sorted(set(ids))[turn % len(set(ids))] * signal.scale + signal.offset)
     low, high = (float(raw * signal.scale + signal.offset) for raw in signal.raw_range)
     low, high = max(min(low, high), -_FAR), min(max(low, high), _FAR)
@@ -226,12 +233,15 @@ def _expected(codec: Any, signal: Signal, value: float) -> tuple[float, float]:
     """Return what cantools sends for a value, raw, and what it receives; without it, what its rule is."""
     low, high = signal.raw_range
     if codec is None:
-        raw = min(max(quantize(signal, "half_even", value), low), high)
+        raw = _single(signal, min(max(quantize(signal, "half_even", value), low), high))
         return raw, decode(signal, raw)
-    raw = min(max(codec.conversion.numeric_scaled_to_raw(value), low), high)
-    if signal.is_float and signal.length == 32:
-        raw = float(np.float32(raw))
+    raw = _single(signal, min(max(codec.conversion.numeric_scaled_to_raw(value), low), high))
     return raw, float(codec.conversion.raw_to_scaled(raw, decode_choices=False))
+
+
+def _single(signal: Signal, raw: float) -> float:
+    """Return a raw value as the bits of the signal hold it: rounded where they are a 32-bit float."""
+    return float(np.float32(raw)) if signal.is_float and signal.length == 32 else raw
 
 
 def _compare_frames(

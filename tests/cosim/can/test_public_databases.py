@@ -1,8 +1,10 @@
-"""The trial of public DBC files: what it finds in files of which it is known."""
+"""The trial of public DBC files: what it finds in files of which it is known, and what its table says."""
 
 from __future__ import annotations
 
-from support.public_databases import tried
+import csv
+
+from support.public_databases import TABLE, tried
 
 GOOD = """VERSION ""
 BS_:
@@ -33,3 +35,13 @@ def test_the_outcome_of_two_files(tmp_path):
     assert (good.values, good.different_values, good.different_frames) == (15, 0, 0)
     assert good.frames > 0
     assert good.reasons == "2 x # and # overlap in bits # to #"
+
+
+def test_the_table_of_public_files():
+    rows = list(csv.DictReader(TABLE.open(encoding="utf-8")))
+    load = [row for row in rows if row["loads"] == "yes"]
+    signals, usable = (sum(int(row[key]) for row in load) for key in ("signals", "usable"))
+    assert len(load) == len(rows) > 240
+    assert usable > 0.95 * signals > 50_000
+    assert {row["different_values"] for row in rows} == {row["different_frames"] for row in rows} == {"0"}
+    assert all(row["reasons"] for row in load if row["usable"] != row["signals"])
