@@ -24,7 +24,7 @@ from ..can.database import Message
 from ..can.framing import Framing
 from ..clock import Clock
 from ..results.results import ResultVariable
-from ..system.scenario import Event
+from ..system.scenario import Event, Fault
 from ..system.stimuli import TimeFunction, initial_value
 from ..system.system import Algorithm, Experiment
 from ..texts import Texts
@@ -102,6 +102,18 @@ class MessagePlan:
 
 
 @dataclasses.dataclass(frozen=True)
+class FaultPlan:
+    """A fault from `since` to before `until` [ps after the start], on a message or a node of a bus."""
+
+    fault: Fault
+    bus: str
+    message: str
+    node: str
+    since: int
+    until: int
+
+
+@dataclasses.dataclass(frozen=True)
 class Plan:
     """A system with a scenario, ready to run at the times of `clock`.
 
@@ -133,6 +145,7 @@ class Plan:
     text_slots: tuple[int, ...] = ()
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
     unreached: tuple[str, ...] = ()
+    faults: tuple[FaultPlan, ...] = ()
 
     @functools.cached_property
     def timed_buses(self) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from ..units.definition import names_difference
 from ..units.measure import Affine, DifferenceError
 from .connections import Network, connect
 from .events import scheduled
+from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
 from .plan import Drive, InputPlan, Plan
 from .recorded import Record
@@ -79,7 +80,7 @@ def resolve(
     named, started = by_kind(options, interfaces, network)
     parameters = all_parameters(system, scenario, entries, interfaces, named)
     starts = {u: all_starts(system, scenario, u, entries[u], interfaces[u], started) for u in entries}
-    return Plan(
+    plan = Plan(
         system=system.file.name,
         scenario=scenario.name,
         experiment=experiment,
@@ -117,6 +118,7 @@ def resolve(
         text_slots=slots.shown(text_columns),
         texts=texts,
     )
+    return with_faults(plan, scenario)
 
 
 _Columns = list[tuple[str, VariableInfo]]

@@ -59,6 +59,8 @@ def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, An
     found: dict[str, Any] = {}
     if row[T.TIMEOUT]:
         found["timeouts"] = int(row[T.TIMEOUTS])
+    if row[T.LOST] or row[T.SILENCED]:
+        found |= {"lost": int(row[T.LOST]), "silenced": int(row[T.SILENCED])}
     if row[T.PROFILE]:
         found["rejected"] = int(row[T.REJECTED])
         found["statuses"] = {name: int(verdicts[code]) for code, name in STATUSES.items() if verdicts[code]}

@@ -160,8 +160,7 @@ class Engine:
     def __init__(self, plan: Plan, units: Mapping[str, Unit], log_raw: bool = False) -> None:
         self.plan = plan
         self._units = dict(units)
-        self.k = 0
-        self.whole = True
+        self.k, self.whole = 0, True
         self.schedule = schedule(plan)
         self.late, size = waiting(plan)
         self.memory: NDArray[np.float64] = np.zeros(size)
@@ -178,7 +177,9 @@ class Engine:
         self.ending = Ending()
         self.turns = [Turn(units[p.name], p, self.view, plan.clock, self.ending) for p in plan.units]
         self.senders = senders_of(plan, self.view, self.late, log_raw)
-        self.frames = FramePath(self.senders, self.memory, plan.clock.step, log_raw, plan.initial)
+        self.frames = FramePath(
+            self.senders, self.memory, plan.clock.step, log_raw, plan.initial, plan.faults
+        )
         self._events = list(plan.events)
         self._turn_of_input = {
             group.slot + i: turn

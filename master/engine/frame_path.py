@@ -18,6 +18,7 @@ from ...cosim.can.wire import medium
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.values import set_raw
+from ...cosim.plan.plan import FaultPlan
 from .schedule import Action
 from .sender import Sender
 from .wire_tables import key_of, nodes_of, ring_of_bus, views, wire_arrays
@@ -37,6 +38,7 @@ class FramePath:
         step: float,
         logs: bool,
         initial: Mapping[int, float] | None = None,
+        faults: Sequence[FaultPlan] = (),
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
@@ -44,7 +46,7 @@ class FramePath:
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}
-        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {})
+        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {}, faults)
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]

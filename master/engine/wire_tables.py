@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Any, assert_never
+from typing import Any, Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
-from ...cosim.plan.plan import MessagePlan
+from ...cosim.plan.faults import node_of
+from ...cosim.plan.plan import FaultPlan, MessagePlan
 from .sender import Sender
 
 Arrays = dict[str, NDArray[Any]]
@@ -34,6 +35,7 @@ def wire_arrays(
     step: float,
     logs: bool,
     initial: Mapping[int, float] | None = None,
+    faults: Sequence[FaultPlan] = (),
 ) -> Arrays:
     """Return the tables of the messages of `senders`; message i is that of sender i.
 
@@ -46,6 +48,7 @@ def wire_arrays(
         "messages": _table(len(plans), T.MESSAGE),
         "base": _table(len(plans), T.BYTES),
         "waiting": _table(len(plans), T.BYTES),
+        "kept": _table(len(plans), T.BYTES),
         "verdicts": _table(len(plans), T.VERDICTS),
         "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
@@ -61,6 +64,7 @@ def wire_arrays(
     _add_fallback(made, plans, initial or {})
     _add_protection(made, plans)
     _add_buses(made, plans, step)
+    _add_faults(made, plans, faults)
     _add_rings(made, plans)
     same = [(plan.bus, key_of(plan.message)) for plan in plans]
     for i, plan in enumerate(plans):
@@ -115,6 +119,43 @@ def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
         made["chances"][row] = [-math.expm1(bits * right) for bits in range(_MOST_BITS)]
 
 
+def _add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[FaultPlan]) -> None:
+    """Add the faults of the scenario."""
+    buses, nodes = list(dict.fromkeys(plan.bus for plan in plans)), nodes_of(plans)
+    keys = {(plan.bus, plan.message.name): key_of(plan.message) for plan in plans}
+    faults = [fault for fault in faults if fault.bus in buses]  # with no bus there is none
+    made["faults"], made["odds"] = _table(len(faults), T.FAULT_WIDTH), np.ones(max(1, len(faults)))
+    made["state"][T.FAULTS] = len(faults)
+    for row, found in enumerate(faults):
+        fault = found.fault
+        made["odds"][row] = fault.probability
+        _fill(
+            made["faults"], row,
+            {T.FAULT_KIND: _fault_kind(fault.action), T.FAULT_BUS: buses.index(found.bus),
+             T.FAULT_KEY: keys.get((found.bus, found.message), -1),
+             T.FAULT_NODE: nodes.index((found.bus, found.node)) if found.node else -1,
+             T.SINCE_TIME: found.since, T.UNTIL_TIME: found.until,
+             T.LEFT: -1 if fault.count is None else fault.count, T.EACH: fault.every,
+             T.FAULT_SEED: fault.seed, T.BYTE: fault.byte or 0, T.MASK: fault.mask,
+             T.COUNTER_TOO: fault.counter == "frozen"},
+        )  # fmt: skip # a row
+
+
+def _fault_kind(action: Literal["lose", "silence", "corrupt", "freeze"]) -> int:
+    """Return the code of what a fault does."""
+    match action:
+        case "lose":
+            return T.LOSE
+        case "silence":
+            return T.SILENCE
+        case "corrupt":
+            return T.CORRUPT
+        case "freeze":
+            return T.FREEZE
+        case _:
+            assert_never(action)
+
+
 def _bit(rate: int) -> int:
     """Return the time of a bit [ps] at a rate [bit/s]."""
     return round(10**12 / rate)
@@ -126,9 +167,7 @@ def nodes_of(plans: Sequence[MessagePlan]) -> list[tuple[str, str]]:
 
 
 def _node(plan: MessagePlan) -> tuple[str, str]:
-    """Return bus and node of a message; where the database names no sender, its unit."""
-    named = [sender for sender in plan.message.senders if sender != "Vector__XXX"]
-    return plan.bus, named[0] if named else next(iter(plan.senders.values()), "").partition(".")[0]
+    return plan.bus, node_of(plan)
 
 
 def views(arrays: Arrays, helper: Any) -> Wire:

@@ -104,6 +104,17 @@ sine = { amplitude = 1.0, period = 1.0, mean = 20.0, phase = 0.0, delay = 0.0 }
 [[stimulus]]
 to = "ecu.acceleration_bound"
 ramp = { slope = 1.0, start = 0.0, end = 2.0, delay = 0.0 }
+[[fault]]
+action = "corrupt"
+time = 0.01
+duration = 0.01
+message = "can0.EMD_Status"
+count = 1
+every = 1
+probability = 0.5
+seed = 1
+byte = 0
+mask = 1
 [[event]]
 action = "override"
 time = 0.01

@@ -7,6 +7,7 @@ from typing import Any
 from ..timing.draws import drawn
 from . import tables as T
 from .arbitration import contend, number_of
+from .faults import hit, spoil
 from .log import log
 from .protect import accepted, protect, watch
 from .tables import Wire
@@ -17,11 +18,17 @@ _JITTER = 1  # what is drawn for
 
 def send(w: Wire, i: int, k: int) -> int:
     """Sample and pack message i in step k, and send the frame; return DONE or RAISED."""
+    m, now = w.messages, k * w.state[T.STEP_TIME]
+    if hit(w, T.SILENCE, i, now) >= 0:
+        m[i, T.SILENCED] += 1
+        return T.DONE
     if sample(w, i, k) != T.DONE:
         return T.RAISED
     pack(w, i)
-    protect(w, i)
-    m, now = w.messages, k * w.state[T.STEP_TIME]
+    if w.state[T.FAULTS]:
+        spoil(w, i, now)
+    else:
+        protect(w, i)
     m[i, T.SENT] += 1
     m[i, T.INSTANCE] += 1
     if w.buses[m[i, T.BUS], T.TIMED]:
@@ -114,6 +121,9 @@ def deliver(w: Wire, i: int, k: int, sampled: int) -> int:
     m = w.messages
     note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
     m[i, T.ARRIVED] += 1
+    if hit(w, T.LOSE, i, sampled) >= 0:
+        m[i, T.LOST] += 1
+        return T.DONE
     return unpack(w, i, k) if accepted(w, i) else T.DONE
 
 

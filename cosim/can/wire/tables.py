@@ -16,7 +16,8 @@ class Wire(NamedTuple):
     """The tables, each a two-dimensional array (for Python a memoryview) but for those in one dimension.
 
     `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64, as
-    `fallback`, which has a number for each row of sinks; `ids`, 16 data IDs of each message; `statuses`;
+    `fallback`, which has a number for each row of sinks; `odds`, the probability of each fault;
+    `ids`, 16 data IDs of each message; `statuses`;
     `frame`, the bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double`
     (float64) with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
     """
@@ -28,6 +29,8 @@ class Wire(NamedTuple):
     maps: Any
     base: Any
     waiting: Any
+    kept: Any
+    faults: Any
     rings: Any
     flights: Any
     buses: Any
@@ -39,6 +42,7 @@ class Wire(NamedTuple):
     memory: Any
     frame: Any
     ids: Any
+    odds: Any
     statuses: Any
     single: Any
     single_bits: Any
@@ -75,7 +79,9 @@ step at present (`protection.counters`); the number of frames that were not take
 """Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
 it, and how often that was; 1 if a frame came, and was taken, since `watch` looked; STATUSES slots of inputs
 from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
-MESSAGE = 53
+(KEPT, LOST, SILENCED) = range(53, 56)
+"""1 once `kept` has the last payload that was sent; frames that a fault took from receivers, or silenced."""
+MESSAGE = 56
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
 
@@ -133,9 +139,17 @@ LOG_WIDTH = LOG_PAYLOAD + 8
 """Columns of the log: the step in which the frame was sent, the time of its end, the message, and the
 payload, eight bytes in each word."""
 
-STEP_TIME, LOG_ROWS = range(2)
-STATE = 2
-"""Places in state: the time of a step; rows of the log in use."""
+STEP_TIME, LOG_ROWS, FAULTS = range(3)
+STATE = 3
+"""Places in state: the time of a step; rows of the log in use; the number of faults."""
+
+(FAULT_KIND, FAULT_BUS, FAULT_KEY, FAULT_NODE, SINCE_TIME, UNTIL_TIME, LEFT, EACH, MET, HITS) = range(10)
+(FAULT_SEED, BYTE, MASK, COUNTER_TOO) = range(10, 14)
+FAULT_WIDTH = 14
+"""Columns of faults: bus and key of the message, or the node; its time; frames that it may still hit (-1:
+all) and each how many-th; those that it met, and hit; its seed; what it does to a byte; 1 if the counter is
+frozen."""
+LOSE, SILENCE, CORRUPT, FREEZE = range(4)
 
 # ---- what Python is asked for, and what comes back
 

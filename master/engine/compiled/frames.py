@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from ....cosim.can.protection import counters, profiles
 from ....cosim.can.timing import draws, lengths
-from ....cosim.can.wire import arbitration, log, medium, payload, protect, tables, values
+from ....cosim.can.wire import arbitration, faults, log, medium, payload, protect, tables, values
 from ....cosim.can.wire.tables import Wire
 from ...machine import access
 from ...machine.access import call_3, pointer, word
 from ..wire_tables import Arrays
 
 MODULES: tuple[ModuleType, ...] = (
-    draws, lengths, profiles, counters, payload, values, log, arbitration, protect, medium,
+    draws, lengths, profiles, counters, payload, values, log, arbitration, protect, faults, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
 SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access)
@@ -80,12 +80,13 @@ def _wire(t):
     """Return the tables at the addresses of a `wire_table`."""
     return Wire(
         _ints(t, 0), _ints(t, 1), _reals(t, 2), _ints(t, 3), _reals(t, 4),  # messages to maps
-        _ints(t, 5), _ints(t, 6), _ints(t, 7), _ints(t, 8), _ints(t, 9), _ints(t, 10),  # base to nodes
-        _reals(t, 11), _ints(t, 12), _ints(t, 13),  # chances to log
-        _row(t, 14, np.float64), _row(t, 15, np.float64),  # fallback and memory
-        _row(t, 16, np.int64), _row(t, 17, np.int64), _row(t, 18, np.int64),  # frame to statuses
-        _row(t, 19, np.float32), _row(t, 20, np.int32), _row(t, 21, np.float64), _row(t, 22, np.int64),
-        _row(t, 23, np.int64), word(t, 3 * 24),  # state and helper
+        _ints(t, 5), _ints(t, 6), _ints(t, 7), _ints(t, 8),  # base to faults
+        _ints(t, 9), _ints(t, 10), _ints(t, 11), _ints(t, 12),  # rings to nodes
+        _reals(t, 13), _ints(t, 14), _ints(t, 15),  # chances to log
+        _row(t, 16, np.float64), _row(t, 17, np.float64),  # fallback and memory
+        _row(t, 18, np.int64), _row(t, 19, np.int64), _row(t, 20, np.float64), _row(t, 21, np.int64),
+        _row(t, 22, np.float32), _row(t, 23, np.int32), _row(t, 24, np.float64), _row(t, 25, np.int64),
+        _row(t, 26, np.int64), word(t, 3 * 27),  # state and helper
     )  # fmt: skip # in the order of Wire
 
 

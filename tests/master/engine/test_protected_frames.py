@@ -26,7 +26,8 @@ def system(timing: str = "instant", **own: object) -> System:
 
 def ran(tmp_path, engine, of, **options):
     """The columns of a run by name, its log's payloads of the message, and what was counted."""
-    with Simulation(of, engine=engine, isolation="none", log_frames=True, **options) as simulation:
+    scenario = options.pop("scenario", None)
+    with Simulation(of, scenario, engine=engine, isolation="none", log_frames=True, **options) as simulation:
         simulation.step(200)
         results, about = simulation.results, simulation.manifest()["buses"]["can0"]
         simulation.write_can_log(tmp_path / "bus.log")
@@ -61,6 +62,24 @@ def test_an_input_receives_the_status(tmp_path, engine):
     first = int(np.flatnonzero(status)[0])
     assert status[first] == 4.0
     assert not status[first + 1 :].any()
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+@pytest.mark.parametrize(
+    ("fault", "statuses"),
+    [
+        ('action = "corrupt"\nbyte = 3\nmask = 1', {"wrong_crc": 10}),
+        ('action = "freeze"\ncounter = "frozen"', {"repeated": 10}),
+        ('action = "freeze"', {"ok": 198}),  # nobody sees it: the counter runs, and the checksum is right
+        ('action = "lose"', {"no_new_data": 10}),
+    ],
+)
+def test_what_a_receiver_says_of_a_fault(tmp_path, engine, fault, statuses):
+    text = f'[[fault]]\ntime = 0.5\nduration = 0.1\nmessage = "can0.VCU_SteerRequest"\n{fault}\n'
+    (tmp_path / "fault.toml").write_text(text)
+    _, _, frames = ran(tmp_path, engine, system(e2e=E2E), scenario=tmp_path / "fault.toml")
+    found = frames["messages"]["VCU_SteerRequest"]["statuses"]
+    assert {name: found.get(name, 0) for name in statuses} == statuses
 
 
 @pytest.mark.parametrize(

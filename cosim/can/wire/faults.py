@@ -1,0 +1,66 @@
+"""Faults of a run, looked up when a frame is sent and when it is received.
+
+A fault hits frames that are sampled in its time, of a message or of all messages of a node: each `EVERY`-th,
+with its probability, and no more than LEFT.
+"""
+
+from __future__ import annotations
+
+from ..timing.draws import drawn
+from . import tables as T
+from .arbitration import number_of
+from .protect import protect
+from .tables import Wire
+
+_FAULT = 3  # what is drawn for
+
+
+def hit(w: Wire, kind: int, i: int, now: int) -> int:
+    """Return the first fault of a kind that hits the frame of message i sampled at a time; -1: none does."""
+    m, f = w.messages, w.faults
+    for row in range(w.state[T.FAULTS]):
+        if f[row, T.FAULT_KIND] != kind or not f[row, T.SINCE_TIME] <= now < f[row, T.UNTIL_TIME]:
+            continue
+        by_key = f[row, T.FAULT_BUS] == m[i, T.BUS] and f[row, T.FAULT_KEY] == m[i, T.KEY]
+        if not by_key and f[row, T.FAULT_NODE] != m[i, T.NODE]:
+            continue
+        f[row, T.MET] += 1
+        if f[row, T.LEFT] == 0 or (f[row, T.MET] - 1) % f[row, T.EACH]:
+            continue
+        name = w.buses[m[i, T.BUS], T.NAME]
+        if drawn(f[row, T.FAULT_SEED], name, number_of(w, i), f[row, T.MET], _FAULT) < w.odds[row]:
+            f[row, T.HITS] += 1
+            if f[row, T.LEFT] > 0:
+                f[row, T.LEFT] -= 1
+            return row
+    return -1
+
+
+def spoil(w: Wire, i: int, now: int) -> None:
+    """Protect the frame at hand, of message i, and do what faults of its sender do to it.
+
+    A frozen frame is the last one before; unless its counter is frozen too, that goes on.
+    """
+    frozen = hit(w, T.FREEZE, i, now) if w.messages[i, T.KEPT] else -1
+    if frozen >= 0:
+        for byte in range(w.messages[i, T.LENGTH]):
+            w.frame[byte] = w.kept[i, byte]
+        if w.messages[i, T.PROFILE] and not w.faults[frozen, T.COUNTER_TOO]:
+            wipe(w, i)
+            protect(w, i)
+    else:
+        protect(w, i)
+        w.messages[i, T.KEPT] = 1
+        for byte in range(w.messages[i, T.LENGTH]):
+            w.kept[i, byte] = w.frame[byte]
+    wrong = hit(w, T.CORRUPT, i, now)
+    if wrong >= 0 and w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:
+        w.frame[w.faults[wrong, T.BYTE]] ^= w.faults[wrong, T.MASK]
+
+
+def wipe(w: Wire, i: int) -> None:
+    """Set the bits of the counter of the frame at hand, of message i, to 0; the checksum is written anew."""
+    little, start = w.messages[i, T.COUNTER_LITTLE], w.messages[i, T.COUNTER_START]
+    for place in range(start, start + w.messages[i, T.COUNTER_BITS]):
+        bit = place & 7 if little else 7 - (place & 7)
+        w.frame[place >> 3] &= ~(1 << bit)
