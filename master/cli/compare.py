@@ -63,7 +63,8 @@ def compare(
     if not (signals or found.equal) and (metrics := _metrics(first, second)):
         print_table(("metric", str(a), str(b)), metrics)
         print()
-    print_paragraph(found.summary())
+    for line in found.summary().split("\n"):
+        print_paragraph(line)
     return 0 if found.equal else 1
 
 

@@ -30,3 +30,18 @@ def test_a_page_of_two_runs(evcosim, two_runs):
     assert "<title>a and b</title>" in page and "What differs in how they were made" in page
     assert evcosim("compare", "a", "b", "--signals", "vehicle.speed", "--plot", "one.HTML").code == 1
     assert "vehicle.speed: difference" in (two_runs / "one.HTML").read_text(encoding="utf-8")
+
+
+def test_two_tables_of_other_times_are_compared_at_the_times_of_both(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("time,v\n0,0\n2,2\n3,3\n")
+    (tmp_path / "b.csv").write_text("time,v\n0,0\n1,9\n2,2\n")
+    said = evcosim("compare", "a.csv", "b.csv")
+    assert said.code == 1
+    lines = said.out.splitlines()
+    assert "different: 1 of 1 common variables at 3 times, tolerance 0" in lines
+    assert "the first goes from 0 to 3 s, the second from 0 to 2 s" in lines
+    assert lines[-1] == "not compared: 1 point of the first at 3 s"
+    other = evcosim("compare", "b.csv", "a.csv", "--json").json
+    assert (other["equal"], other["points"], other["rows"][0]["difference"]) == (False, 3, 8.0)
+    assert other["not_compared"] == [{"side": "second", "points": 1, "begin": 3.0, "end": 3.0}]
+    assert evcosim("compare", "a.csv", "b.csv", "--relative", "1e400").code == 2
