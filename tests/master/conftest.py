@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -80,6 +81,13 @@ def warm_units(monkeypatch):
     """Fork the processes of isolated units from one that has imported what they need, ten times as fast."""
     warm.context()  # now: what it opens stays open
     monkeypatch.setattr(subprocess, "Popen", warm.popen)
+
+
+@pytest.fixture
+def warm_workers(monkeypatch):
+    """Fork the workers of `run_all` from a process that has imported what they need."""
+    forking = warm.context()
+    monkeypatch.setattr(multiprocessing, "get_context", lambda method=None: forking)
 
 
 @pytest.fixture(scope="session")

@@ -11,6 +11,8 @@ import pytest
 
 from support.small_disk import small_disk
 
+pytestmark = pytest.mark.usefixtures("warm_workers")
+
 
 def test_the_scooter_names_its_metric(evcosim):
     data = evcosim(

@@ -12,6 +12,8 @@ from evcosim.master.cli import app
 from evcosim.master.cli.json_schemas import SCHEMAS, schema_of
 from support import json_page
 
+pytestmark = pytest.mark.usefixtures("warm_units", "warm_workers")
+
 COMMANDS = [
     ("run", "scooter", "--stop-time", "2", "--profile", "--no-plot", "--no-report"),
     ("run", "Battery", "--input", "power=100", "--stop-time", "1", "--no-plot", "--no-report"),

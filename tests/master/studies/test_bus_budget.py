@@ -135,6 +135,7 @@ def test_a_run_for_which_the_machine_has_no_room_is_no_broken_point(line, monkey
     assert "cannot be extracted: File too large: the limit of a file's size is 1 KiB" in found.value
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_same_outcome_however_many_workers(line, measured):
     assert budget(line / "line.toml", workers=3, trust=True) == measured[0]
 
@@ -181,6 +182,7 @@ def test_no_budget_table(evcosim, line):
 # ---- the command
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_command(evcosim, line, measured, tmp_path):
     answer = evcosim("budget", line / "line.toml", "-o", "out")
     assert (answer.code, answer.err) == (0, "")
@@ -198,6 +200,7 @@ def test_command(evcosim, line, measured, tmp_path):
     assert "![arrived over each variation](budget.png)" in (tmp_path / "out" / "budget.md").read_text()
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_command_as_json_and_where_it_writes(evcosim, line, measured, tmp_path):
     data = evcosim("budget", line / "line.toml", "--json", "--workers", "1").json
     assert data["series"] == as_data(measured[0])["series"]
@@ -205,6 +208,7 @@ def test_command_as_json_and_where_it_writes(evcosim, line, measured, tmp_path):
     assert {p.name for p in (tmp_path / data["folder"]).iterdir()} == set(data["files"])
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_settings_count(evcosim, line):
     data = evcosim("budget", line / "line.toml", "--json", "--set", "picky.fails=5", "--workers", "1").json
     assert [each["first_broken"] for each in data["series"]] == ["+2 steps (20 ms)", None, "x 4"]
