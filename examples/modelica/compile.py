@@ -12,13 +12,13 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-import rumoca
-
 LIBRARY = {"fmi2": "binaries/linux64/{}.so", "fmi3": "binaries/x86_64-linux/{}.so"}
 
 
 def compiled(model: Path, folder: Path, target: str = "fmi2") -> Path:
     """Make the FMU of a .mo file in `folder`; its path. `target` is fmi2 or fmi3."""
+    import rumoca
+
     fmu = folder / f"{model.stem}.fmu"
     with tempfile.TemporaryDirectory() as made:
         rumoca.load(str(model)).codegen(target).save_all(made)
@@ -32,5 +32,19 @@ def compiled(model: Path, folder: Path, target: str = "fmi2") -> Path:
     return fmu
 
 
+def main(arguments: list[str]) -> str:
+    """Compile what is asked for, and return the FMU's name. Exits with a sentence where that cannot be."""
+    if not arguments or not Path(arguments[0]).is_file():
+        sys.exit(
+            f"{' '.join(arguments[:1]) or 'a model'}: there is no such file; python compile.py Scooter.mo"
+        )
+    try:
+        return str(compiled(Path(arguments[0]), Path(), *arguments[1:2]))
+    except ImportError as error:
+        sys.exit(f"{error}; in this Python: python -m pip install rumoca==0.9.13")
+    except FileNotFoundError as error:
+        sys.exit(f"{error.filename}: a C compiler of this name is needed")
+
+
 if __name__ == "__main__":
-    print(compiled(Path(sys.argv[1]), Path(), *sys.argv[2:]))
+    print(main(sys.argv[1:]))

@@ -38,7 +38,11 @@ def show(finished: FinishedRun) -> None:
     fields += [("warning", remark) for remark in finished.remarks]
     print_fields(fields)
     print()
-    print_fields([(m.name, m.text) for m in finished.metrics] or _final_values(finished))
+    if finished.metrics:
+        print_fields([(m.name, m.text) for m in finished.metrics])
+    elif final := _final_values(finished):
+        print_paragraph(f"values at t = {number(finished.results.span[1])} s")
+        print_fields(final)
     if profile := finished.simulation.profile:
         print()
         _show_profile(profile)

@@ -10,7 +10,7 @@ import pytest
 def test_final_values_where_there_are_no_metrics(evcosim, system):
     answer = evcosim("run", system({"cart": "Fragile"}, stop_time=1.0), "--no-plot")
     assert answer.code == 0
-    assert "cart.way  100 m" in answer.out
+    assert "values at t = 1 s\ncart.way  100 m" in answer.out
 
 
 def test_final_value_of_a_bare_number(evcosim, tmp_path):
