@@ -8,7 +8,9 @@ in the escape that JSON or TOML has for it.
 
 from __future__ import annotations
 
+import contextlib
 import re
+from collections.abc import Iterator
 from typing import Any, TextIO, cast
 
 _HIDING = (
@@ -67,8 +69,13 @@ class _VisibleStream:
         self.stream = stream
 
     def write(self, text: str) -> int:
-        self.stream.write(visible(text))
+        with naming(self.stream):
+            self.stream.write(visible(text))
         return len(text)
+
+    def flush(self) -> None:
+        with naming(self.stream):
+            self.stream.flush()
 
     def writelines(self, lines: Any) -> None:
         for line in lines:
@@ -76,6 +83,17 @@ class _VisibleStream:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.stream, name)
+
+
+@contextlib.contextmanager
+def naming(stream: TextIO) -> Iterator[None]:
+    """Let an error of the system name the stream, as one of a file names that."""
+    try:
+        yield
+    except OSError as error:
+        name = str(getattr(stream, "name", ""))
+        error.filename = {"<stdout>": "standard output", "<stderr>": "standard error"}.get(name, name)
+        raise
 
 
 def _escape(found: re.Match[str]) -> str:

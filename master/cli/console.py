@@ -15,7 +15,7 @@ from typing import Any
 
 import typer
 
-from ...cosim.visible import flowing, on_one_line, raw_stream, visible, visible_json, visible_stream
+from ...cosim.visible import flowing, naming, on_one_line, raw_stream, visible, visible_json, visible_stream
 from .wrapping import GAP, is_narrow, wrapped, wrapped_below
 
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
@@ -115,7 +115,9 @@ def _width() -> int:
 
 
 def _print_bold(text: str) -> None:
-    typer.secho(visible(text), file=raw_stream(sys.stdout), bold=True, color=is_bold(sys.stdout.isatty()))
+    stream = raw_stream(sys.stdout)
+    with naming(stream):
+        typer.secho(visible(text), file=stream, bold=True, color=is_bold(stream.isatty()))
 
 
 def is_bold(terminal: bool, environment: Mapping[str, str] = os.environ) -> bool:

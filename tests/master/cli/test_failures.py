@@ -367,3 +367,13 @@ def test_every_number_of_open_files_works_or_is_named(most, process):
 )
 def test_what_was_typed_wrong_is_said_with_what_to_type(evcosim, command, said):
     refused(evcosim(*command), said)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full is a device of Linux")
+@pytest.mark.parametrize("arguments", [["list"], ["schema", "system"], ["--version"], ["--help"]])
+def test_output_that_finds_no_room_is_named(arguments, process):
+    with open("/dev/full", "w") as full:
+        run = process(*arguments, stdout=full)
+        err = run.communicate(timeout=60)[1]
+    said = "evcosim: standard output: No space left on device: make room on the disk\n"
+    assert (run.returncode, err) == (1, said)
