@@ -9,6 +9,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..cosim.plan.bus_load import bus_loads
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.system import Isolation, System
@@ -48,7 +49,9 @@ def manifest(
         "defaults": {unit.name: _defaults(unit) for unit in plan.units},
         "connect": _connected(system, {unit.name for unit in plan.units}),
         "connections": _scaled(system),
-        "buses": _buses(system, engine),
+        "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
+        "frames": bus_statistics(engine.frames, engine.k),
+        "bus_load": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "events": [
             {"time": plan.clock.at(k), **event.model_dump(exclude={"time"})} for k, event in plan.events
         ],
@@ -111,15 +114,6 @@ def _scaled(system: System) -> list[dict[str, Any]]:
         for connection in system.file.connect
         if connection.written
     ]
-
-
-def _buses(system: System, engine: Engine) -> dict[str, dict[str, Any]]:
-    """Return the settings of each bus, and what was counted of its frames where there are any."""
-    counted = bus_statistics(engine.frames, engine.k)
-    return {
-        name: bus.model_dump() | ({"frames": counted[name]} if name in counted else {})
-        for name, bus in system.file.buses.items()
-    }
 
 
 def saturations(engine: Engine) -> dict[str, dict[str, float]]:

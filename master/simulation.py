@@ -21,6 +21,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Unpack
 
+from ..cosim.can.logs.frames import BusLog
 from ..cosim.can.logs.writing import write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest, short
 from ..cosim.interface import Value
@@ -282,8 +283,7 @@ class Simulation:
         return [*notices, *defects, *planned, *self._notices, *from_units, *beyond]
 
     def _unit_warnings(self) -> dict[str, tuple[int, dict[str, int]]]:
-        now = {name: (unit.warnings, dict(unit.warned)) for name, unit in self._units.items()}
-        return self._last_warnings | now
+        return self._last_warnings | {n: (u.warnings, dict(u.warned)) for n, u in self._units.items()}
 
     # ---- results
 
@@ -307,10 +307,13 @@ class Simulation:
         `start` is the moment of 0 s, with a time zone (default: 2000 begins in UTC). Return their number.
         Raises ConfigError if the run did not keep them (`log_frames`) or the file cannot be written.
         """
+        return write_can_log(path, self.frame_logs(), self.plan.clock, start)
+
+    def frame_logs(self) -> list[BusLog]:
+        """Return the frames of each bus. Raises ConfigError if the run did not keep them (`log_frames`)."""
         if not self.log_frames:
             raise ConfigError("the frames of this run were not kept: simulate with log_frames=True")
-        logs = [self._engine.frames.log_of(bus) for bus in self.system.file.buses]
-        return write_can_log(path, logs, self.plan.clock, start)
+        return [self._engine.frames.log_of(bus) for bus in self.system.file.buses]
 
     def manifest(self) -> dict[str, Any]:
         """Return what made these results: versions, FMU digests, parameters, settings, counts (JSON-able)."""

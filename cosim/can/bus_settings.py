@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from numbers import Integral
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
 
@@ -105,12 +105,14 @@ class BusVariation:
 
     `delay_steps` communication steps are added to the delay; `resolution` multiplies the factor by which
     signals are coarser than their DBC says, "ideal" leaves quantization out; `cycle` multiplies the cycle
-    time of every message. Raises ConfigError for a number that is none of these.
+    time of every message; `timing`, "instant" or "frame", takes the place of theirs. Raises ConfigError for a
+    value that is none of these.
     """
 
     delay_steps: int = 0
     resolution: Resolution = 1.0
     cycle: int = 1
+    timing: Timing | None = None
 
     def __post_init__(self) -> None:
         if not (_whole(self.delay_steps) and 0 <= self.delay_steps <= _MOST_STEPS):
@@ -119,6 +121,9 @@ class BusVariation:
         if not (_whole(self.cycle) and 1 <= self.cycle <= _SLOWEST):
             given = f"bus variation: cycle = {short(self.cycle)}"
             raise ConfigError(f"{given}: it is a whole number from 1 on, {_SLOWEST} at most")
+        if self.timing is not None and self.timing not in get_args(Timing):
+            given = f"bus variation: timing = {short(self.timing)}"
+            raise ConfigError(f"{given}: it is {' or '.join(map(repr, get_args(Timing)))}")
         try:
             checked_resolution(self.resolution)
         except ValueError as error:
@@ -132,6 +137,7 @@ class BusVariation:
                 "delay": settings.delay + self.delay_steps * step_size,
                 "resolution": "ideal" if ideal else float(settings.resolution) * float(self.resolution),
                 "cycle": settings.cycle * self.cycle,
+                "timing": self.timing or settings.timing,
             }
         )
 

@@ -23,6 +23,7 @@ from ..system.values import as_double
 from ..texts import Texts
 from ..units.definition import names_difference
 from ..units.measure import Affine, DifferenceError
+from .bus_load import bus_loads, check_load
 from .connections import Network, connect
 from .events import scheduled
 from .faults import with_faults
@@ -112,13 +113,21 @@ def resolve(
         column_slots=slots.shown(columns),
         initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
-        warnings=(*network.warnings, *before_start(scenario, drives, clock)),
+        warnings=(*network.warnings, *_loads(system, network, clock), *before_start(scenario, drives, clock)),
         unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, clock)),
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),
         texts=texts,
     )
     return with_faults(plan, scenario)
+
+
+def _loads(system: System, network: Network, clock: Clock) -> list[str]:
+    """Return a warning for each bus that its messages could fill. Raises ConfigError as `check_load` does."""
+    loads = bus_loads(network.messages, clock.step)
+    buses = system.file.buses
+    said = [check_load(load, buses[bus].timing, f"{system.path}: buses.{bus}") for bus, load in loads.items()]
+    return [warning for warning in said if warning]
 
 
 _Columns = list[tuple[str, VariableInfo]]

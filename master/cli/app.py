@@ -10,6 +10,7 @@ import typer
 from . import completion
 from .budget import budget
 from .build import build
+from .bus import bus
 from .check import check
 from .compare import compare
 from .compile import compile_
@@ -50,6 +51,7 @@ def command() -> Any:
         "build": build,
         "compile": compile_,
         "budget": budget,
+        "bus": bus,
         "schema": schema,
     }
     for name, verb in verbs.items():

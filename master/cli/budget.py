@@ -40,10 +40,10 @@ def budget(
     from ...cosim.results.repeat import given_options
     from ..studies.bus_budget import budget as measure_budget
     from .console import print_json, progress_bar
-    from .studies import ended, study_folder, written
+    from .studies import ended, names_of, study_folder, written
 
     kept = {"system": system, "scenario": scenario, "options": given_options(options)}
-    folder, remarks = study_folder(output, (*_names(system, scenario), "budget"), _DATA, kept)
+    folder, remarks = study_folder(output, (*names_of(system, scenario), "budget"), _DATA, kept)
     with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measure_budget(
             system,
@@ -58,15 +58,6 @@ def budget(
     else:
         _show(found, folder, [] if unwritten else files)
     return ended(folder, files, unwritten, remarks)
-
-
-def _names(system: str, scenario: str | None) -> tuple[str, str]:
-    """Return the names of system and scenario, of which that of the folder is made."""
-    from ...cosim.system.scenario import load_scenario
-    from ...cosim.system.system import load_system
-
-    read = load_system(system)
-    return read.file.name, load_scenario(read, scenario).name
 
 
 def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> Iterator[str]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 def described(name: str) -> dict[str, Any]:
     """Return the report on a system. Raises ConfigError for everything that is wrong in it."""
+    from ...cosim.plan.bus_load import bus_loads
     from ...cosim.system.scenario import load_scenario, scenario_names
     from ..isolation.decision import decided, needs_trust
 
@@ -39,6 +40,7 @@ def described(name: str) -> dict[str, Any]:
             for u in plan.units
         ],
         "connections": _connections(system, plan),
+        "buses": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "messages": [_message(m, plan) for m in plan.messages],
         "default_scenario": system.file.scenario,
         "scenarios": scenarios,
@@ -127,6 +129,9 @@ def show(about: dict[str, Any]) -> None:
     print_title("Connections")
     print_table(("from", "to", "via"), [_connection_row(c) for c in about["connections"]])
     if about["messages"]:
+        print_title("Buses")
+        of_bus = ("bus", "bit/s", "messages", "load, no to most stuff bits", "longest response [ms]")
+        print_table(of_bus, [_bus_row(bus) for bus in about["buses"]], right=("bit/s", "messages"))
         print_title("Messages")
         headers = ("message", "id", "every [s]", "delay [s]", "signal", "bits", "resolution", "range")
         rows = [row for message in about["messages"] for row in _message_rows(message)]
@@ -159,6 +164,14 @@ def _connection_row(c: dict[str, str]) -> tuple[str, ...]:
     )
     written = f" ({c['written']})" if c["written"] else ""
     return (source, (sink or "(on the bus only)") + written, bus)
+
+
+def _bus_row(bus: dict[str, Any]) -> tuple[str, ...]:
+    """Return name, bit rate, number of messages, load, and the longest of the response times."""
+    times = [message["response"] for message in bus["messages"]]
+    longest = "no bound for some" if None in times else f"{1e3 * max(times):.3g}"
+    load = f"{bus['least']:.1%} to {bus['most']:.1%}"
+    return (bus["bus"], str(bus["bitrate"]), str(len(times)), load, longest)
 
 
 def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .json_bus import BUS_LOAD
 from .json_parts import VALUE, by_name, flag, listed, number, or_null, record, text, whole
 
 LIST = record(
@@ -66,6 +67,7 @@ INFO_SYSTEM = record(
                 },
             ),
         ),
+        "buses": listed("The load of the buses that carry messages, known before a run.", BUS_LOAD),
         "messages": listed(
             "The messages that are sent.",
             record(

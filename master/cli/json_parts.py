@@ -55,3 +55,4 @@ def record(about: str, keys: Mapping[str, Schema], optional: tuple[str, ...] = (
 
 
 VALUE = of(["number", "string", "boolean", "null"], "A value of any type.")
+FILES = {"folder": text("The folder of the files."), "files": listed("The names of the files in it.")}

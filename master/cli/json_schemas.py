@@ -5,10 +5,10 @@ Numbers that are not finite are null in JSON, so that a measured number may be n
 
 from __future__ import annotations
 
+from .json_bus import BUS_TIMES
 from .json_info import INFO_DATABASE, INFO_FMU, INFO_SYSTEM, LIST
-from .json_parts import VALUE, Schema, by_name, flag, listed, number, of, or_null, record, text, whole
+from .json_parts import FILES, VALUE, Schema, by_name, flag, listed, number, of, or_null, record, text, whole
 
-_FILES = {"folder": text("The folder of the files."), "files": listed("The names of the files in it.")}
 _MEASURED = {"value": or_null(number("The number.")), "unit": text("Its unit of measure.")}
 _BUS = record(
     "The variation of the buses.",
@@ -16,6 +16,7 @@ _BUS = record(
         "delay_steps": whole("Communication steps by which messages arrive later."),
         "resolution": of(["number", "string"], 'Factor of the resolution, or "ideal".'),
         "cycle": whole("Factor by which messages are sent less often."),
+        "timing": or_null(text('"instant" or "frame"; null: as the files say.')),
     },
 )
 
@@ -59,7 +60,7 @@ _RUN = record(
         ),
         "metrics": by_name("The metrics, by name.", record("A metric.", _MEASURED)),
         "final": by_name("The last value of each recorded variable, by unit.variable.", VALUE),
-        **_FILES,
+        **FILES,
     },
 )
 
@@ -219,7 +220,7 @@ _IDENTIFY = listed(
                     "coherence": listed("Coherences.", {"type": ["number", "null"]}),
                 },
             ),
-            **_FILES,
+            **FILES,
         },
     ),
 )
@@ -259,7 +260,7 @@ _BUDGET = record(
                 },
             ),
         ),
-        **_FILES,
+        **FILES,
     },
 )
 
@@ -302,6 +303,7 @@ SCHEMAS: dict[str, Schema] = {
     "compare": _COMPARE,
     "identify": _IDENTIFY,
     "budget": _BUDGET,
+    "bus": BUS_TIMES,
     "reproduce": _REPRODUCE,
 }
 """The schemas by verb."""

@@ -31,6 +31,7 @@ class Verb(enum.StrEnum):
     compare = "compare"
     identify = "identify"
     budget = "budget"
+    bus = "bus"
     reproduce = "reproduce"
 
 

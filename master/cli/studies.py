@@ -81,3 +81,12 @@ def _settings_in(path: Path) -> Any:
 def with_settings(data: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a study found, with its settings as `study_folder` reads them."""
     return {**data, _KEY: json.loads(json.dumps(settings, default=str))}
+
+
+def names_of(system: str, scenario: str | None) -> tuple[str, str]:
+    """Return the names of system and scenario, of which that of the folder is made."""
+    from ...cosim.system.scenario import load_scenario
+    from ...cosim.system.system import load_system
+
+    read = load_system(system)
+    return read.file.name, load_scenario(read, scenario).name

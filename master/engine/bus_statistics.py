@@ -71,5 +71,5 @@ def _times(row: NDArray[np.int64], least: int, count: int) -> dict[str, float] |
     """Return least, mean and greatest time [s] of three columns; None without any."""
     if count == 0:
         return None
-    low, total, high = (float(row[least + i]) * _PICOSECOND for i in range(3))
-    return {"min": low, "mean": total / count, "max": high}
+    low, total, high = (int(row[least + i]) for i in range(3))
+    return {"min": low * _PICOSECOND, "mean": total / count * _PICOSECOND, "max": high * _PICOSECOND}

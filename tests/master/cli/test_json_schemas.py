@@ -20,6 +20,7 @@ COMMANDS = [
     ("list",),
     ("info", "scooter"),
     ("info", "Scooter"),
+    ("bus", "scooter", "--stop-time", "0.5", "-o", "bus"),
     ("info", str(DATA / "can" / "ev.dbc"), "--bitrate", "500000"),
     ("check", "Scooter", "--as", "scooter.vehicle", "--try", "500ms"),
     ("check", "Battery", "--as", "scooter.vehicle"),

@@ -12,7 +12,7 @@ from support.timed import timed
 def test_counts_and_times_of_each_message(engine):
     with Simulation(timed("scooter", bit_error_rate=1e-4), engine=engine, isolation="none") as simulation:
         simulation.step(100)
-        about = simulation.manifest()["buses"]["can0"]["frames"]
+        about = simulation.manifest()["frames"]["can0"]
     assert about["load"] == pytest.approx(sum(m["load"] for m in about["messages"].values()))
     assert 0.01 < about["load"] < 0.2
     for message in about["messages"].values():

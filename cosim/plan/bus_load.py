@@ -1,0 +1,131 @@
+"""The load of the buses and the longest response times, known before a run from the plan's messages."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+from ..can.timing.arbitration import arbitration_key
+from ..can.timing.lengths import INTERFRAME, least_bits, most_bits
+from ..can.timing.response_times import Sent, response_times
+from ..clock import picoseconds
+from ..errors import ConfigError
+from .plan import MessagePlan
+
+_SECOND = 10**12  # ps
+
+
+@dataclasses.dataclass(frozen=True)
+class MessageLoad:
+    """A message of a bus: `cycle` [s], payload `length` [bytes], and what its frames take.
+
+    `least` and `most` are the shares of the time that frames without stuff bits and the longest ones take,
+    `longest` [s] the time of the longest one with the interframe space, `response` [s] the longest time from
+    sampling to the end of the frame under any phases of the others; None: it has no bound.
+    """
+
+    name: str
+    identifier: int
+    extended: bool
+    length: int
+    cycle: float
+    least: float
+    most: float
+    longest: float
+    response: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class BusLoad:
+    """A bus with its messages in the order of arbitration; `least` and `most` are the sums of theirs."""
+
+    bus: str
+    bitrate: int
+    messages: tuple[MessageLoad, ...]
+
+    @property
+    def least(self) -> float:
+        """The share of the time that the bus is busy if no frame has a stuff bit."""
+        return sum(message.least for message in self.messages)
+
+    @property
+    def most(self) -> float:
+        """The share of the time that the bus is busy if each frame is the longest of its kind."""
+        return sum(message.most for message in self.messages)
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the loads and times [s] for JSON."""
+        return {
+            "bus": self.bus,
+            "bitrate": self.bitrate,
+            "least": self.least,
+            "most": self.most,
+            "messages": [dataclasses.asdict(message) for message in self.messages],
+        }
+
+
+def bus_loads(messages: Sequence[MessagePlan], step: float) -> dict[str, BusLoad]:
+    """Return the load of each bus of a plan's messages by name; `step` [s] is the communication step.
+
+    The pages of a multiplexed message count as one message, of which a frame follows each cycle.
+    """
+    found: dict[str, dict[str, list[MessagePlan]]] = {}
+    for plan in messages:
+        found.setdefault(plan.bus, {}).setdefault(plan.message.name, []).append(plan)
+    return {bus: _load(bus, list(plans.values()), step) for bus, plans in found.items()}
+
+
+def check_load(load: BusLoad, timing: str, place: str) -> str:
+    """Return a warning where the longest frames would fill the bus, else "".
+
+    Raises ConfigError, which starts with `place`, where frames are taken to arrive at once, and not even
+    frames without stuff bits would fit. With `timing = "frame"` the run shows who starves.
+    """
+    if load.least > 1.0 and timing == "instant":
+        raise ConfigError(
+            f"{place}: its messages take {load.least:.1%} of {load.bitrate} bit/s without any stuff bit: no "
+            'bus carries them. A higher bitrate, longer cycles, or timing = "frame", which shows who starves'
+        )
+    if load.most > 1.0:
+        return (
+            f"{place}: its messages take {load.least:.1%} to {load.most:.1%} of {load.bitrate} bit/s: with "
+            "many stuff bits low priorities starve"
+        )
+    return ""
+
+
+def _load(bus: str, groups: Sequence[Sequence[MessagePlan]], step: float) -> BusLoad:
+    settings = groups[0][0].settings
+    bit = round(_SECOND / settings.bitrate)
+    sent, about = [], {}
+    for plans in groups:
+        message, cycle = plans[0].message, plans[0].every // len(plans) * picoseconds(step)
+        fast = round(_SECOND / (settings.data_bitrate or settings.bitrate))
+        kind = (
+            message.extended,
+            message.frame_length,
+            message.fd,
+            message.fd and settings.data_bitrate is not None,
+        )
+        least, most = (
+            (nominal + INTERFRAME) * bit + data * fast
+            for nominal, data in (least_bits(*kind), most_bits(*kind))
+        )
+        key = arbitration_key(message.frame_id, message.extended)
+        own = settings.of_message(message.name).jitter
+        jitter = picoseconds(settings.jitter if own is None else own)
+        sent.append(Sent(message.name, key, most, cycle, jitter))
+        about[message.name] = message, cycle, least, most
+    responses = response_times(sent, bit, INTERFRAME * bit)
+    rows = []
+    for each in sorted(sent, key=lambda s: s.key):
+        message, cycle, least, most = about[each.name]
+        response = responses[each.name]
+        rows.append(
+            MessageLoad(
+                each.name, message.frame_id, message.extended, message.length, cycle / _SECOND, least / cycle,
+                most / cycle, most / _SECOND, None if response is None else response / _SECOND,
+            )
+        )  # fmt: skip # fields of a row
+    return BusLoad(bus, settings.bitrate, tuple(rows))

@@ -1,0 +1,103 @@
+"""The JSON schemas of what is known of a bus before a run and counted in one."""
+
+from __future__ import annotations
+
+from .json_parts import FILES, by_name, flag, listed, number, or_null, record, text, whole
+
+BUS_LOAD = record(
+    "The load of a bus by its messages.",
+    {
+        "bus": text("Its name."),
+        "bitrate": whole("Bits a second."),
+        "least": number("Part of the time that it is busy if no frame has a stuff bit."),
+        "most": number("Part of the time that it is busy if each frame is the longest of its kind."),
+        "messages": listed(
+            "Its messages in the order of arbitration.",
+            record(
+                "A message.",
+                {
+                    "name": text("Its name in the database."),
+                    "identifier": whole("Its identifier."),
+                    "extended": flag("Whether that has 29 bits."),
+                    "length": whole("Bytes in the database."),
+                    "cycle": number("Time from one to the next [s]."),
+                    "least": number("Part of the time of frames without stuff bits."),
+                    "most": number("Part of the time of the longest frames."),
+                    "longest": number("Time of the longest frame with the space after it [s]."),
+                    "response": or_null(
+                        number("Longest time from sampling to the end of the frame [s]; null: no bound.")
+                    ),
+                },
+            ),
+        ),
+    },
+)
+
+_TIMES = record(
+    "Times [s].", {"min": number("The least."), "mean": number("The mean."), "max": number("The greatest.")}
+)
+FRAMES = record(
+    "What was counted of the frames on a bus in a run.",
+    {
+        "load": number("Part of the time that it was busy."),
+        "messages": by_name(
+            "By message.",
+            record(
+                "A message.",
+                {
+                    "load": number("Part of the time that its frames took."),
+                    "sent": whole("Frames that were sampled."),
+                    "replaced": whole("Frames that a newer one replaced while they waited."),
+                    "carried": whole("Frames that the bus carried."),
+                    "errors": whole("Frames that wire errors ended."),
+                    "arrived": whole("Frames that receivers got."),
+                    "latency": or_null(_TIMES | {"description": "From sampling to the end of the frame."}),
+                    "seen": or_null(_TIMES | {"description": "From sampling to when receivers saw it."}),
+                    "timeouts": whole("How often no frame came in time."),
+                    "rejected": whole("Frames that the check of their protection did not take."),
+                    "statuses": by_name("Frames by the status of their check.", whole("Their number.")),
+                },
+                optional=("timeouts", "rejected", "statuses"),
+            ),
+        ),
+        "nodes": by_name(
+            "By node.",
+            record(
+                "A node.",
+                {
+                    "tec": whole("Its error counter as a sender."),
+                    "rec": whole("Its error counter as a receiver."),
+                    "bus_off": whole("How often it was off the bus."),
+                },
+            ),
+        ),
+    },
+)
+BUS_TIMES = record(
+    "Load and latencies of the buses of a system.",
+    {
+        "buses": listed(
+            "The buses that carry messages.",
+            record(
+                "A bus.",
+                {
+                    **BUS_LOAD["properties"],
+                    "counted": FRAMES,
+                    "period": listed(
+                        "The frames of the busy period of the longest wait.",
+                        record(
+                            "A frame.",
+                            {
+                                "name": text("Its message."),
+                                "sampled": number("Time of its sampling [s]."),
+                                "start": number("Time of its start [s]."),
+                                "end": number("Time of its end [s]."),
+                            },
+                        ),
+                    ),
+                },
+            ),
+        ),
+        **FILES,
+    },
+)
