@@ -21,7 +21,7 @@ from ..system.values import as_double, of_type
 from ..texts import Texts
 from ..units.definition import names_difference
 from ..units.measure import Affine
-from .buses import check_one_sender, foreign_senders, open_buses
+from .buses import check_one_sender, foreign_senders, open_buses, other_send_types
 from .plan import InputPlan, Link, MessagePlan
 from .slots import Slots
 from .steps import steps_in
@@ -114,6 +114,7 @@ def connect(
     order = list(interfaces)
     for (bus, message), routes in work.signal_routes.items():
         work.network.messages += _message(work, bus, message, routes, clock.step, algorithm, order)
+    work.network.warnings += other_send_types(work.network.messages)
     work.network.warnings += foreign_senders(work.network.messages, system, work.databases)
     return work.network
 
