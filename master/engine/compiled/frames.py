@@ -48,34 +48,35 @@ def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
 
 def function() -> Any:
     """Return the function action(address of a wire_table, what, i, k), to be compiled."""
-    jitted: dict[str, Any] = {"ask": njit(error_model="numpy")(_ask)}
+    jitted: dict[str, Any] = {"ask": njit(forceinline=True, error_model="numpy")(_ask)}
     scopes = [dict(vars(module)) for module in MODULES]
     for module, scope in zip(MODULES, scopes, strict=True):
         for name, value in vars(module).items():
             if isinstance(value, FunctionType) and value.__module__ == module.__name__ and name not in jitted:
                 copy = FunctionType(value.__code__, scope, name)
-                jitted[name] = njit(error_model="numpy")(copy)
+                inline = "w" in value.__code__.co_varnames[:1]  # all tables, which no call should copy
+                jitted[name] = njit(forceinline=inline, error_model="numpy")(copy)
     for scope in scopes:
         scope.update({name: made for name, made in jitted.items() if name in scope})
     return FunctionType(_action.__code__, {**globals(), "act": jitted["act"]}, "wire_action")
 
 
-@njit
+@njit(forceinline=True, error_model="numpy")
 def _ints(t, i):
     return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1), word(t, 3 * i + 2)), np.int64)
 
 
-@njit
+@njit(forceinline=True, error_model="numpy")
 def _reals(t, i):
     return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1), word(t, 3 * i + 2)), np.float64)
 
 
-@njit
+@njit(forceinline=True, error_model="numpy")
 def _row(t, i, kind):
     return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1),), kind)
 
 
-@njit
+@njit(forceinline=True, error_model="numpy")
 def _wire(t):
     """Return the tables at the addresses of a `wire_table`."""
     return Wire(
