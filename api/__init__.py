@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .cosim.analysis.first_order import Estimate, FirstOrder, Fit, Prediction
     from .cosim.analysis.frequency_response import FrequencyResponse
     from .cosim.analysis.sweep import Sweep
-    from .cosim.can.bus_settings import BusVariation, Resolution
+    from .cosim.can.bus_settings import BusVariation, Resolution, Timing
     from .cosim.clock import Clock
     from .cosim.errors import ConfigError, RunError
     from .cosim.interface import Value
@@ -98,6 +98,7 @@ __all__ = [
     "TaskError",
     "TaskProgress",
     "TextTable",
+    "Timing",
     "Unit",
     "Value",
     "__version__",
@@ -158,6 +159,7 @@ _MODULES = {
     "TaskError": "master.studies.parallel",
     "TaskProgress": "master.studies.parallel",
     "TextTable": "cosim.results.text_table",
+    "Timing": "cosim.can.bus_settings",
     "Unit": "master.unit",
     "Value": "cosim.interface",
     "budget": "master.studies.bus_budget",

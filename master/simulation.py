@@ -307,13 +307,7 @@ class Simulation:
         `start` is the moment of 0 s, with a time zone (default: 2000 begins in UTC). Return their number.
         Raises ConfigError if the run did not keep them (`log_frames`) or the file cannot be written.
         """
-        return write_can_log(path, self.frame_logs(), self.plan.clock, start)
-
-    def frame_logs(self) -> list[BusLog]:
-        """Return the frames of each bus. Raises ConfigError if the run did not keep them (`log_frames`)."""
-        if not self.log_frames:
-            raise ConfigError("the frames of this run were not kept: simulate with log_frames=True")
-        return [self._engine.frames.log_of(bus) for bus in self.system.file.buses]
+        return write_can_log(path, frame_logs(self), self.plan.clock, start)
 
     def manifest(self) -> dict[str, Any]:
         """Return what made these results: versions, FMU digests, parameters, settings, counts (JSON-able)."""
@@ -397,3 +391,10 @@ def simulate(
         error.results = simulation.results
         raise
     return simulation.results
+
+
+def frame_logs(simulation: Simulation) -> list[BusLog]:
+    """Return the frames of each bus. Raises ConfigError if the run did not keep them (`log_frames`)."""
+    if not simulation.log_frames:
+        raise ConfigError("the frames of this run were not kept: simulate with log_frames=True")
+    return [simulation._engine.frames.log_of(bus) for bus in simulation.system.file.buses]

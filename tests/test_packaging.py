@@ -55,9 +55,10 @@ def test_dependencies_are_what_is_imported():
     }
     needed = {DISTRIBUTIONS.get(name, name) for name in imported} - CHOSEN_BY_ANOTHER.keys()
     project = PROJECT["project"]
+    extras = project["optional-dependencies"]
     declared, optional = (
         {re.split(r"[<>=!~\[; ]", text)[0] for text in texts}
-        for texts in (project["dependencies"], project["optional-dependencies"]["data"])
+        for texts in (project["dependencies"], [*extras["data"], *extras["mf4"]])
     )
     # the runtime of a built FMU is copied from pythonfmu's files, which are found without an import
     assert declared | optional == needed | {"pythonfmu"}

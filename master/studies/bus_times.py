@@ -13,7 +13,7 @@ from ...cosim.can.bus_settings import BusSettings, BusVariation
 from ...cosim.errors import ConfigError
 from ...cosim.plan.bus_load import bus_loads
 from ...cosim.system.run_options import RunOptions
-from ..simulation import RunProgress, Simulation
+from ..simulation import RunProgress, Simulation, frame_logs
 
 
 def bus_times(
@@ -42,7 +42,7 @@ def bus_times(
         about: dict[str, Any] = simulation.manifest()
         loads = bus_loads(simulation.plan.messages, simulation.plan.clock.step)
         found = []
-        for log in simulation.frame_logs():
+        for log in frame_logs(simulation):
             if log.bus in loads:
                 settings: BusSettings = simulation.system.file.buses[log.bus]
                 frames = carried(log, simulation.plan.clock, settings)
