@@ -24,7 +24,7 @@ def ran(tmp_path, fault: str, engine: str = "compiled", system="scooter", steps:
     (tmp_path / "faults.toml").write_text(text)
     with Simulation(system, tmp_path / "faults.toml", engine=engine, isolation="none", **options) as run:
         run.step(steps)
-        results, frames = run.results, run.manifest()["buses"]["can0"].get("frames", {"messages": {}})
+        results, frames = run.results, run.manifest()["frames"].get("can0", {"messages": {}})
         return {v.name: results[v.name] for v in results.variables}, frames["messages"]
 
 
