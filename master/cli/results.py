@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .once import OnceCommand
+from .typed_paths import checks_paths
 
 results = typer.Typer(help="What is done with the folder of a run.", rich_markup_mode=None)
 
@@ -18,6 +19,7 @@ def _group() -> None:
 
 
 @results.command("recover", cls=OnceCommand)
+@checks_paths
 def recover(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a run that was killed.")],
 ) -> None:

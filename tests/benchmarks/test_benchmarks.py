@@ -46,9 +46,9 @@ def test_an_fmu_costs_little_beside_its_model_and_the_calls(monkeypatch: pytest.
 
 LAZY = {
     "list": {"pydantic"},
-    "info scooter": {"numpy", "pydantic", "fmpy", "cantools"},
-    "run scooter --no-plot --engine python": {"numpy", "pydantic", "fmpy", "cantools"},
-    "run scooter --engine python": {"numpy", "pydantic", "fmpy", "cantools", "matplotlib"},
+    "info scooter": {"numpy", "pydantic", "fmpy"},
+    "run scooter --no-plot --engine python": {"numpy", "pydantic", "fmpy"},
+    "run scooter --engine python": {"numpy", "pydantic", "fmpy", "matplotlib"},
 }
 
 

@@ -33,6 +33,8 @@ BASES = [
     "identify Scooter --engine python --input throttle --output speed --amplitude 1 --sweep 0.5,2 "
     "--duration 4 --no-plot -q -o out",
     "budget s.toml --engine python --workers 1 -o out",
+    "bus s.toml --engine python -o out",
+    "info one.dbc",
     "reproduce nothing",
 ]
 """Good command lines of all verbs that take a number; `reproduce` refuses its paper, after its options."""
@@ -104,6 +106,7 @@ def outcome(arguments: list[str]) -> tuple[int, str]:
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     small_bench.write(tmp_path)
+    (tmp_path / "one.dbc").write_text('BU_: A\nBO_ 1 M: 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] "" A\n')
     (tmp_path / "a.csv").write_text("time,x\n0.0,1.0\n0.01,2.0\n")
     monkeypatch.chdir(tmp_path)
     return tmp_path

@@ -82,7 +82,7 @@ def test_check_tries_its_file_before_the_report(evcosim, folder):
         (["compare", LONG, "r"], "A 'aaa"),
         (["plot", DEEP], "RESULT 'bbb"),
         (["compile", LONG], "FILE 'aaa"),
-        (["results", "recover", LONG], "'aaa"),
+        (["results", "recover", LONG], "DIR 'aaa"),
         (["info", LONG], "'aaa"),
         (["info", f"{LONG}.fmu"], "'aaa"),
     ],
