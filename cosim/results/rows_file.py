@@ -37,13 +37,12 @@ def file_of_run(folder: Path, whole: str) -> Path:
     Raises ConfigError for a folder without either, naming those below it that have results.
     """
     path, rows = folder / whole, folder / ROWS_NAME
-    if path.exists():
-        return path
-    if rows.exists():
-        return rows
+    for there in (path, rows):
+        if os.path.lexists(there):  # a link to nothing is named where it is read
+            return there
     below = sorted(f.parent for pattern in ("*", "*/*") for f in folder.glob(f"{pattern}/{whole}"))
-    there = f"; it has {', '.join(map(str, below[:5]))}" if below else ""
-    raise ConfigError(f"{folder}: is a folder without results of a run ({whole}){there}")
+    known = f"; it has {', '.join(map(str, below[:5]))}" if below else ""
+    raise ConfigError(f"{folder}: is a folder without results of a run ({whole}){known}")
 
 
 def head(clock: Clock, variables: Sequence[ResultVariable], manifest: Mapping[str, Any]) -> bytes:

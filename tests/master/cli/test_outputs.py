@@ -147,7 +147,7 @@ def test_a_run_that_a_full_disk_stops_says_why_and_what_is_where(evcosim, monkey
 
 
 def test_rows_that_fit_where_results_do_not_are_recovered_by_the_next_run(evcosim, tmp_path, monkeypatch):
-    with small_disk(tmp_path / "disk", 30) as disk:
+    with small_disk(tmp_path / "disk", 32) as disk:
         monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
         short = ("run", "scooter", "--no-plot", "--no-report", "--stop-time", "4", "-o", "disk/out")
         answer = evcosim(*short)

@@ -29,11 +29,11 @@ def ran(tmp_path, engine, of, **options):
     scenario = options.pop("scenario", None)
     with Simulation(of, scenario, engine=engine, isolation="none", log_frames=True, **options) as simulation:
         simulation.step(200)
-        results, about = simulation.results, simulation.manifest()["buses"]["can0"]
+        results, counted = simulation.results, simulation.manifest()["frames"]
         simulation.write_can_log(tmp_path / "bus.log")
     lines = (tmp_path / "bus.log").read_text().splitlines()
     payloads = [bytes.fromhex(line.split("#")[1].split()[0]) for line in lines if " 120#" in line]
-    return {v.name: results[v.name] for v in results.variables}, payloads, about.get("frames", {})
+    return {v.name: results[v.name] for v in results.variables}, payloads, counted.get("can0", {})
 
 
 @pytest.mark.parametrize("timing", ["instant", "frame"])
