@@ -156,6 +156,8 @@ EXACT: tuple[Row, ...] = (
     ("kt", "kn | kt", "knot; SI brochure: kilotonne"),
     ("cal", "cal_th | cal_it", "NIST SP 811: thermochemical; International Table"),
     ("calorie", "cal_th | cal_it", "as cal"),
+    ("kcal", "kilocal_th | kilocal_it", "as cal"),
+    ("kilocalorie", "kilocal_th | kilocal_it", "as cal"),
     ("calories", "cal_th | cal_it", "as cal"),
     ("NM", "Nm", "chrysler_pacifica_2017_hybrid.dbc"),
     ("nM", "Nm", "nissan_xterra_2011.dbc"),

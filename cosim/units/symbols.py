@@ -64,7 +64,7 @@ _ALONE: dict[str, _Size] = {
     "lb": (_POUND, {"kg": 1}), "short_ton": (2000 * _POUND, {"kg": 1}), "lbf": (_POUND * _GRAVITY, _FORCE),
     "psi": (_POUND * _GRAVITY / _INCH**2, _PRESSURE), "atm": (101_325, _PRESSURE),
     "mmHg": (Fraction("133.322387415"), _PRESSURE), "gal": (231 * _INCH**3, {"m": 3}),
-    "kgf": (_GRAVITY, _FORCE), "kcal": (4184, _ENERGY), "cP": (Fraction(1, 1000), _PRESSURE | {"s": -1}),
+    "kgf": (_GRAVITY, _FORCE), "cP": (Fraction(1, 1000), _PRESSURE | {"s": -1}),
     "cSt": (Fraction(1, 1_000_000), {"m": 2, "s": -1}), "cmH2O": (Fraction("98.0665"), _PRESSURE),
     "inH2O": (Fraction("249.08891"), _PRESSURE),
     "inHg": (_INCH * 1000 * Fraction("133.322387415"), _PRESSURE),

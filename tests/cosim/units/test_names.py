@@ -119,7 +119,7 @@ def test_a_doubtful_name_is_no_unit_and_the_message_says_why(name):
     [
         ("gal", "L"), ("gallon/h", "L/h"), ("quart", "L"), ("pint", "mL"), ("fluid_ounce", "mL"),
         ("oz", "g"), ("ounces", "g"), ("hp", "W"), ("HP", "kW"), ("horsepower", "W"), ("ton", "kg"),
-        ("hundredweight", "kg"), ("cwt", "kg"), ("BTU/h", "W"), ("cal", "J"), ("calorie", "J"),
+        ("hundredweight", "kg"), ("cwt", "kg"), ("BTU/h", "W"), ("cal", "J"), ("kcal", "J"), ("calorie", "J"),
         ("therm", "J"), ("year", "s"), ("yr", "d"), ("grad", "rad"),
     ],
 )  # fmt: skip # a table
@@ -135,7 +135,7 @@ def test_a_name_that_trades_and_countries_have_several_of_is_open(text, target):
     [
         ("imperial_gallon", "L", 4.54609), ("US_gallons", "L", 3.785411784),
         ("mechanical_horsepower", "W", 745.69987158), ("metric_horsepower", "W", 735.49875),
-        ("long_ton", "kg", 1016.0469088), ("troy_ounce", "g", 31.1034768), ("kcal", "J", 4184.0),
+        ("long_ton", "kg", 1016.0469088), ("troy_ounce", "g", 31.1034768), ("kilocal_th", "J", 4184.0),
         ("Btu_it", "J", 1055.05585262), ("thou", "mm", 0.0254), ("keV", "J", 1.602176634e-16),
         ("milliarcsecond", "rad", math.pi / 648e6), ("kilotonne", "kg", 1e6), ("centistokes", "mm2/s", 1.0),
         ("kvar", "W", 1000.0), ("cmH2O", "Pa", 98.0665), ("kt", "m/s", 1852 / 3600), ("kt", "kg", 1e6),

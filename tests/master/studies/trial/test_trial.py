@@ -137,9 +137,9 @@ def test_an_fmu_that_ends_the_trial(tmp_path: Path) -> None:
 
 
 def test_a_trial_ends_in_time(tmp_path: Path) -> None:
-    trial = mixed(tmp_path, 0, limit=0.4)
+    trial = mixed(tmp_path, 0, limit=0.05)
     assert trial.findings[-1].what == "time"
-    assert trial.findings[-1].text == "ended after 0.4 s; what is not told was not tried"
+    assert trial.findings[-1].text == "ended after 0.05 s; what is not told was not tried"
 
 
 @pytest.mark.parametrize("stop", [0.29, 0.57, 1.13])
