@@ -27,7 +27,9 @@ def children(pid: int) -> list[int]:
 
 def killed(run, folder: Path) -> list[int]:
     """Kill a run as soon as rows are on the disk; return the processes that it had."""
-    while not (folder / "results.rows").exists():
+    rows = folder / "results.rows"
+    # the file is made a moment before its first line and the rows are written
+    while not (rows.exists() and rows.read_bytes().partition(b"\n")[2]):
         assert run.poll() is None
         time.sleep(0.05)
     mine = children(run.pid)
