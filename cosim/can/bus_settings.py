@@ -91,6 +91,11 @@ class BusSettings(BaseModel):
     messages: dict[str, MessageSettings] = {}
     """Settings of single messages by name: a table `[buses.NAME.messages.NAME]` for each."""
 
+    def jitter_of(self, name: str) -> float:
+        """Return the longest time [s] from sampling to queue of a message: its own, else that of the bus."""
+        own = self.of_message(name).jitter
+        return self.jitter if own is None else own
+
     def of_message(self, name: str) -> MessageSettings:
         """Return the settings of the message `name`: those of no file where it has none."""
         return self.messages.get(name, MessageSettings())

@@ -13,11 +13,10 @@ import sys
 from pathlib import Path
 
 from ..errors import ConfigError, nearest
+from .timing.lengths import FD_LENGTHS, fd_length
 
 LONGEST = 1785
 """Bytes of the longest message, which several frames transport."""
-FD_LENGTHS = (*range(9), 12, 16, 20, 24, 32, 48, 64)
-"""Bytes that a CAN FD frame can have; a classic one has those up to 8."""
 _FRAME = FD_LENGTHS[-1]
 _FLOAT_MAX = {32: struct.unpack("<f", b"\xff\xff\x7f\x7f")[0], 64: math.ldexp(2.0 - 2.0**-52, 1023)}
 
@@ -130,7 +129,7 @@ class Message:
     @property
     def frame_length(self) -> int:
         """Bytes of its frame: in CAN FD the next length that there is, where those that are added are 0."""
-        return next((n for n in FD_LENGTHS if n >= self.length), self.length) if self.fd else self.length
+        return fd_length(self.length) if self.fd else self.length
 
     def require(self, name: str, place: str = "") -> Signal:
         """Return the signal `name`, fit for a channel.

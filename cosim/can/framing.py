@@ -75,8 +75,7 @@ def check_jitter(message: Message, settings: BusSettings, cycle: float, place: s
 
     `cycle` [s] is the time between two of them.
     """
-    own = settings.of_message(message.name).jitter
-    jitter = settings.jitter if own is None else own
+    jitter = settings.jitter_of(message.name)
     if jitter >= cycle:
         raise ConfigError(
             f"{place}: message '{message.name}': jitter = {jitter} s is not less than its cycle time "

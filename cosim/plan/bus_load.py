@@ -113,8 +113,7 @@ def _load(bus: str, groups: Sequence[Sequence[MessagePlan]], step: float) -> Bus
             for nominal, data in (least_bits(*kind), most_bits(*kind))
         )
         key = arbitration_key(message.frame_id, message.extended)
-        own = settings.of_message(message.name).jitter
-        jitter = picoseconds(settings.jitter if own is None else own)
+        jitter = picoseconds(settings.jitter_of(message.name))
         sent.append(Sent(message.name, key, most, cycle, jitter))
         about[message.name] = message, cycle, least, most
     responses = response_times(sent, bit, INTERFRAME * bit)

@@ -10,13 +10,11 @@ from ...cosim.can.as_sent import as_sent
 from ...cosim.can.bus_settings import BusSettings
 from ...cosim.can.database import Database, Message, Signal
 from ...cosim.can.formats import load_database
-from ...cosim.can.timing.lengths import least_bits, most_bits
+from ...cosim.can.timing.lengths import INTERFRAME, least_bits, most_bits
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import UnknownUnitError
 from .console import number, print_fields, print_paragraph, print_table, print_title
-
-_INTERFRAME = 3  # bits
 
 
 def described(
@@ -79,7 +77,7 @@ def _load(message: Message, bitrate: int | None, data_bitrate: int | None) -> li
     found = []
     for bits in (least_bits, most_bits):
         nominal, fast = bits(message.extended, message.length, message.fd, switches)
-        seconds = (nominal + _INTERFRAME) / bitrate + fast / (data_bitrate or bitrate)
+        seconds = (nominal + INTERFRAME) / bitrate + fast / (data_bitrate or bitrate)
         found.append(seconds / message.cycle_time)
     return found
 

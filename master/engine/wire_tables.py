@@ -85,12 +85,12 @@ def ring_of_bus(made: Arrays, bus: int) -> int:
 
 
 def _message_row(plan: MessagePlan) -> dict[int, Any]:
-    message, own = plan.message, plan.settings.of_message(plan.message.name)
+    message = plan.message
     return {
         T.KEY: key_of(message), T.ID: message.frame_id, T.EXTENDED: message.extended, T.FD: message.fd,
         T.LENGTH: message.length, T.EVERY: plan.every, T.FIRST: plan.first,
         T.SWITCHED: message.fd and plan.settings.data_bitrate is not None,
-        T.JITTER: picoseconds(plan.settings.jitter if own.jitter is None else own.jitter),
+        T.JITTER: picoseconds(plan.settings.jitter_of(message.name)),
     }  # fmt: skip # a row
 
 

@@ -110,8 +110,8 @@ def fd_code(length: int) -> int:
 
 
 def fd_length(length: int) -> int:
-    """Return the bytes of the shortest CAN FD frame that holds `length` bytes, of 64 at most."""
-    return next(bytes_ for bytes_ in FD_LENGTHS if bytes_ >= length)
+    """Return the bytes of the shortest CAN FD frame that holds `length` bytes; over 64 as they are."""
+    return next((n for n in FD_LENGTHS if n >= length), length)
 
 
 def least_bits(extended: bool, length: int, fd: bool = False, switch: bool = False) -> tuple[int, int]:

@@ -6,8 +6,9 @@ import pytest
 
 from evcosim.cosim.can.as_sent import as_sent
 from evcosim.cosim.can.bus_settings import BusSettings
-from evcosim.cosim.can.database import FD_LENGTHS, Message
+from evcosim.cosim.can.database import Message
 from evcosim.cosim.can.message_settings import MessageSettings
+from evcosim.cosim.can.timing.lengths import FD_LENGTHS
 
 
 def message(cycle: float | None, **more) -> Message:
