@@ -16,17 +16,17 @@ import os
 import time
 from collections.abc import Callable, Mapping
 from datetime import datetime
-from numbers import Integral
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Unpack
 
 from ..cosim.can.logs.frames import BusLog
 from ..cosim.can.logs.writing import write_can_log
-from ..cosim.errors import ConfigError, RunError, nearest, short
+from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.interface import Value
 from ..cosim.plan.events import check_event
 from ..cosim.plan.plan import Plan
+from ..cosim.plan.steps import check_steps, whole_steps
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
 from ..cosim.row_store import Grid
@@ -34,7 +34,7 @@ from ..cosim.shortage import LINEAR_ALGEBRA, require_memory
 from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..cosim.system.selection import figure_spec, metric_specs
-from ..cosim.system.system import LATEST, Isolation, System
+from ..cosim.system.system import Isolation, System
 from .engine.initialization import initialize
 from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
@@ -156,20 +156,14 @@ class Simulation:
 
         They are fewer where a unit asks to end the simulation; after that a step is a RunError. Raises
         RunError naming unit, time and reason; the results up to then are kept. ConfigError for a number that
-        is none of steps or leads too far, and with `to_stop` for more than are left.
+        is none of steps, for more than a run keeps rows of, and with `to_stop` for more than are left.
         """
-        if not isinstance(steps, Integral) or isinstance(steps, bool) or steps < 0:
-            raise ConfigError(f"steps = {short(steps)}: a run does 0 steps or more, a whole number")
-        if not steps <= LATEST / self.plan.clock.step:
-            raise ConfigError(f"steps = {short(steps)}: a run goes up to {LATEST:g} s")
-        if steps and self._engine.k >= self._engine.ending.step:
+        count = whole_steps(steps)
+        if count and self._engine.k >= self._engine.ending.step:
             raise RunError(f"the run is over: {self.ended}")
-        if self.plan.clock.told and steps > self.steps_left:
-            raise ConfigError(
-                f"steps = {steps}: {self.steps_left} are left to the stop time {self.plan.clock.stop} s, "
-                "which the units were told; without to_stop a simulation can be stepped beyond it"
-            )
-        self._advance(steps, None)
+        clock, columns = self.plan.clock, len(self.plan.columns)
+        check_steps(count, self._engine.k, self.steps_left, clock, columns)
+        self._advance(count, None)
 
     def run(self, progress: RunProgress | None = None) -> None:
         """Step to the stop time. Raises as `step` does."""

@@ -31,16 +31,12 @@ from .given_values import all_parameters, all_starts, by_kind
 from .plan import Drive, InputPlan, Plan
 from .recorded import Record
 from .slots import Slots, allot
-from .steps import steps_in
+from .steps import check_kept, steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
 from .unreached import after_stop, before_start
 
 _UNIT_IN_NAME = re.compile(r".*[\[(]([^][()]+)[\])]")
-
-_MOST_VALUES = 2**31
-"""Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole
-table, as `Results.data` is, needs that much memory."""
 
 
 def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
@@ -209,12 +205,7 @@ def _clock(experiment: Experiment, columns: int, place: str) -> Clock:
         )
     start, step = experiment.start_time, experiment.step_size
     steps = steps_in(experiment.stop_time, step, place, start, least=1)
-    if steps * (columns + 1) > _MOST_VALUES:
-        raise ConfigError(
-            f"{place}: {steps:.3g} steps of {step:g} s with {columns} recorded variables are "
-            f"more than the {_MOST_VALUES:.3g} values that a run keeps; stop earlier, take longer steps or "
-            "`record` less"
-        )
+    check_kept(steps, step, columns, place)
     return Clock.counted(start, step, steps, experiment.stop_time)
 
 

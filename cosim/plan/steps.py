@@ -1,9 +1,17 @@
-"""Times as counts of communication steps."""
+"""Times as counts of communication steps, and how many of them a run may be asked for, in whatever way."""
 
 from __future__ import annotations
 
-from ..clock import nearest_step, point
-from ..errors import ConfigError
+from numbers import Integral
+
+from ..clock import Clock, nearest_step, point
+from ..errors import ConfigError, short
+from ..system.system import LATEST
+
+_MOST_VALUES = 2**31
+"""Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole
+table, as `Results.data` is, needs that much memory."""
+_PRINTED = 10**300  # greater integers are no floats
 
 
 def steps_in(time: float, step_size: float, place: str, start: float = 0.0, least: int = 0) -> int:
@@ -22,3 +30,40 @@ def steps_in(time: float, step_size: float, place: str, start: float = 0.0, leas
         f"{place} = {time} s is not a multiple of the communication step {step_size} s{after}; "
         f"the nearest {'is' if len(found) == 1 else 'are'} {' and '.join(found)}"
     )
+
+
+def check_kept(steps: int, step_size: float, columns: int, place: str) -> None:
+    """Raise ConfigError, which starts with `place`, where a run keeps more values than it may.
+
+    It has `steps` steps of `step_size` [s] and records so many columns.
+    """
+    if steps * (columns + 1) > _MOST_VALUES:
+        count = f"{steps:.3g}" if steps < _PRINTED else short(steps)
+        raise ConfigError(
+            f"{place}: {count} steps of {step_size:g} s with {columns} recorded variables are "
+            f"more than the {_MOST_VALUES:.3g} values that a run keeps; stop earlier, take longer steps or "
+            "`record` less"
+        )
+
+
+def whole_steps(steps: object) -> int:
+    """Return a number of steps that somebody asked for. Raises ConfigError for what is none."""
+    if not isinstance(steps, Integral) or isinstance(steps, bool) or steps < 0:
+        raise ConfigError(f"steps = {short(steps)}: a run does 0 steps or more, a whole number")
+    return int(steps)
+
+
+def check_steps(steps: int, done: int, left: int, clock: Clock, columns: int) -> None:
+    """Raise ConfigError for more steps than a run may do that has `done` some, and records so many columns.
+
+    `left` of them are left to the stop time, which bounds them where the units were told it.
+    """
+    place = f"steps = {short(steps)}"
+    if clock.told and steps > left:
+        raise ConfigError(
+            f"{place}: {left} are left to the stop time {clock.stop} s, "
+            "which the units were told; without to_stop a simulation can be stepped beyond it"
+        )
+    check_kept(done + steps, clock.step, columns, place if not done else f"{place} after {done}")
+    if not clock.at(done + steps) <= LATEST:
+        raise ConfigError(f"{place}: a run goes up to {LATEST:g} s")

@@ -12,7 +12,9 @@ are left out, and the result says so. The rest runs as in any other run: over th
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -32,7 +34,7 @@ from ...cosim.system.system import load_system
 from ..prepare import prepare
 from ..simulation import Simulation
 from ..single_fmu import UNIT
-from .identification_run import IdentificationRun, PhaseProgress, longest, real_variable
+from .identification_run import IdentificationRun, PhaseProgress, described, longest, real_variable
 from .identification_target import default_scenario, held, is_fmu, one_unit_system, spec_of
 
 _FLAT = 0.2  # periods at an extreme: of a sine it is 0.06, quantized to 20 levels 0.1
@@ -143,9 +145,21 @@ def identify(
     options["stop_time"] = stop_time = longest(sweep, step_size)
     clock = Clock.counted(system.file.experiment.start_time, step_size, round(stop_time / step_size))
     driven, changes = held(driven, spec.input, clock)
-    with Simulation(system, driven, **options) as simulation:
+    with _as_long_as(sweep), Simulation(system, driven, **options) as simulation:
         run = IdentificationRun(simulation, spec, sweep, prefix, progress or (lambda what, share: None))
         return _identified(run, target, changes)
+
+
+@contextlib.contextmanager
+def _as_long_as(sweep: Sweep) -> Iterator[None]:
+    """Let an error about the stop time, which nobody gave, name the sweep that it follows from."""
+    try:
+        yield
+    except ConfigError as error:
+        first, *lines = error.lines
+        if not first.startswith("stop_time: "):
+            raise
+        raise ConfigError(first.replace("stop_time", described(sweep), 1), *lines) from error
 
 
 def check_ends(target: str, spec: IdentificationSpec, scenario: str | Path | None = None) -> None:

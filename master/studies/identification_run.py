@@ -47,10 +47,15 @@ def longest(sweep: Sweep, step_size: float) -> float:
     together = settling + sweep.length + pulses
     if not together <= LATEST:
         raise ConfigError(
-            f"sweep from {sweep.start:g} Hz, repeats = {sweep.repeats}, a duration of {sweep.duration:g} s: "
-            f"with all that belongs to it, it takes {together:.3g} s, and a run goes up to {LATEST:g} s"
+            f"{described(sweep)}: with all that belongs to it, it takes {together:.3g} s, and a run goes up "
+            f"to {LATEST:g} s"
         )
     return step_size * math.ceil(together / step_size)
+
+
+def described(sweep: Sweep) -> str:
+    """Return the keys of a sweep that say how long it is."""
+    return f"sweep from {sweep.start:g} Hz, repeats = {sweep.repeats}, a duration of {sweep.duration:g} s"
 
 
 def _window(sweep: Sweep) -> float:

@@ -218,3 +218,23 @@ def test_a_closed_simulation_calls_no_unit(engine: str) -> None:
 def test_a_run_does_not_step_back() -> None:
     with Simulation("scooter", stop_time=1.0) as sim, pytest.raises(ConfigError, match="steps = -1"):
         sim.step(-1)
+
+
+def test_steps_without_end_are_refused_as_such_a_stop_time_is() -> None:
+    said = (
+        r" steps of 0\.01 s with 28 recorded variables are more than the 2\.15e\+09 values that a run keeps"
+    )
+    with Simulation("scooter", stop_time=1.0) as sim:
+        sim.step(150)  # which units were not told
+        for steps in (10**9, 2**63, 10**400):
+            with pytest.raises(ConfigError, match=f"^steps = .* after 150: .*{said}"):
+                sim.step(steps)
+        assert len(sim.results) == 151
+    with pytest.raises(ConfigError, match=f"^stop_time: 1e\\+11{said}"):
+        Simulation("scooter", stop_time=1e9)
+    with Simulation("scooter", stop_time=1.0, to_stop=True) as sim:
+        with pytest.raises(ConfigError, match=r"100 are left to the stop time 1\.0 s"):
+            sim.step(10**9)
+        sim.step(100)
+        with pytest.raises(ConfigError, match="steps = 1: 0 are left"):
+            sim.step()

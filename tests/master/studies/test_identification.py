@@ -104,3 +104,12 @@ def test_a_fit_that_says_nothing_is_refused():
     )
     with pytest.raises(RunError, match=r"no gain and no pole: (coherence|the 95 % interval)|does not answer"):
         identify("scooter", task)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"repeats": 10**9}, {"duration": 1e9}, {"sweep": (1e-7, 0.6), "duration": 1e8}]
+)
+def test_a_sweep_without_end_is_named(changes):
+    said = r"^sweep from .* steps of \S+ s with \d+ recorded variables are more than"
+    with pytest.raises(ConfigError, match=said):
+        identify("Scooter", spec(**changes))
