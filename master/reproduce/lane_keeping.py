@@ -15,7 +15,7 @@ from ..simulation import Simulation, simulate
 from ..studies.parallel import Task
 from . import printed
 from .lane_keeping_pictures import STEERING, pictures
-from .page import Finding, Findings, Found, Page, Paper, at_most, holds, near, page
+from .page import Finding, Findings, Found, Page, Paper, apart, at_most, holds, near, page
 
 _P = LaneKeepingController.Parameters()
 _TARGET = 0.3  # m
@@ -96,7 +96,7 @@ def _printed(by: str) -> Array:
 
 
 def _four_digits(by: str, ours: Any) -> Found:
-    return at_most(float(np.abs(np.array(ours) - _printed(by)).max()), _HALF_A_DIGIT, digits=2)
+    return apart(float(np.abs(np.array(ours) - _printed(by)).max()), _HALF_A_DIGIT, digits=2)
 
 
 def _models() -> dict[str, Found]:
@@ -112,13 +112,13 @@ def _models() -> dict[str, Found]:
         for by, i in rows.items()
     }
     light = analysis.Parameters(mass=printed.row("lane_keeping", "other mass").number)
-    apart = max(float(np.abs(light.a - _printed("A")).max()), float(np.abs(light.b - _printed("B")).max()))
+    off = max(float(np.abs(light.a - _printed("A")).max()), float(np.abs(light.b - _printed("B")).max()))
     literal = _P.speed + (_P.speed + a[0][2]), a[2][0]  # (12) as it is printed
     smallest = analysis.smallest_eigenvalue(_P)
     return equations | {
         "a13": _contradiction(literal[0], _printed("A")[0, 2], f"; {a[0][2]:.4f} with the minus"),
         "a33": _contradiction(literal[1], _printed("A")[2, 2], f"; {a[2][2]:.4f} by (8)"),
-        "other mass": holds(f"{apart:.2f} with 1280 kg", apart > _HALF_A_DIGIT),
+        "other mass": holds(f"{off:.2f} with 1280 kg", off > _HALF_A_DIGIT),
         "definite": holds(f"{smallest:.2g}", smallest > 0.0, "above 0"),
         "riccati": at_most(analysis.riccati_residual(_P), 1e-9, digits=2),
         "cost": _cost(),
@@ -141,7 +141,7 @@ def _matrices() -> dict[str, Found]:
     pairs = {"fast poles": poles[:2], "slow poles": poles[2:]}
     rank = analysis.controllability_rank(_P)
     k_hat = np.sort(np.abs(_printed("K-hat")))
-    apart = np.abs(np.sort(np.abs(_P.gain), axis=1) - k_hat).max(axis=1).min()
+    off = np.abs(np.sort(np.abs(_P.gain), axis=1) - k_hat).max(axis=1).min()
     finals = analysis.final_states(_P, _printed("Bc"))[3] * _TARGET
     singular = analysis.smallest_singular_value(_P, _OUTPUTS)
     seen = limits.observability_rank(_P, _OUTPUTS)
@@ -152,7 +152,7 @@ def _matrices() -> dict[str, Found]:
         "S": _four_digits("S", _P.prefilter),
         "Q_r": _four_digits("Q_r", analysis.controllability_matrix(_P) / 1e4),
         "rank": holds(str(rank), rank == printed.row("lane_keeping", "rank").number, "4"),
-        "K-hat": holds(f"the nearest row of K, sorted and without signs, is {apart:.2f} away", apart > 0.01),
+        "K-hat": holds(f"the nearest row of K, sorted and without signs, is {off:.2f} away", off > 0.01),
         "Bc": holds(
             f"{1e3 * finals[0]:.1f} and {1e3 * finals[1]:.1f} mm", bool(np.abs(finals - _TARGET).min() > 0.01)
         ),
@@ -162,9 +162,7 @@ def _matrices() -> dict[str, Found]:
             f"largest real part {poles.real.max():.4f} 1/s", bool(poles.real.max() < 0.0), "below 0"
         ),
         **{
-            by: at_most(
-                float(np.abs(pair - [complex(re, -im), complex(re, im)]).max()), 1e-4, "1/s", digits=2
-            )
+            by: apart(float(np.abs(pair - [complex(re, -im), complex(re, im)]).max()), 1e-4, "1/s", digits=2)
             for by, pair in pairs.items()
             for re, im in [_printed(by)]
         },

@@ -30,6 +30,7 @@ class Found:
     """A value of the project: as shown with its unit, what is to be reached, and whether it is.
 
     `of` names the variant where there are several ("over the bus"), `reason` stands behind that of the row.
+    `bounded` is True for a number that was held to a bound alone: it reproduces no printed number.
     """
 
     obtained: str
@@ -37,6 +38,7 @@ class Found:
     holds: bool = True
     reason: str = ""
     of: str = ""
+    bounded: bool = False
 
 
 Finding = Found | Sequence[Found]
@@ -137,7 +139,8 @@ def page(
 def judged(paper: str, found: Findings, pictures: Sequence[Picture]) -> tuple[Row, ...]:
     """Return the rows of a paper's page: those of the table with what was found for their keys.
 
-    Raises KeyError where a row finds nothing by its key or picture, and where something found has no row.
+    Raises KeyError where a row finds nothing by its key or picture, and where something found has no row, and
+    ValueError where a printed number would come out by staying on one side of a bound.
     """
     table = printed.rows(paper)
     stems = {picture.stem for picture in pictures}
@@ -152,6 +155,8 @@ def _all_of(row: printed.Printed, found: Findings, stems: set[str]) -> list[Foun
     if row.by and row.by not in found:
         raise KeyError(f"{row}: nothing was found by {row.by!r}")
     values = list(_several(found[row.by])) if row.by else []
+    if row.comes_out and row.kind == "number" and not row.bound and any(value.bounded for value in values):
+        raise ValueError(f"{row}: a printed number is not {row.verdict} by staying on one side of a bound")
     values += _parameters(row)
     if row.picture:
         values.append(Found("redrawn"))
@@ -208,7 +213,8 @@ def at_most(
 ) -> Found:
     """Return a number that must not exceed `limit`."""
     reach = f"≤ {_number(limit, digits, unit)}"
-    return _found(obtained, reach, obtained <= limit, unit, digits, of, reason)
+    found = _found(obtained, reach, obtained <= limit, unit, digits, of, reason)
+    return dataclasses.replace(found, bounded=True)
 
 
 def at_least(
@@ -216,7 +222,17 @@ def at_least(
 ) -> Found:
     """Return a number that must not fall below `limit`."""
     reach = f"≥ {_number(limit, digits, unit)}"
-    return _found(obtained, reach, obtained >= limit, unit, digits, of, reason)
+    found = _found(obtained, reach, obtained >= limit, unit, digits, of, reason)
+    return dataclasses.replace(found, bounded=True)
+
+
+def apart(
+    distance: float, tolerance: float, unit: str = "", *, digits: int = 4, of: str = "", reason: str = ""
+) -> Found:
+    """Return the largest distance from what is printed, that must not exceed `tolerance`."""
+    return dataclasses.replace(
+        at_most(distance, tolerance, unit, digits=digits, of=of, reason=reason), bounded=False
+    )
 
 
 def holds(obtained: str, true: bool, reach: str = "", *, of: str = "", reason: str = "") -> Found:

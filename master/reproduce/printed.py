@@ -45,9 +45,10 @@ class Source:
 class Printed:
     """A row of the table. `value` is a number, a text, or a list (a matrix: of lists) of numbers.
 
-    The last four say how the project's value is obtained: `by`, the key of what the module of the paper
+    Four say how the project's value is obtained: `by`, the key of what the module of the paper
     computes; `parameters`, model parameters ("scooter.Scooter.mass") that must have the value; `picture`, the
-    stem of the picture; `where`, words that say where the statement stands in the project.
+    stem of the picture; `where`, words that say where the statement stands in the project. `bound` is the
+    sign of a number that the paper itself prints as a bound: "≤" or "≥".
     """
 
     paper: str
@@ -62,14 +63,17 @@ class Printed:
     parameters: tuple[str, ...] = ()
     picture: str = ""
     where: str = ""
+    bound: Literal["", "≤", "≥"] = ""
 
     def __post_init__(self) -> None:
         """Raise ValueError for a row that lacks its reason or its way, or has an unknown word."""
         if self.kind not in get_args(Kind) or self.verdict not in VERDICTS:
             raise ValueError(f"{self}: kind or verdict is unknown")
+        if self.bound not in ("", "≤", "≥"):
+            raise ValueError(f"{self}: bound must be ≤ or ≥")
         if not (self.by or self.parameters or self.picture or self.where):
             raise ValueError(f"{self}: nothing says how the project's value is obtained")
-        if self.where and self.verdict in ("reproduced", "calibrated"):
+        if self.where and self.comes_out:
             raise ValueError(f"{self}: words alone reproduce nothing")
         if not self.reason and self.verdict in ("calibrated", "not reproducible"):
             raise ValueError(f"{self}: this verdict needs a reason")
@@ -81,7 +85,12 @@ class Printed:
     @property
     def shown(self) -> str:
         """The value as printed, with its unit."""
-        return f"{_text(self.value)} {pretty(self.unit)}".rstrip()
+        return f"{self.bound} {_text(self.value)} {pretty(self.unit)}".strip()
+
+    @property
+    def comes_out(self) -> bool:
+        """True where the verdict says that the project's own runs give what is printed."""
+        return self.verdict in ("reproduced", "calibrated")
 
     @property
     def at(self) -> str:

@@ -12,6 +12,7 @@ from evcosim.master.reproduce.page import (
     OWN,
     Found,
     Picture,
+    apart,
     at_least,
     at_most,
     holds,
@@ -46,11 +47,9 @@ def mine(monkeypatch):
         (near(1.05, 1.0, 0.1), True),
         (near(1.2, 1.0, 0.1), False),
         (near(math.nan, 1.0, 0.1), False),
-        (at_most(2.0, 2.0), True),
-        (at_most(2.1, 2.0), False),
-        (at_most(math.nan, 2.0), False),
-        (at_least(2.0, 2.0), True),
-        (at_least(1.9, 2.0), False),
+        (apart(0.1, 0.1), True),
+        (apart(0.2, 0.1), False),
+        (apart(math.nan, 0.1), False),
         (holds("yes", True), True),
         (holds("no", False), False),
     ],
@@ -59,6 +58,38 @@ def test_a_verdict_is_that_of_the_table_unless_the_runs_do_not_bear_it_out(mine,
     row = mine({"length": found})[0]
     assert row.verdict == ("calibrated" if good else MISSED)
     assert row.reason == ("k is chosen" if good else "outside what was to be reached")
+
+
+BOUNDS = [
+    (at_most(2.0, 2.0), True),
+    (at_most(2.1, 2.0), False),
+    (at_most(math.nan, 2.0), False),
+    (at_least(2.0, 2.0), True),
+    (at_least(1.9, 2.0), False),
+]
+
+
+@pytest.mark.parametrize(("found", "good"), BOUNDS)
+def test_a_bound_is_for_claims_and_for_numbers_printed_as_bounds(monkeypatch, found, good):
+    claim = Printed("mine", "1", "claim", "it is small", "stated", "calibrated", reason="k is chosen", by="x")
+    number = Printed("mine", "2", "number", "error", 2, "reproduced", by="x", bound="≤")
+    for row in (claim, number):
+        monkeypatch.setattr(printed, "rows", lambda paper, row=row: (row,))
+        assert judged("mine", {"x": found}, ())[0].verdict == (row.verdict if good else MISSED)
+    assert number.shown == "≤ 2"
+
+
+@pytest.mark.parametrize("verdict", printed.VERDICTS)
+@pytest.mark.parametrize(("found", "good"), BOUNDS)
+def test_a_printed_number_does_not_come_out_by_a_bound(monkeypatch, verdict, found, good):
+    row = Printed("mine", "1", "number", "error", 3.18, verdict, reason="no noise", by="x")
+    monkeypatch.setattr(printed, "rows", lambda paper: (row,))
+    for several in (found, [near(3.18, 3.18, 0.1), found]):
+        if verdict in ("reproduced", "calibrated"):
+            with pytest.raises(ValueError, match="a printed number is not"):
+                judged("mine", {"x": several}, ())
+        else:
+            assert judged("mine", {"x": several}, ())[0].verdict == (verdict if good else MISSED)
 
 
 def test_the_ways_to_a_value(mine):

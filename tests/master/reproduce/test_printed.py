@@ -42,6 +42,7 @@ def test_numbers_stay_as_printed():
     assert printed.row("lane_keeping", "S").shown == "[0.2979 -0.9401; 0.9592 0.3409]"
     assert printed.row("lane_keeping", "S").numbers == [0.2979, -0.9401, 0.9592, 0.3409]
     assert printed.row("braking", "coupling").numbers == []
+    assert printed.row("scooter", "estimate").shown == "≤ 0.5 km/h"
     with pytest.raises(ValueError, match="values"):
         _ = printed.row("lane_keeping", "S").number
 
@@ -52,6 +53,7 @@ def test_numbers_stay_as_printed():
         ({"verdict": "fine"}, "kind or verdict"),
         ({"kind": "number of sorts"}, "kind or verdict"),
         ({"where": ""}, "nothing says how"),
+        ({"bound": "<"}, "bound must be"),
         ({"verdict": "reproduced"}, "words alone reproduce nothing"),
         ({"verdict": "calibrated", "by": "x", "where": ""}, "needs a reason"),
         ({"verdict": "not reproducible"}, "needs a reason"),

@@ -20,7 +20,7 @@ def test_scooter_over_the_bus_reaches_the_published_numbers(measured):
     assert fit.gain.value == pytest.approx(0.46, rel=0.05)
     assert fit.pole.value == pytest.approx(0.03, rel=0.05)
     assert fit.product.value == pytest.approx(0.46 * 0.03, rel=0.03)
-    assert measured.prediction.mean_esr <= 3.18
+    assert measured.prediction.mean_esr == pytest.approx(2.30, abs=0.1)  # printed is 3.18, of a ride unknown
     assert measured.gain_unit == "km/h per %"
 
 
