@@ -1,0 +1,1 @@
+"""Reading logs of CAN frames that other tools wrote, frame by frame."""

@@ -1,0 +1,57 @@
+"""The formats of logs that are read, by suffix, and how exact their times are."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from ....errors import ConfigError
+from ....reading import require_file
+from ....shortage import reason
+from . import asc, blf, candump, libraries, mf4, pcapng
+from .logged import LoggedFrame
+
+
+@dataclasses.dataclass(frozen=True)
+class Format:
+    """A format: `reading` yields the frames of a file; times are rounded to `resolution` [ns]."""
+
+    reading: Callable[[BinaryIO, Path], Iterator[LoggedFrame]]
+    resolution: int
+
+
+FORMATS: dict[str, Format] = {
+    ".log": Format(candump.reading, 1000),
+    ".asc": Format(asc.reading, 1000),
+    ".blf": Format(blf.reading, 1),
+    ".mf4": Format(mf4.reading, 1),
+    ".pcapng": Format(pcapng.reading, 1),
+    ".trc": Format(libraries.reading_trc, 1000),
+    ".csv": Format(libraries.reading_csv, 1000),
+}
+
+
+def format_of(path: Path, place: str = "") -> Format:
+    """Return the format of a log. Raises ConfigError, which starts with `place`, for a suffix of none."""
+    if path.suffix.lower() not in FORMATS:
+        start = f"{place}: " if place else ""
+        raise ConfigError(f"{start}{path}: CAN logs are read as {', '.join(FORMATS)}, not as '{path.suffix}'")
+    return FORMATS[path.suffix.lower()]
+
+
+@contextlib.contextmanager
+def logged_frames(path: Path) -> Iterator[Iterator[LoggedFrame]]:
+    """Give the frames of a log in the order of the file, read while they are taken.
+
+    Raises ConfigError where it cannot be read, or is damaged, which names line or byte.
+    """
+    form = format_of(path)
+    require_file(path)
+    try:
+        with path.open("rb") as file:
+            yield form.reading(file, path)
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error

@@ -1,0 +1,55 @@
+"""A frame of a log as it was read, whatever its format, and how a reader says what is wrong in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+from ....errors import ConfigError
+
+DATA, REMOTE, ERROR = range(3)
+"""Kinds of frames: with data, which only are replayed; a request for some; the flags of an error."""
+
+MOST_BYTES = 64
+_LONGEST_LINE = 1 << 16
+LATEST = 1 << 62
+"""Nanoseconds of the latest time that is read; the year 2116, counted from 1970."""
+
+
+class LoggedFrame(NamedTuple):
+    """One frame: `time` in whole ns as the file counts it, `channel` its interface as the file names it.
+
+    `place` is the line of a text, else the byte of the file at which it, or what holds it, begins.
+    """
+
+    time: int
+    channel: str
+    frame_id: int
+    extended: bool
+    data: bytes
+    place: int
+    kind: int = DATA
+
+
+def lines_of(file: BinaryIO, path: Path) -> Iterator[tuple[int, str]]:
+    """Yield number and text of each line, without spaces at its ends.
+
+    Raises ConfigError for a line that no log has, by its length.
+    """
+    number = 0
+    while line := file.readline(_LONGEST_LINE):
+        number += 1
+        if len(line) == _LONGEST_LINE:
+            raise ConfigError(f"{path}: line {number} has {_LONGEST_LINE} bytes or more: no log of frames")
+        yield number, line.decode("utf-8", errors="replace").strip()
+
+
+def nanoseconds(whole: str, fraction: str) -> int:
+    """Return seconds that are written as `whole`.`fraction` in whole nanoseconds, the rest cut off."""
+    return int(whole[-20:]) * 10**9 + int(fraction[:9].ljust(9, "0"))
+
+
+def damaged(path: Path, place: str, problem: str) -> ConfigError:
+    """Return the error for a place of a file at which no frame can be read."""
+    return ConfigError(f"{path}: {place}: {problem}")

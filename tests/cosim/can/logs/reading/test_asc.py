@@ -1,0 +1,72 @@
+"""Vector's ASCII logs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import can
+import pytest
+
+from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
+from support.log_readers import written
+from support.logged import check_reads_what_was_written, check_survives, frames_in, refused
+
+HEAD = "date Mon Jan 1 00:00:00 2024\nbase hex  timestamps absolute\nno internal events logged\n"
+
+
+def test_what_was_written_is_read(tmp_path: Path) -> None:
+    check_reads_what_was_written(tmp_path, ".asc")
+
+
+def test_what_python_can_reads_is_read(tmp_path: Path) -> None:
+    """The kinds of lines of its own test file, in the words of CANalyzer."""
+    path = tmp_path / "a.asc"
+    text = HEAD + (
+        "// version 9.0.0\nBegin Triggerblock Mon Jan 1 00:00:00 2024\n   0.000000 Start of measurement\n"
+        "   0.015991 CAN 1 Status:chip status error passive - TxErr: 132 RxErr: 0\n"
+        "   2.501000 1  ErrorFrame\n   3.098426 1  18EBFF00x       Rx   d 8 01 A0 0F A6 60 3B D1 40\n"
+        "   3.2 2  7FF             Tx   d 0\n   3.248765 1  6F9             Rx   r 8\n"
+        "  17.876707 CAN 1 Status:overrun error\n   3.297743 1  J1939TP FEE3p 6 0 0 - Rx d 23 A0 0F\n"
+        "  20.305233 2  Statistic: D 1 R 0 XD 0 XR 0 E 0 O 0 B 0.04%\n"
+        "  30.005021 CANFD   1 Rx        300  Generic_Name_12      1 0 8 8 01 02 03 04 05 06 07 08\n"
+        "  30.300981 CANFD   3 Tx   50005x 0 0 5 5 00 01 02 03 04  140000  73 200050 7a60 46500250\n"
+        "End TriggerBlock\n"
+    )
+    found = frames_in(path, text)
+    with can.LogReader(path) as reader:
+        expected = list(reader)
+    assert [f.kind for f in found] == [ERROR, DATA, DATA, REMOTE, DATA, DATA]
+    for ours, theirs in zip(found, expected, strict=True):
+        assert ours.time == round(theirs.timestamp * 1e9) and ours.data == bytes(theirs.data)
+        assert (ours.frame_id, ours.extended) == (theirs.arbitration_id, theirs.is_extended_id) or ours.kind
+        assert ours.channel == str(theirs.channel + 1)
+
+
+def test_decimal_numbers_and_times_from_event_to_event(tmp_path: Path) -> None:
+    head = "base dec  timestamps relative\n"
+    frames = frames_in(
+        tmp_path / "a.asc", head + "1.5 1 100 Rx d 2 10 255\n0.25 Status\n0.25 2 101x Rx d 1 7\n"
+    )
+    assert [f[:5] for f in frames] == [
+        (1_500_000_000, "1", 100, False, b"\x0a\xff"),
+        (2_000_000_000, "2", 101, True, b"\x07"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "1.0 1 123 Rx d 8 11 22",
+        "1.0 1 123 Rx d 8 11 22 33 44 55 66 77 100",
+        "1.0 1 800 Rx d 0",
+        "1.0 1 XYZ Rx d 0",
+        "1.0 CANFD 1 Rx 123 1 0 9 13 00",
+        "1.0 CANFD 1 Rx 123 name 1",
+    ],
+)
+def test_damaged_frames_are_refused_with_their_line(tmp_path: Path, line: str) -> None:
+    assert refused(tmp_path / "a.asc", HEAD + line) == f"line 4: the frame cannot be read: {line}"
+
+
+def test_damaged_logs_are_read_or_refused(tmp_path: Path) -> None:
+    check_survives(tmp_path, ".asc", written(tmp_path, ".asc").read_bytes())

@@ -1,0 +1,46 @@
+"""Logs of candump -L."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
+from support.log_readers import written
+from support.logged import check_reads_what_was_written, check_survives, frames_in, refused
+
+
+def test_what_was_written_is_read(tmp_path: Path) -> None:
+    check_reads_what_was_written(tmp_path, ".log")
+
+
+def test_lines_of_can_utils(tmp_path: Path) -> None:
+    text = (
+        "(1436509052.249713) vcan0 044#2A366C2BBA R\n\n(1436509052.249714) vcan0 0F6#R8\n"
+        "(1436509052.65) can1 20000088#0000000000000000\n(1.000001) c 12345678##15566 T\n"
+        "(2.0) c 123#1122.3344\n"
+    )
+    frames = frames_in(tmp_path / "a.log", text)
+    assert [f.kind for f in frames] == [DATA, REMOTE, ERROR, DATA, DATA]
+    assert frames[0][:5] == (1_436_509_052_249_713_000, "vcan0", 0x44, False, bytes.fromhex("2A366C2BBA"))
+    assert frames[3][:5] == (1_000_001_000, "c", 0x12345678, True, b"\x55\x66")
+    assert frames[4].data == b"\x11\x22\x33\x44" and frames[4].place == 6
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["can0  123   [2]  11 22", "(1.0) can0 123#1", "(nan) can0 123#", "(-1.0) can0 1#", "(1.0) a 1234#"],
+)
+def test_other_lines_are_refused_with_their_number(tmp_path: Path, line: str) -> None:
+    assert refused(tmp_path / "a.log", f"(0.5) can0 123#11\n{line}\n").startswith(
+        "line 2: no line of candump -L"
+    )
+
+
+def test_a_classic_frame_has_eight_bytes_at_most(tmp_path: Path) -> None:
+    assert refused(tmp_path / "a.log", "(0.5) can0 123#" + "11" * 9) == "line 1: a frame of 9 bytes"
+
+
+def test_damaged_logs_are_read_or_refused(tmp_path: Path) -> None:
+    check_survives(tmp_path, ".log", written(tmp_path, ".log").read_bytes())
