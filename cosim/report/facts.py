@@ -64,18 +64,27 @@ def first_of_all(about: Mapping[str, Any]) -> str:
 
 def metrics_section(metrics: Iterable[Metric], about: Mapping[str, Any]) -> str:
     """Return the numbers of a run, or those that its manifest has."""
-    cells = [(m.name, _number(m.value, m.unit) if m.value == m.value else m.text) for m in metrics]
+    cells = [(m.name, number_with_unit(m.value, m.unit) if m.value == m.value else m.text) for m in metrics]
     return section("Metrics", table(("metric", "value"), cells or kept_metrics(about)))
 
 
 def kept_metrics(about: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return the names of the metrics that a manifest has, and their values with units."""
-    known = [(name, dict(items_of(metric))) for name, metric in items_of(about.get("metrics"))]
-    return [(name, _number(metric.get("value"), shown(metric.get("unit")))) for name, metric in known]
+    return [(name, number_with_unit(*metric)) for name, metric in numbers_of_metrics(about).items()]
 
 
-def _number(value: object, unit: str) -> str:
-    return f"{value:.6g} {_unit(unit)}".strip() if isinstance(value, int | float) else "-"
+def numbers_of_metrics(about: Mapping[str, Any]) -> dict[str, tuple[float | None, str]]:
+    """Return the value and the unit of measure of each metric that a manifest has; None for no number."""
+    known = {name: dict(items_of(metric)) for name, metric in items_of(about.get("metrics"))}
+    return {
+        name: (x if isinstance(x := metric.get("value"), int | float) else None, shown(metric.get("unit")))
+        for name, metric in known.items()
+    }
+
+
+def number_with_unit(value: float | None, unit: str) -> str:
+    """Return the text of a metric; "-" for one without a number."""
+    return "-" if value is None else f"{value:.6g} {_unit(unit)}".strip()
 
 
 def _unit(unit: str) -> str:

@@ -6,8 +6,14 @@ Two values are equal when
 
 `tolerance` is absolute, in the variable's unit in `a`; `relative` is a share of the range that the variable
 goes through in `a`, so that it means the same for a power in W and a state of charge, and no value near
-zero is judged more strictly than its neighbors. Both are 0 unless given: equal then means equal bits but
-for the sign of zero. A NaN, on either side or on both, is a difference.
+zero is judged more strictly than its neighbors: `a` is the reference, so that the tolerance is known before
+`b` is. A NaN, on either side or on both, is a difference. So are a variable that one side alone has, unless
+only `common` ones are wanted, a longer stretch of time, and other states of an enumeration.
+
+Both tolerances are 0 unless given: then the values are compared with equal bits but for the sign of zero, and
+a time that one run alone has, and a type or unit of measure that the runs do not share, are differences too.
+With a tolerance they are remarks: runs of other steps, or of another vehicle, can be as near as it says. A
+table alone, as a CSV file, declares no types and units; so it differs in none.
 """
 
 from __future__ import annotations
@@ -64,7 +70,8 @@ class Comparison:
     """The outcome: a row for each common variable, the names on one side alone, and remarks.
 
     `points` is the number of compared times, of which `only_times_a` and `only_times_b` are of one run alone.
-    `not_compared` are the points of one run before or after the other; `same_span` is true without any.
+    `not_compared` are the points of one run before or after the other; `same_span` is true without any. With
+    `common`, variables of one side alone are no difference.
     """
 
     rows: tuple[VariableDifference, ...]
@@ -78,15 +85,23 @@ class Comparison:
     tolerance: float
     relative: float
     remarks: tuple[str, ...] = ()
+    common: bool = False
 
     @property
     def equal(self) -> bool:
-        """True where every common variable is equal at every time of both runs.
+        """True where both have the same variables, and each is equal at every time of both runs.
 
-        Variables on one side alone do not count: they are listed. Runs with nothing in common, or of which
-        one goes on longer, are not equal.
+        Runs with nothing in common, or of which one goes on longer, are not equal; without a tolerance
+        neither are runs of which one has times that the other has not.
         """
-        return bool(self.rows) and self.points > 0 and self.same_span and all(row.equal for row in self.rows)
+        compared = bool(self.rows) and self.points > 0 and all(row.equal for row in self.rows)
+        same_times = self.same_span and not (self.exact and (self.only_times_a or self.only_times_b))
+        return compared and same_times and (self.common or not (self.only_a or self.only_b))
+
+    @property
+    def exact(self) -> bool:
+        """True where no difference is allowed."""
+        return not (self.tolerance or self.relative)
 
     def table(self, all_rows: bool = True) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the header and the rows as text; without `all_rows`, only of variables that differ."""
@@ -103,8 +118,12 @@ class Comparison:
         lines = [f"equal: {what}" if self.equal else f"different: {len(different)} of {what}"]
         for names, side in ((self.only_a, "first"), (self.only_b, "second")):
             if names:
-                lines.append(f"only in the {side}: {', '.join(names)}")
-        return "\n".join(on_one_line(line) for line in (*lines, *self.remarks))
+                counts = "" if self.common else " (a difference, unless --common leaves it out)"
+                lines.append(f"only in the {side}: {', '.join(names)}{counts}")
+        lines += self.remarks
+        if self.exact and (self.only_times_a or self.only_times_b):
+            lines.append("without a tolerance, times of one run alone are a difference")
+        return "\n".join(map(on_one_line, lines))
 
 
 def _cells(row: VariableDifference) -> tuple[str, ...]:
@@ -114,12 +133,14 @@ def _cells(row: VariableDifference) -> tuple[str, ...]:
     return (row.name, row.unit, *("-" if n == "nan" else n for n in numbers), share, verdict)
 
 
-def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.0) -> Comparison:
+def compare(
+    a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.0, common: bool = False
+) -> Comparison:
     """Compare two results at the times of both, over the stretch that both cover.
 
     Where one of them lacks a time it is interpolated: linearly between continuous values, the previous value
-    for what is held. Units of measure are converted. Raises ConfigError for a negative or NaN tolerance, and
-    for an infinite `relative`.
+    for what is held. Units of measure are converted. With `common`, a variable that one of them alone has is
+    no difference. Raises ConfigError for a negative or NaN tolerance, and for an infinite `relative`.
     """
     if not (tolerance >= 0.0 and relative >= 0.0):
         raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
@@ -128,7 +149,7 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
             f"a relative tolerance must be finite, not {relative!r}: it is a share of the range"
         )
     at = CommonTimes.of(a.time, b.time)
-    rows = [_compared(a, b, v, at, tolerance, relative) for v in a.variables if v.name in b.names]
+    rows = [_compared(a, b, v, at, (tolerance, relative)) for v in a.variables if v.name in b.names]
     rows += [_compared_texts(a, b, name, at) for name in a.texts if name in b.texts]
     for name in (*(n for n in a.names if n in b.texts), *(n for n in a.texts if n in b.names)):
         rows.append(_without_values(name, "", "a text on one side, numbers on the other"))
@@ -144,6 +165,7 @@ def compare(a: Results, b: Results, tolerance: float = 0.0, relative: float = 0.
         tolerance=tolerance,
         relative=relative,
         remarks=at.remarks,
+        common=common,
     )
 
 
@@ -162,8 +184,9 @@ def difference(a: Results, b: Results, name: str) -> tuple[Array, Array]:
 
 
 def _compared(
-    a: Results, b: Results, variable: ResultVariable, at: CommonTimes, tolerance: float, relative: float
+    a: Results, b: Results, variable: ResultVariable, at: CommonTimes, allowed: tuple[float, float]
 ) -> VariableDifference:
+    """Compare a variable of both; `allowed` are the absolute difference, and the share of the range."""
     other = b.variable(variable.name)
     unit = variable.unit or other.unit
     try:
@@ -180,10 +203,32 @@ def _compared(
     apart = _differences(x, y)
     worst = int(np.argmax(apart))
     largest, span = float(apart[worst]), _range(x)
+    tolerance, relative = allowed
     share = relative * span if math.isfinite(span) else 2 * relative * _range(x / 2)
     equal = math.isfinite(largest) and largest <= tolerance + share
+    remarks, alike = _kinds(variable, other, remark)
+    if a.manifest and b.manifest and not any(allowed):  # both are runs, which declare types and units
+        equal = equal and not remarks
     rms = _rms(apart, largest)
-    return VariableDifference(variable.name, unit, largest, float(at.time[worst]), rms, span, equal, remark)
+    when = float(at.time[worst])
+    return VariableDifference(variable.name, unit, largest, when, rms, span, equal and alike, remarks)
+
+
+def _kinds(one: ResultVariable, other: ResultVariable, remark: str) -> tuple[str, bool]:
+    """Return what differs in the kinds of a variable of both runs, after a `remark` ("": nothing).
+
+    The second value is False for two enumerations whose states are not the same.
+    """
+    said = [remark] if remark else []
+    if one.type != other.type:
+        said.append(f"{one.type} in the first, {other.type} in the second")
+    states = [dict(each.items) for each in (one, other)]
+    changed = [k for k in sorted({*states[0], *states[1]}) if states[0].get(k) != states[1].get(k)]
+    if not (all(states) and changed):
+        return "; ".join(said), True
+    first, second = ("no state" if k is None else repr(k) for k in (each.get(changed[0]) for each in states))
+    said.append(f"{changed[0]} is {first} in the first, {second} in the second")
+    return "; ".join(said), False
 
 
 def _compared_texts(a: Results, b: Results, name: str, at: CommonTimes) -> VariableDifference:

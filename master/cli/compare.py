@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -29,48 +29,79 @@ def compare(
         list[str] | None,
         typer.Option(metavar="PATTERN", help="Only these variables, as in 'vehicle.*'; can be given again."),
     ] = None,
+    common: Annotated[
+        bool, typer.Option("--common", help="Leave out variables that one side alone has.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> int:
     """Compare two results; exit code 1 when they differ."""
     from ...cosim.results import compare as comparing
     from ...cosim.results.results import Results
     from .console import print_json, print_paragraph, print_table
-    from .plot import chosen, is_page
+    from .plot import is_page
 
     first, second = Results.read(a), Results.read(b)
     if signals:
-        first = chosen(first, signals)
-        common = [name for name in (*first.names, *first.texts) if name in second]
-        second = second.part(slice(None), common)
-    found = comparing.compare(first, second, tolerance, relative)
+        first, second = _chosen(first, second, signals)
+    found = comparing.compare(first, second, tolerance, relative, common)
+    metrics = [] if signals else _metrics(first, second)
     if plot is not None and is_page(plot):
         from ...cosim.report.overlay import write_comparison
 
-        chosen_names = (*second.names, *second.texts) if signals else None
-        write_comparison(plot, found, first, second, (str(a), str(b)), chosen_names)
+        chosen = list(dict.fromkeys(_names(first) + _names(second))) if signals else None
+        write_comparison(plot, found, first, second, (str(a), str(b)), chosen)
     elif plot is not None:
         from ...cosim.figures import draw as figures
 
-        names = second.names if signals else None
+        names = [name for name in first.names if name in second.names] if signals else None
         figures.write(figures.draw_comparison(first, second, names, labels=(str(a), str(b))), plot)
     if as_json:
-        print_json(dataclasses.asdict(found) | {"equal": found.equal})
+        print_json(dataclasses.asdict(found) | {"equal": found.equal, "metrics": metrics})
         return 0 if found.equal else 1
     headers, rows = found.table(all_rows=False)
     if rows:
         print_table(headers, rows, right=headers[2:6])
         print()
-    if not (signals or found.equal) and (metrics := _metrics(first, second)):
-        print_table(("metric", str(a), str(b)), metrics)
+    if not found.equal and (shown := _differing(metrics)):
+        print_table(("metric", str(a), str(b)), shown)
         print()
     for line in found.summary().split("\n"):
         print_paragraph(line)
     return 0 if found.equal else 1
 
 
-def _metrics(first: Results, second: Results) -> list[tuple[str, str, str]]:
-    """Return the metrics that both runs have, and that differ, with their values."""
-    from ...cosim.report.facts import kept_metrics, plain
+def _names(results: Results) -> list[str]:
+    return [*results.names, *results.texts]
 
-    one, other = (dict(kept_metrics(plain(results.manifest))) for results in (first, second))
-    return [(name, text, other[name]) for name, text in one.items() if other.get(name, text) != text]
+
+def _chosen(first: Results, second: Results, patterns: list[str]) -> tuple[Results, Results]:
+    """Return the variables of both that match a pattern. Raises ConfigError for one that matches none."""
+    from .plot import names_chosen
+
+    every = names_chosen(list(dict.fromkeys(_names(first) + _names(second))), patterns)
+    one, other = (each.part(slice(None), [n for n in every if n in each]) for each in (first, second))
+    return one, other
+
+
+def _metrics(first: Results, second: Results) -> list[dict[str, Any]]:
+    """Return the metrics that both runs have, as they stand in JSON."""
+    from ...cosim.report.facts import numbers_of_metrics, plain
+
+    one, other = (numbers_of_metrics(plain(results.manifest)) for results in (first, second))
+    return [
+        {"name": name, "a": a, "a_unit": unit, "b": b, "b_unit": b_unit, "equal": (a, unit) == (b, b_unit)}
+        for name, (a, unit) in one.items()
+        if name in other
+        for b, b_unit in [other[name]]
+    ]
+
+
+def _differing(metrics: list[dict[str, Any]]) -> list[tuple[str, str, str]]:
+    """Return the metrics that differ as they are shown, with their values."""
+    from ...cosim.report.facts import number_with_unit
+
+    shown = [
+        (m["name"], number_with_unit(m["a"], m["a_unit"]), number_with_unit(m["b"], m["b_unit"]))
+        for m in metrics
+    ]
+    return [(name, one, other) for name, one, other in shown if one != other]

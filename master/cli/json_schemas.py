@@ -163,6 +163,21 @@ _COMPARE = record(
         "relative": number("The difference allowed beside it, as a share of the range."),
         "remarks": listed("What else there is to say."),
         "equal": flag("Whether they are equal within the tolerance."),
+        "common": flag("Whether variables of one side alone are no difference."),
+        "metrics": listed(
+            "A row for each metric that both runs have; none with --signals.",
+            record(
+                "A metric.",
+                {
+                    "name": text("Its name."),
+                    "a": or_null(number("Its value in A.")),
+                    "a_unit": text("Its unit of measure there."),
+                    "b": or_null(number("Its value in B.")),
+                    "b_unit": text("Its unit of measure there."),
+                    "equal": flag("Whether value and unit are the same."),
+                },
+            ),
+        ),
     },
 )
 

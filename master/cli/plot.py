@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -52,18 +53,22 @@ def is_page(path: Path) -> bool:
 
 def chosen(results: Results, patterns: list[str]) -> Results:
     """Return the results of variables that match a pattern. Raises ConfigError for one that matches none."""
+    return results.part(slice(None), names_chosen((*results.names, *results.texts), patterns))
+
+
+def names_chosen(names: Sequence[str], patterns: list[str]) -> list[str]:
+    """Return the names that match a pattern, in their order. Raises ConfigError for one that matches none."""
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.interface import fitting
 
     found: set[str] = set()
-    names = (*results.names, *results.texts)
     for pattern in patterns:
         fits = fitting(pattern, names)
         if not fits:
             near = nearest(pattern, [*names, *(f"{name.partition('.')[0]}.*" for name in names)])
             raise ConfigError(f"--signals {pattern}: the results have no such variable{near}")
         found.update(fits)
-    return results.part(slice(None), [name for name in names if name in found])
+    return [name for name in names if name in found]
 
 
 def spec_of(results: Results) -> FigureSpec | None:

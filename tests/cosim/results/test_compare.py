@@ -81,8 +81,21 @@ def test_a_line_on_another_grid_is_the_same_line(slope: float, start: float) -> 
 def test_a_held_value_on_another_grid_is_the_previous_one() -> None:
     fine = one([0, 0, 1, 1, 2], STATE, step=0.5)
     coarse = one([0, 1, 2], STATE)
-    assert compare(fine, coarse).equal
-    assert compare(coarse, fine).equal
+    for found in (compare(fine, coarse, tolerance=1e-9), compare(coarse, fine, relative=1e-9)):
+        assert found.equal and found.rows[0].difference == 0.0
+
+
+@given(st.integers(2, 6), st.integers(0, 5), st.booleans())
+def test_without_a_tolerance_other_times_are_a_difference(rows: int, left_out: int, held: bool) -> None:
+    constant = one([1.0] * rows, STATE if held else SPEED)
+    keep = np.arange(rows) != left_out
+    other = constant.part(keep, constant.names)
+    for pair in ((constant, other), (other, constant)):
+        found = compare(*pair)
+        assert found.equal == bool(keep.all())
+        assert compare(*pair, tolerance=1e-300).equal == bool(keep.all() or 0 < left_out < rows - 1)
+        said = "without a tolerance, times of one run alone are a difference" in found.summary()
+        assert said == (found.same_span and not keep.all())
 
 
 def test_times_that_another_tool_accumulated_are_the_same_times() -> None:
@@ -113,10 +126,51 @@ def test_nothing_in_common_is_not_equal() -> None:
     assert "only in the second: ecu.state" in other.summary()
 
 
-def test_missing_variables_are_listed_and_do_not_count() -> None:
+def test_a_variable_of_one_side_alone_is_a_difference_unless_only_common_ones_are_wanted() -> None:
     both = Results([0.0], [[1.0, 2.0]], [SPEED, STATE])
-    found = compare(both, one([1.0]))
-    assert found.equal and found.only_a == ("ecu.state",) and found.only_b == ()
+    for a, b, only in ((both, one([1.0]), ("only_a", "first")), (one([1.0]), both, ("only_b", "second"))):
+        found, common = compare(a, b, tolerance=9.0), compare(a, b, common=True)
+        assert (found.equal, common.equal) == (False, True)
+        assert getattr(found, only[0]) == getattr(common, only[0]) == ("ecu.state",)
+        line = f"only in the {only[1]}: ecu.state"
+        assert f"{line} (a difference, unless --common leaves it out)" in found.summary().splitlines()
+        assert line in common.summary().splitlines()
+    assert not compare(both, states("a"), common=False).equal
+    assert compare(states("a"), Results([0.0], [[0.0]], [SPEED]), common=True).equal
+    assert not compare(states("a"), Results([0.0], [[0.0]], [SPEED])).equal
+    assert not compare(one([1.0]), one([1.0], STATE), common=True).equal
+
+
+KINDS = [
+    (dataclasses.replace(SPEED, unit=""), "[m/s] on one side only: compared as numbers"),
+    (dataclasses.replace(SPEED, type="Integer"), "Real in the first, Integer in the second"),
+    (dataclasses.replace(SPEED, type="Boolean"), "Real in the first, Boolean in the second"),
+]
+
+
+@pytest.mark.parametrize(("other", "said"), KINDS)
+def test_runs_of_other_kinds_are_equal_within_a_tolerance_alone(other: ResultVariable, said: str) -> None:
+    def run(variable: ResultVariable) -> Results:
+        return Results([0.0], [[1.0]], [variable], {"system": "x"})
+
+    found = compare(run(SPEED), run(other))
+    assert (found.equal, found.rows[0].remark) == (False, said)
+    assert compare(run(SPEED), run(other), tolerance=1e-9).equal
+    assert compare(run(SPEED), one([1.0], other)).equal, "a table alone declares nothing"
+    assert compare(run(other), run(other)).equal
+
+
+def test_other_states_of_an_enumeration_are_a_difference() -> None:
+    on = dataclasses.replace(STATE, items=((0, "off"), (1, "on")))
+    for items, said in (
+        (((0, "off"), (1, "fault")), "1 is 'on' in the first, 'fault' in the second"),
+        (((0, "off"),), "1 is 'on' in the first, no state in the second"),
+        (((0, "off"), (1, "on"), (2, "x")), "2 is no state in the first, 'x' in the second"),
+    ):
+        other = dataclasses.replace(STATE, items=items)
+        found = compare(one([0.0, 1.0], on), one([0.0, 1.0], other), tolerance=9.0)
+        assert (found.equal, found.rows[0].remark) == (False, said)
+    assert compare(one([0.0, 1.0], on), one([0.0, 1.0], STATE)).equal, "one side declares no states"
 
 
 def test_the_table_tells_what_differs() -> None:
@@ -202,7 +256,7 @@ def test_texts_that_differ_are_said() -> None:
     (_, (cells,)) = found.table(all_rows=False)
     assert cells == ("ecu.mode", "", "-", "2", "-", "-", "'on' and 'fault'; they differ at 1 of 3 times")
     fine = states("off", "off", "on", "on", "on", step=0.5)
-    assert compare(states("off", "on", "on"), fine).equal
+    assert compare(states("off", "on", "on"), fine, tolerance=1e-9).equal
 
 
 def test_a_text_on_one_side_is_named() -> None:

@@ -19,7 +19,14 @@ def test_compare(evcosim, two_runs):
     said = [Results.read(name).manifest["metrics"]["mean speed"]["value"] for name in ("a", "b")]
     assert line.split()[2::2] == [f"{value:.6g}" for value in said]
     data = evcosim("compare", "a", "b", "--json").json
-    assert data["equal"] is False
+    assert (data["equal"], data["common"]) == (False, False)
+    metrics = {m["name"]: m for m in data["metrics"]}
+    mean = metrics["mean speed"]
+    assert ([mean["a"], mean["b"]], mean["a_unit"], mean["equal"]) == (said, "km/h", False)
+    table = other.out.partition("metric ")[2].partition("\n\n")[0].splitlines()[1:]
+    assert {line.split("  ")[0] for line in table} <= {m for m in metrics if not metrics[m]["equal"]}
+    assert evcosim("compare", "a", "b", "--json", "--signals", "vehicle.speed").json["metrics"] == []
+    assert all(m["equal"] for m in evcosim("compare", "a", "a", "--json").json["metrics"])
     assert evcosim("compare", "a", "b", "--tolerance", "-1").code == 2
 
 
@@ -40,8 +47,30 @@ def test_two_tables_of_other_times_are_compared_at_the_times_of_both(evcosim, tm
     lines = said.out.splitlines()
     assert "different: 1 of 1 common variables at 3 times, tolerance 0" in lines
     assert "the first goes from 0 to 3 s, the second from 0 to 2 s" in lines
-    assert lines[-1] == "not compared: 1 point of the first at 3 s"
+    assert lines[-2] == "not compared: 1 point of the first at 3 s"
+    assert lines[-1] == "without a tolerance, times of one run alone are a difference"
     other = evcosim("compare", "b.csv", "a.csv", "--json").json
     assert (other["equal"], other["points"], other["rows"][0]["difference"]) == (False, 3, 8.0)
     assert other["not_compared"] == [{"side": "second", "points": 1, "begin": 3.0, "end": 3.0}]
     assert evcosim("compare", "a.csv", "b.csv", "--relative", "1e400").code == 2
+
+
+def test_a_variable_on_one_side_alone(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("time,u.v,u.w\n0,0,1\n1,0,1\n")
+    (tmp_path / "b.csv").write_text("time,u.v\n0,0\n1,0\n")
+    for pair, side in ((("a.csv", "b.csv"), "first"), (("b.csv", "a.csv"), "second")):
+        said = evcosim("compare", *pair)
+        assert (said.code, said.out.splitlines()[-1].startswith(f"only in the {side}: u.w (a diff")) == (
+            1,
+            True,
+        )
+        common = evcosim("compare", *pair, "--common")
+        assert (common.code, common.out.splitlines()[-1]) == (0, f"only in the {side}: u.w")
+        assert evcosim("compare", *pair, "--signals", "u.*").code == 1
+        assert evcosim("compare", *pair, "--signals", "u.w").code == 1
+        assert evcosim("compare", *pair, "--signals", "u.v").code == 0
+        assert evcosim("compare", *pair, "--signals", "x.*").code == 2
+        assert evcosim("compare", *pair, "--signals", "u.*", "--plot", "x.html").code == 1
+        assert evcosim("compare", *pair, "--signals", "u.*", "--plot", "x.png").code == 1
+        data = evcosim("compare", *pair, "--common", "--json").json
+        assert (data["equal"], data["common"], data["only_a"] + data["only_b"]) == (True, True, ["u.w"])
