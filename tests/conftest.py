@@ -5,19 +5,32 @@ from __future__ import annotations
 import signal
 
 import pytest
-from hypothesis import settings
 
-from support import bytecode, scratch
+from support import bytecode, costs, scratch
+
+with bytecode.written():  # of hypothesis too, whose assertions pytest rewrites, since it is a plugin
+    from hypothesis import settings
 
 # an example that a busy machine slows down has failed nothing: speed is shown by benchmarks
 settings.register_profile("evcosim", deadline=None)
 settings.load_profile("evcosim")
 
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in a background job, whose children ignore it too
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGQUIT, signal.SIG_DFL)):
+    if signal.getsignal(number) is signal.SIG_IGN:  # as in a background job, whose children ignore it too
+        signal.signal(number, handler)
 
 bytecode.compile_sources()
 scratch.use()
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--costs", type=int, metavar="N", help="show processor seconds of the N most costly files"
+    )
+
+
+def pytest_configure(config):
+    config.pluginmanager.register(costs.Costs(config), "costs")
 
 
 @pytest.hookimpl(wrapper=True)
