@@ -162,7 +162,7 @@ def _doubts(plan: Plan, fmus: Mapping[str, Fmu], system: System) -> list[str]:
     """Return a sentence for each declaration of an FMU that the steps of this run do not respect."""
     found = []
     for unit in plan.units:
-        times = TurnTimes(plan.clock, unit.every, unit.substeps)
+        times = TurnTimes(plan.clock, unit.every, unit.substeps, unit.first)
         sizes = [times.size] if times.last is None else [times.size, times.last.size]
         tolerance = system.file.units[unit.name].tolerance
         found += [f"unit '{unit.name}' {doubt}" for doubt in doubts(fmus[unit.name], sizes, tolerance)]

@@ -69,8 +69,7 @@ def resolve(
     slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect})
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
-    experiment = experiment.model_copy(update={"stop_time": clock.stop})
-    every = _periods(system, entries, experiment.step_size)
+    every, first = _turns(system, entries, clock)
     network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     _mailboxes_of_the_rest(interfaces, network, slots)
@@ -80,7 +79,7 @@ def resolve(
     plan = Plan(
         system=system.file.name,
         scenario=scenario.name,
-        experiment=experiment,
+        experiment=experiment.model_copy(update={"stop_time": clock.stop}),
         algorithm=algorithm,
         clock=clock,
         ideal=options.get("ideal", False),
@@ -97,6 +96,7 @@ def resolve(
                 routes=tuple(network.routes[name]),
                 texts=texts,
                 free=_free(name, interfaces[name], network, scenario),
+                first=first[name],
             )
             for name, entry in entries.items()
         ),
@@ -110,7 +110,7 @@ def resolve(
         initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
         warnings=(*network.warnings, *_loads(system, network, clock), *before_start(scenario, drives, clock)),
-        unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, clock)),
+        unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, first, clock)),
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),
         texts=texts,
@@ -209,12 +209,31 @@ def _clock(experiment: Experiment, columns: int, place: str) -> Clock:
     return Clock.counted(start, step, steps, experiment.stop_time)
 
 
-def _periods(system: System, entries: Mapping[str, UnitEntry], step_size: float) -> dict[str, int]:
-    """Return the units' periods in communication steps [s]; one without a period steps at each."""
-    return {
-        unit: steps_in(entry.period or step_size, step_size, f"{system.keys_of(unit)}period", least=1)
-        for unit, entry in entries.items()
-    }
+def _turns(
+    system: System, entries: Mapping[str, UnitEntry], clock: Clock
+) -> tuple[dict[str, int], dict[str, int]]:
+    """Return the periods of the units, and the steps of their first turns, in communication steps.
+
+    Raises ConfigError for one that is no multiple of the step, and for an offset that is not less than the
+    period, or leaves no turn before the stop time.
+    """
+    every, first = {}, {}
+    for unit, entry in entries.items():
+        period, offset = entry.period or clock.step, entry.offset or 0.0
+        every[unit] = steps_in(period, clock.step, f"{system.keys_of(unit)}period", least=1)
+        place, most = f"{system.keys_of(unit)}offset", clock.length(every[unit] - 1)
+        if offset >= clock.length(every[unit]):
+            raise ConfigError(
+                f"{place} = {offset} s is not less than the period of the unit, {period} s; the nearest is "
+                f"{most} s{'' if most else ', or the unit needs a longer `period`'}"
+            )
+        first[unit] = steps_in(offset, clock.step, place, most=every[unit] - 1)
+        if first[unit] >= clock.steps:
+            raise ConfigError(
+                f"{place} = {offset} s: the unit starts at {clock.at(first[unit])} s, not before the stop "
+                f"time {clock.stop} s; stop later"
+            )
+    return every, first
 
 
 def _drives(

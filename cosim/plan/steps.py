@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from numbers import Integral
 
 from ..clock import Clock, nearest_step, point
@@ -14,17 +15,19 @@ table, as `Results.data` is, needs that much memory."""
 _PRINTED = 10**300  # greater integers are no floats
 
 
-def steps_in(time: float, step_size: float, place: str, start: float = 0.0, least: int = 0) -> int:
+def steps_in(
+    time: float, step_size: float, place: str, start: float = 0.0, least: int = 0, most: float = math.inf
+) -> int:
     """Return how many steps of `step_size` [s] after `start` [s] the finite `time` [s] is.
 
     Rounding is forgiven, for 0.1 is no binary number. Raises ConfigError, which starts with `place`, for what
-    is no multiple, or fewer steps than `least`, naming the nearest ones.
+    is no multiple, or fewer steps than `least` or more than `most`, naming the nearest ones.
     """
     count, whole = nearest_step(time, start, step_size)
-    if whole and count >= least:
+    if whole and least <= count <= most:
         return count
     low = max(count if point(count, start, step_size) < time else count - 1, least - 1)
-    found = [f"{point(k, start, step_size)!r} s" for k in (low, low + 1) if k >= least]
+    found = [f"{point(k, start, step_size)!r} s" for k in (low, low + 1) if least <= k <= most]
     after = f" after start_time {start} s" if start else ""
     raise ConfigError(
         f"{place} = {time} s is not a multiple of the communication step {step_size} s{after}; "

@@ -9,16 +9,17 @@ from .unit_plan import FmuSteps
 
 
 class TurnTimes:
-    """The times of a unit that has a turn every `every` communication steps, `substeps` FMU steps in each.
+    """The times of a unit with a turn every `every` communication steps, `substeps` FMU steps in each.
 
+    Its turns are at the steps k >= `first`, which is before the stop time, with (k - first) % every == 0.
     An FMU step begins at (numerator(k) * factor + j * advance) / divisor [s], j = 0 ... substeps - 1, where
     `numerator` is the clock's. All have the same `size` [s], those before the stop time aside: a turn that
     would go beyond it ends there if the units are told it, and the last step is as long as it takes to land
     on it in doubles. This turn is `last`, at the step `last_k` (None and -1: there is none).
     """
 
-    def __init__(self, clock: Clock, every: int, substeps: int) -> None:
-        self.clock, self.every, self.substeps = clock, every, substeps
+    def __init__(self, clock: Clock, every: int, substeps: int, first: int = 0) -> None:
+        self.clock, self.every, self.substeps, self.first = clock, every, substeps, first
         self.size = clock.length(every, substeps)
         longest = (abs(clock.first) + clock.steps * clock.advance) * substeps
         self._divides = clock.decimal and longest < WHOLE
@@ -27,7 +28,7 @@ class TurnTimes:
         self.advance = self._advance(every)
         self.last, self.last_k = self._last_turn(), -1
         if self.last is not None:
-            self.last_k = (clock.steps - 1) // every * every
+            self.last_k = self._begin_of_last()
 
     def _advance(self, span: int) -> float:
         """Return what lies between two FMU steps of a turn of `span` communication steps, times `divisor`."""
@@ -44,7 +45,7 @@ class TurnTimes:
 
     def _last_turn(self) -> FmuSteps | None:
         clock, every, count = self.clock, self.every, self.substeps
-        k = (clock.steps - 1) // every * every
+        k = self._begin_of_last()
         span = clock.steps - k
         if span < every and not clock.told:
             return None
@@ -53,10 +54,14 @@ class TurnTimes:
         begin = (first + (count - 1) * advance) / divisor
         return FmuSteps(first, advance, divisor, count, size, _landing(begin, size, stop), stop)
 
+    def _begin_of_last(self) -> int:
+        """Return the step of the last turn before the stop time."""
+        return self.first + (self.clock.steps - 1 - self.first) // self.every * self.every
 
-def cut_short(clock: Clock, every: int) -> bool:
+
+def cut_short(clock: Clock, every: int, first: int = 0) -> bool:
     """Return True if the stop time, of which units are told, ends the last turn of one so often early."""
-    return clock.told and clock.steps % every != 0
+    return clock.told and (clock.steps - first) % every != 0
 
 
 def _landing(begin: float, size: float, stop: float) -> float:

@@ -55,8 +55,9 @@ class Route:
 class UnitPlan:
     """One unit: its values before the start by variable name, its slot groups, and its routes.
 
-    It steps at every communication step k with k % every == 0, `substeps` FMU steps each time. No step sets
-    the inputs `free`: they keep the FMU's own values, or what they were given before the steps.
+    It steps at every communication step k >= first with (k - first) % every == 0, `substeps` FMU steps each
+    time. No step sets the inputs `free`: they keep the FMU's own values, or what they were given before the
+    steps.
     """
 
     name: str
@@ -70,6 +71,7 @@ class UnitPlan:
     routes: tuple[Route, ...]
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
     free: frozenset[str] = frozenset()
+    first: int = 0
 
     def set_in_steps(self, group: SlotGroup) -> list[tuple[int, VariableInfo]]:
         """Return slot and variable of the inputs of a group that every step sets."""

@@ -39,18 +39,19 @@ def after_stop(
     messages: Sequence[MessagePlan],
     inputs: Mapping[str, InputPlan],
     every: Mapping[str, int],
+    first: Mapping[str, int],
     clock: Clock,
 ) -> list[str]:
     """Return a sentence for each event, stimulus and message that comes too late for any effect.
 
-    `drives` are those of the scenario's stimuli, in their order; `every` are the units' periods in
-    communication steps: one takes its inputs at the steps that are multiples of its own.
+    `drives` are those of the scenario's stimuli, in their order; `every` and `first` are the units'
+    periods and offsets in communication steps: one takes its inputs at its offset, and then each period.
     """
     stop = f"the stop time {_seconds(clock.stop)}"
     events = []
     for place, event in _events(scenario):
         unit = event.variable.partition(".")[0]
-        if (turn := _turn(clock.step_at(event.time), every[unit])) >= clock.steps:
+        if (turn := _turn(clock.step_at(event.time), every[unit], first[unit])) >= clock.steps:
             at = point(turn, clock.start, clock.step)
             late = "" if every[unit] == 1 else f"{unit} has its next turn at {_seconds(at)}, and "
             events.append(f"{place} never acts: {late}{stop} comes before it has an effect")
@@ -65,9 +66,9 @@ def after_stop(
     ]
 
 
-def _turn(step: int, every: int) -> int:
+def _turn(step: int, every: int, first: int) -> int:
     """Return the first step from `step` on at which a unit has its turn."""
-    return -(-max(step, 0) // every) * every
+    return first + -(-max(step - first, 0) // every) * every
 
 
 def _message(

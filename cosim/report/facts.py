@@ -142,7 +142,8 @@ def units_section(about: Mapping[str, Any]) -> str:
 def _steps(unit: Mapping[str, Any]) -> str:
     period = f"{shown(unit['period'])} s" if "period" in unit else ""
     count = unit.get("substeps")
-    return f"{period} in {count} FMU steps" if isinstance(count, int) and count > 1 else period
+    steps = f"{period} in {count} FMU steps" if isinstance(count, int) and count > 1 else period
+    return f"{steps}, from {shown(unit['offset'])} s on" if unit.get("offset") else steps
 
 
 def parameters_section(about: Mapping[str, Any]) -> str:

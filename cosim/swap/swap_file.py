@@ -45,7 +45,7 @@ class SwapFile(UnitEntry):
 def swapped(system: System, swaps: Mapping[str, str | Path]) -> System:
     """Return the system with the entries of the swap files in the place of the named units' entries.
 
-    The FMU's path is relative to the swap file; the period stays the system's unless the file has one.
+    The FMU's path is relative to the swap file; period and offset stay the system's unless the file has them.
     Raises ConfigError naming the swap file.
     """
     units = dict(system.file.units)
@@ -81,9 +81,11 @@ def _entry(file: SwapFile, path: Path, target: str, before: UnitEntry) -> UnitEn
         raise ConfigError(f"{path}: replaces = '{file.replaces}': it was not written for {target}")
     beside = path.parent / file.fmu
     fmu = str(beside.resolve()) if is_file(beside) else file.fmu
-    period = before.period if file.period is None else file.period
     given = {name: getattr(file, name) for name in UnitEntry.model_fields}
-    return UnitEntry(**{**given, "fmu": fmu, "period": period})
+    for name in ("period", "offset"):
+        if given[name] is None:
+            given[name] = getattr(before, name)
+    return UnitEntry(**{**given, "fmu": fmu})
 
 
 def entry_of(fmu: str, matches: Sequence[Match], entry: UnitEntry | None = None) -> UnitEntry:

@@ -156,6 +156,10 @@ class UnitEntry(FileModel):
     period: float | None = Field(default=None, gt=0.0, le=LATEST)
     """Time in s from one step of the unit to the next, a multiple of `step_size`; without it that itself."""
 
+    offset: float | None = Field(default=None, ge=0.0, le=LATEST)
+    """Task phase in s: the unit starts so much later than the run, its FMU too, and until then its initial
+    outputs stand; a multiple of `step_size`, less than the unit's period."""
+
     substeps: int = Field(default=1, ge=1, le=1_000_000)
     """FMU steps into which a period is divided, with the inputs held."""
 

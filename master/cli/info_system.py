@@ -32,7 +32,8 @@ def described(name: str) -> dict[str, Any]:
         "algorithm": plan.algorithm,
         "units": [
             {"name": u.name, "fmu": u.fmu, "period": plan.clock.length(u.every),
-             "substeps": u.substeps, "parameters": u.parameters, "scaled": _scaled(system, u.name),
+             "offset": plan.clock.length(u.first), "substeps": u.substeps,
+             "parameters": u.parameters, "scaled": _scaled(system, u.name),
              "isolation": decided(prepared.fmus[u.name], system.file.units[u.name], None),
              "needs_trust": needs_trust(
                  prepared.fmus[u.name], system.file.units[u.name], system.swaps.get(u.name, system.path)
@@ -146,6 +147,7 @@ def show(about: dict[str, Any]) -> None:
 
 def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:
     period = f"{unit['period']:g}" + (f" in {unit['substeps']} FMU steps" if unit["substeps"] > 1 else "")
+    period += f" from {unit['offset']:g} on" if unit["offset"] else ""
     parameters = ", ".join(f"{name} = {value}" for name, value in unit["parameters"].items())
     process = "its own" if unit["isolation"] == "process" else "evcosim's"
     process += " (with --trust)" if unit["needs_trust"] else ""

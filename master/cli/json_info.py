@@ -42,6 +42,7 @@ INFO_SYSTEM = record(
                     "name": text("Its name."),
                     "fmu": text("Its FMU, as the file names it."),
                     "period": number("Time from one step to the next [s]."),
+                    "offset": number("Time from the start to its first step [s]."),
                     "substeps": whole("FMU steps in a period."),
                     "parameters": by_name("Parameters that are set, by name.", VALUE),
                     "scaled": by_name("Mapped variables with a factor or an offset.", text("Its keys.")),

@@ -66,7 +66,7 @@ class Turn:
     ) -> None:
         self.unit, self.plan, self.memory, self.ending = unit, plan, memory, ending
         self.take = compile_routes(plan.routes, memory)
-        self.times = TurnTimes(clock, plan.every, plan.substeps)
+        self.times = TurnTimes(clock, plan.every, plan.substeps, plan.first)
         outputs = [group for group in plan.groups if group.kind != "input"]
         self.continuous = [group for group in outputs if group.kind == "continuous"]
         self.published = [

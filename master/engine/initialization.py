@@ -8,7 +8,8 @@ first message a receiver sees its initial value.
 
 What is known before any output is stands in every unit before it enters its initialization mode, since some
 FMUs solve their initial equations there: parameters, start values, the values of stimuli at the start time
-and the initial ones of buses. The inputs among them are set again within it.
+and the initial ones of buses. The inputs among them are set again within it. A unit with an offset is
+told that it starts later, and has the same values: none is of a time after the start of the run.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def initialize(units: Mapping[str, Unit], plan: Plan) -> tuple[str, ...]:
     # parameters, start values and the inputs that no output reaches, then initialization mode
     notices = [
         units[p.name].enter_initialization(
-            experiment.start_time,
+            plan.clock.at(p.first),
             plan.clock.told_stop,
             p.parameters | _initial_states(p),
             _first_inputs(plan, p),

@@ -5,11 +5,11 @@ Time is a count k, of which `clock` makes the time t_k. The stages of step k, un
 1. the values of the stimuli at t_k are written to the slots of their inputs, and on buses with `timing =
    "frame"` the frames that ended by t_k reach the mailboxes;
 2. the messages that are due and carry outputs valid at t_k are sent;
-3. each unit in written order, if k is a multiple of its period: its inputs are taken, overrides and
-   biases applied, it steps to t_k + period, and its outputs are read. They are visible to later units at
-   once; those of a unit whose period is longer than a step, if they are not sampled, only from the
-   communication point on at which they are valid. A message with a sampled output is sent right after its
-   sender's turn;
+3. each unit in written order, if it has its turn (each period, from its offset on): its inputs are taken,
+   overrides and biases applied, it steps to t_k + period, and its outputs are read. They are visible to
+   later units at once; those of a unit whose period is longer than a step, if they are not sampled, only
+   from the communication point on at which they are valid. A message with a sampled output is sent right
+   after its sender's turn;
 4. row k is recorded: the inputs of this step, sampled outputs after it, the others valid at t_k;
 5. the outputs after the step that are not sampled become the valid ones: at the end of the unit's period,
    and at the stop time if that cuts its last one short.
@@ -122,13 +122,13 @@ def _jacobi(plan: Plan) -> list[Action]:
 
 
 def _of_unit(plan: Plan, kind: Kind, index: int) -> Action:
-    return Action(kind, index, plan.units[index].every)
+    return Action(kind, index, plan.units[index].every, plan.units[index].first)
 
 
 def _publish(plan: Plan, index: int) -> list[Action]:
-    every, steps = plan.units[index].every, plan.clock.steps
-    actions = [Action("publish", index, every, every - 1)]
-    if cut_short(plan.clock, every):
+    every, first, steps = plan.units[index].every, plan.units[index].first, plan.clock.steps
+    actions = [Action("publish", index, every, first + every - 1)]
+    if cut_short(plan.clock, every, first):
         # at the last step, and only there: a run whose units are told the stop time does not go beyond it
         actions.append(Action("publish", index, steps, steps - 1))
     return actions

@@ -51,6 +51,7 @@ gain = { variable = "gain", factor = 1.0, offset = 0.0, convert = true }
 [units.vehicle]
 fmu = "Scooter"
 period = 0.01
+offset = 0.0
 [buses.can0]
 dbc = "bench.dbc"
 timing = "frame"
@@ -137,6 +138,7 @@ band = [0.1, 0.5]
 SWAP = """
 fmu = "Scooter"
 period = 0.01
+offset = 0.0
 [parameters]
 mass = 200.0
 [start]

@@ -13,7 +13,7 @@ from .codes import raw_mode
 
 def times_row(times: TurnTimes) -> Cells:
     """Return the columns of UNITS that say when the unit steps."""
-    last = times.last or times.steps(0)  # without a last turn these are not looked at
+    last = times.last or times.steps(times.first)  # without a last turn these are not looked at
     return {
         L.STEPS: times.substeps, L.TIME_FACTOR: times.factor, L.DIVISOR: times.divisor,
         L.ADVANCE: times.advance, L.STEP_SIZE: times.size, L.LAST_TURN: times.last_k,

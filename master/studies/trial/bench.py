@@ -97,9 +97,9 @@ class Bench:
         """
         deadline.check()
         timeout = max(0.1, min(self.entry.step_timeout, deadline.answer, deadline.end - time.monotonic()))
-        # by itself, whatever a file says: an FMU of another tool has a process of its own
-        update = {"substeps": substeps or self.entry.substeps, "step_timeout": timeout, "isolation": None}
-        entry = self.entry.model_copy(update=update)
+        # by itself, whatever a file says: an FMU of another tool has a process of its own, and starts at once
+        update: dict[str, object] = {"isolation": None, "offset": None, "step_timeout": timeout}
+        entry = self.entry.model_copy(update=update | {"substeps": substeps or self.entry.substeps})
         system, scenario = self._alone(entry, longer), self._driven(drive)
         with Simulation(system, scenario, isolation=self.isolation, to_stop=True) as simulation:
             try:

@@ -44,6 +44,12 @@ def test_the_nearest_multiples_are_named(time: float, start: float, nearest: str
         steps_in(time, 0.01, "here", start)
 
 
+def test_no_more_steps_than_there_may_be_are_named() -> None:
+    assert steps_in(0.03, 0.01, "here", most=3) == 3
+    with pytest.raises(ConfigError, match=r"the nearest is 0\.03 s$"):
+        steps_in(0.038, 0.01, "here", most=3)
+
+
 def test_a_stop_time_or_a_period_is_a_step_at_least() -> None:
     for time in (0.0, 0.004, -3.0):
         with pytest.raises(ConfigError, match=r"the nearest is 0\.01 s$"):

@@ -20,13 +20,21 @@ def open_ended(start: float, step: float, steps: int) -> Clock:
     return Clock(**vars(clock) | {"told": False})
 
 
-@given(STEP, st.sampled_from([0.0, 0.7]), st.integers(1, 400), st.integers(1, 5), st.integers(1, 4))
+@given(
+    STEP,
+    st.sampled_from([0.0, 0.7]),
+    st.integers(1, 400),
+    st.integers(1, 5),
+    st.integers(1, 4),
+    st.integers(0, 4),
+)
 def test_no_step_ends_beyond_the_stop_time_and_the_last_one_there(
-    step: float, start: float, count: int, every: int, substeps: int
+    step: float, start: float, count: int, every: int, substeps: int, first: int
 ) -> None:
     clock = Clock.counted(start, step, count)
-    times, end = TurnTimes(clock, every, substeps), start
-    for k in range(0, count, every):
+    first %= min(every, count)
+    times, end = TurnTimes(clock, every, substeps, first), clock.at(first)
+    for k in range(first, count, every):
         steps = times.steps(k)
         for (begin, size), after in zip(steps.each(), steps.ends(), strict=True):
             assert begin == pytest.approx(end, abs=1e-12 * max(1.0, end))
@@ -75,15 +83,16 @@ def test_a_period_that_would_pass_the_stop_time_ends_there_if_it_was_told() -> N
     assert untold.told_stop is None
 
 
-@given(st.integers(1, 60), st.integers(1, 9))
+@given(st.integers(1, 60), st.integers(1, 9), st.integers(0, 8))
 def test_a_stop_time_cuts_a_turn_short_if_the_last_one_is_not_as_long_as_the_others(
-    count: int, every: int
+    count: int, every: int, first: int
 ) -> None:
-    times = TurnTimes(Clock.counted(0.7, 0.01, count), every, 1)
+    first %= min(every, count)
+    times = TurnTimes(Clock.counted(0.7, 0.01, count), every, 1, first)
     begin, size = times.steps(times.last_k).each()[0]
-    assert cut_short(times.clock, every) == (size < times.size - 1e-9)
+    assert cut_short(times.clock, every, first) == (size < times.size - 1e-9)
     assert begin + size == times.clock.stop
-    assert not cut_short(open_ended(0.7, 0.01, count), every)
+    assert not cut_short(open_ended(0.7, 0.01, count), every, first)
 
 
 def test_equal_steps() -> None:

@@ -46,6 +46,14 @@ def test_an_event_after_the_last_turn_of_its_unit_is_told():
     assert "event 2, override of car.throttle at t = 9.1 s, never acts: car has its next turn at 12 s" in said
 
 
+def test_the_turns_of_a_unit_begin_at_its_offset():
+    units = {"car": {"period": 3.0, "offset": 0.8}}  # turns at 0.8, 3.8, 6.8 and 9.8 s
+    (said,) = made({"event": [event(9.8), event(9.9)]}, units=units).unreached
+    assert (
+        "event 2, override of car.throttle at t = 9.9 s, never acts: car has its next turn at 12.8 s" in said
+    )
+
+
 def test_an_event_before_the_start_is_told():
     scenario = {"event": [event(4.9), event(5.0), event(4.95)]}
     found = made(scenario, experiment=RUN | {"start_time": 5.0})

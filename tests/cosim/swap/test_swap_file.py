@@ -103,6 +103,7 @@ entries = st.builds(
     parameters=st.dictionaries(texts, values, max_size=3),
     start=st.dictionaries(texts, values, max_size=3),
     period=st.none() | st.floats(1e-6, 1e6),
+    offset=st.none() | st.floats(0.0, 1e6),
     substeps=st.integers(1, 1000),
     isolation=st.sampled_from([None, "process", "none"]),
     step_timeout=st.floats(1e-3, 1e3),
@@ -167,15 +168,19 @@ def test_a_built_in_name_stays_a_name(tmp_path: Path) -> None:
     assert after.file.units["vehicle"] == load_system("scooter").file.units["vehicle"]
 
 
-@pytest.mark.parametrize(("text", "period"), [("", 0.02), ("period = 0.04\n", 0.04)])
-def test_the_period_stays_the_systems_unless_the_swap_has_one(
-    tmp_path: Path, text: str, period: float
+@pytest.mark.parametrize(
+    ("text", "period", "offset"),
+    [("", 0.02, 0.01), ("period = 0.04\n", 0.04, 0.01), ("offset = 0.0\n", 0.02, 0.0)],
+)
+def test_period_and_offset_stay_the_systems_unless_the_swap_has_them(
+    tmp_path: Path, text: str, period: float, offset: float
 ) -> None:
     system = load_system("scooter")
-    units = system.file.units | {"vehicle": UnitEntry(fmu="Scooter", period=0.02)}
+    units = system.file.units | {"vehicle": UnitEntry(fmu="Scooter", period=0.02, offset=0.01)}
     system = dataclasses.replace(system, file=system.file.model_copy(update={"units": units}))
     after = swapped(system, {"vehicle": swap(tmp_path, f"fmu = 'Scooter'\n{text}")})
-    assert after.file.units["vehicle"].period == period
+    unit = after.file.units["vehicle"]
+    assert (unit.period, unit.offset) == (period, offset)
 
 
 @pytest.mark.parametrize(

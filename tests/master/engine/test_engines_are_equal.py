@@ -98,9 +98,10 @@ def test_a_value_that_no_signal_holds_is_the_same_error(ring):
     assert "via can0.M" in error
 
 
-def test_delays_cycles_periods_and_substeps(ring, tmp_path):
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_delays_cycles_periods_offsets_and_substeps(ring, tmp_path, offset):
     (tmp_path / "events.toml").write_text(EVENTS)
-    system = ring("delay = 0.05\ncycle = 2", "period = 0.03\nsubsteps = 2")
+    system = ring("delay = 0.05\ncycle = 2", f"period = 0.03\noffset = {offset}\nsubsteps = 2")
     assert not same(system, tmp_path / "events.toml")[-1]
 
 

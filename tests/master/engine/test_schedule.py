@@ -21,9 +21,17 @@ def message(after=None, every=1, first=0, delay=0, width=2, **more):
 
 
 def plan(
-    algorithm="gauss_seidel", periods=(1, 1), messages=(), drives=0, texts=0, steps=100, told=True, timed=()
+    algorithm="gauss_seidel",
+    periods=(1, 1),
+    messages=(),
+    drives=0,
+    texts=0,
+    steps=100,
+    told=True,
+    timed=(),
+    first=0,
 ):
-    units = [SimpleNamespace(every=every) for every in periods]
+    units = [SimpleNamespace(every=every, first=first) for every in periods]
     return SimpleNamespace(
         algorithm=algorithm,
         clock=SimpleNamespace(steps=steps, told=told, step=0.01),
@@ -83,6 +91,14 @@ def test_a_unit_with_a_longer_period_publishes_at_the_end_of_it():
     assert every["take"] == every["begin"] == every["end"] == (5, 0)
     assert every["publish"] == (5, 4)
     assert every["record"] == (1, 0)
+
+
+def test_a_unit_with_an_offset_has_its_first_turn_there():
+    actions = schedule(plan(periods=(5,), first=3))
+    every = {a.kind: (a.every, a.first) for a in actions}
+    assert every["take"] == every["begin"] == every["end"] == (5, 3)
+    found = [a for a in schedule(plan(periods=(5,), first=3, steps=12)) if a.kind == "publish"]
+    assert {k for a in found for k in range(12) if a.due(k)} == {7, 11}  # the turn of step 8 is cut short
 
 
 @pytest.mark.parametrize(
