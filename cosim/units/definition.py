@@ -11,9 +11,10 @@ import functools
 import itertools
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
+from .annotations import annotated, objection
 from .grammar import LONGEST, Powers, parse, plain
 from .measure import BASE_UNITS, Exponents, UnitOfMeasure, UnknownUnitError
 from .names import doubt
@@ -25,6 +26,8 @@ _RAD = BASE_UNITS.index("rad")
 _A_MINUTE: Powers = (("min", Fraction(-1)),)
 _TEMPERATURE: Exponents = tuple(1 if base == "K" else 0 for base in BASE_UNITS)
 _DELTA = re.compile(r"(?:[Dd]elta[ _]?|Δ[ _]?)(.+)")
+_PER = re.compile(r" per ", re.IGNORECASE)
+_SHORT = 5  # characters of a name whose capitals are tried
 _FITS = 1e-3  # relative: tools write a factor with as few as four digits
 
 
@@ -47,8 +50,10 @@ def defined(
         if unit is not None and unit.exponents is not None:
             return unit
     said = name if len(name) <= LONGEST else name[:LONGEST] + "..."
-    names = [each for powers in parse(plain(said)) for each, _ in powers]
-    raise UnknownUnitError(f"unit of measure '{said}' is not known{doubt(names)}")
+    text = plain(said)
+    names = [each for powers in parse(text) for each, _ in powers]
+    why = doubt([text, *names]) or next(filter(None, map(objection, [text, *names])), "") or _by_case(names)
+    raise UnknownUnitError(f"unit of measure '{said}' is not known{why}")
 
 
 @functools.lru_cache(maxsize=4096)
@@ -63,13 +68,41 @@ def by_text(text: str) -> UnitOfMeasure | None:
         return UnitOfMeasure(text, logarithmic=True)
     if (warming := _difference(name)) is not None:
         return UnitOfMeasure(text, warming[1], float(warming[0]), difference=True)
-    found = {}
-    for meaning in meanings(name) or (name,):
-        for powers in parse(meaning):
-            for unit in _units(text, powers, strict=meaning != name):
-                found[dataclasses.replace(unit, cycles=False)] = unit
-    readings = list(found.values())
-    return dataclasses.replace(readings[0], also=tuple(readings[1:])) if readings else None
+    for written in _written(name):
+        found = {}
+        for meaning in meanings(written) or (written,):
+            for powers in parse(meaning):
+                for unit in _units(text, powers, strict=meaning != written):
+                    found[dataclasses.replace(unit, cycles=False)] = unit
+        if found:
+            first, *others = found.values()
+            return dataclasses.replace(first, also=tuple(others))
+    return None
+
+
+def _written(name: str) -> Iterator[str]:
+    """Yield a text, and how it is written otherwise: without annotation, with signs for its words."""
+    marked = None if doubt([name]) else annotated(name)
+    if marked is None or meanings(name) or symbol(name):
+        for each in dict.fromkeys((name, _PER.sub("/", name))):
+            if " " in each:
+                yield each.replace(" ", "_")  # "nautical mile"
+            yield each
+        yield name.removesuffix(".")
+    elif not marked[1]:
+        yield marked[0]
+
+
+def _by_case(names: Iterable[str]) -> str:
+    """Return the units that the first unknown name is in other capitals, as a sentence to append."""
+    for name in names:
+        if _sizes(name, strict=False) or len(name) > _SHORT:
+            continue
+        written = map("".join, itertools.product(*({x.lower(), x.upper()} for x in name)))
+        known = sorted(each for each in written if _sizes(each, strict=False))
+        if known:
+            return f": capitals count, and {name} may be {' or '.join(known[:4])}"
+    return ""
 
 
 def names_difference(text: str) -> bool:
@@ -186,4 +219,6 @@ def _sizes(name: str, strict: bool) -> tuple[Size, ...]:
             (Fraction(u.factor), u.exponents, Fraction(u.offset)) for u in units if u.exponents is not None
         )
     known = symbol(name) or _difference(name)
+    if known is None and (marked := annotated(name)) is not None and not (marked[1] or doubt([name])):
+        return _sizes(marked[0], strict)
     return () if known is None else (known,)

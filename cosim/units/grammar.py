@@ -1,11 +1,13 @@
 """The grammar of a unit text: names with integer or rational exponents, products, quotients, parentheses.
 
-    unit     = power {("*" | "." | "/") power}
-    power    = (name | "1" | "(" unit ")") [["^" | "**"] exponent]
+    unit     = power {("*" | "." | " " | "/") power}
+    power    = (name | "1" | times name | "(" unit ")") [["^" | "**"] exponent]
+    times    = "100" | "1000", behind "/" or "("
     exponent = ["+" | "-"] number | "(" ["+" | "-"] number ["/" number] ")"
 
 A text is parsed, never evaluated, and only within limits: 64 characters, exponents up to 12. In "J/kg.K" it
-is open whether K divides; such a text has two readings.
+is open whether K divides; such a text has two readings. A space is a product between two names ("N m"), but
+not beside a ratio: "% Nm" is a share of a torque that nobody knows. "kgm2" is kg.m2 wherever it stands.
 """
 
 from __future__ import annotations
@@ -23,11 +25,18 @@ _GREATEST = 12  # of an exponent, of its denominator, and of the readings of a t
 Powers = tuple[tuple[str, Fraction], ...]
 """One reading of a text: the names in it, each once, with their exponents (0 where a name cancels out)."""
 
-_TOKEN = re.compile(r"\s*(?:(\*\*|[*./^()+-])|(\d+)|((?:[^\W\d_]|[%°])(?:[^\W\d]|[%°]|\d+(?=[^\W\d]))*))\s*")
+_TOKEN = re.compile(
+    r"\s*(?:(\*\*|[*./^()+-])|(\d+)|((?:[^\W\d_]|[%‰°])(?:[^\W\d]|[%‰°]|\d+(?=[^\W\d]))*))\s*"
+)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
 _RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]+")
 _SAME = {"º": "°", "˚": "°", "\u2212": "-", "·": "*", "⋅": "*", "∙": "*", "\u00d7": "*"}  # minus, times
+_SAME |= {"\u2022": "*", "\u2217": "*", "\u2027": "*"}  # a bullet, an operator, a hyphenation point
+_SAME |= {"\u2215": "/", "\u2044": "/"}  # signs of a division and of a fraction
 _SAME |= {"\u2206": "Δ"}  # the sign of an increment
+_TIMES = {"100": "%", "1000": "‰"}  # as 1/% and 1/‰
+_RATIOS = frozenset({"%", "‰", "ppm", "ppb", "pct", "percent"})
+_KGM = re.compile(r"(?<![^\W_])kgm((?:\^|\*\*)?2|)(?=$|[/.*)\s])", re.IGNORECASE)
 _TWICE_ENCODED = re.compile("Â(?=[°²³·µ])")  # UTF-8 that was read as cp1252
 
 
@@ -49,7 +58,7 @@ def parse(text: str) -> tuple[Powers, ...]:
     if not 0 < len(text) <= LONGEST:
         return ()
     try:
-        return _Parser(_tokens(text)).whole()
+        return _Parser(_tokens(_KGM.sub(r"(kg.m\1)", text))).whole()
     except _NoUnit:
         return ()
 
@@ -64,10 +73,29 @@ def _tokens(text: str) -> list[str]:
         token = match[match.lastindex or 0]
         spaced = text[at - 1 : at].isspace()  # a token takes the space behind it
         if found and spaced and not (_is_operator(token) or _is_operator(found[-1])):
-            raise _NoUnit  # "N m" is no product, "m 2" no power
+            if not _is_name(token) or not _before_a_name(found):
+                raise _NoUnit  # "m 2" is no power
+            if found[-1] not in _TIMES:
+                if {token.casefold(), found[-1].casefold()} & _RATIOS:
+                    raise _NoUnit
+                found.append("*")
+        elif spaced and found and found[-1] == ")" and _is_name(token):
+            found.append("*")
         found.append(token)
         at = match.end()
     return found
+
+
+def _before_a_name(found: list[str]) -> bool:
+    """Return True where a name behind a space may follow: a name, an exponent, or "/100"."""
+    if _is_name(found[-1]):
+        return True
+    behind_operator = len(found) < 2 or found[-2] in ("*", "/", ".", "(")
+    return found[-1].isdigit() and behind_operator == (found[-1] in _TIMES and len(found) > 1)
+
+
+def _is_name(token: str) -> bool:
+    return bool(token) and (token[0].isalpha() or token[0] in "%‰°")
 
 
 def _is_operator(token: str) -> bool:
@@ -111,7 +139,10 @@ class _Parser:
                 raise _NoUnit
         elif token == "1":
             readings = ((),)
-        elif token and (token[0].isalpha() or token[0] in "%°"):
+        elif token in _TIMES and self.tokens[self.at - 2] in ("/", "(") and _is_name(self.tokens[self.at]):
+            times = ((_TIMES[token], Fraction(-1)),)
+            return tuple(_merged([times, powers]) for powers in self.power())
+        elif _is_name(token):
             readings = (((token, Fraction(1)),),)
         else:
             raise _NoUnit

@@ -7,6 +7,8 @@ are of commaai/opendbc (MIT), a collection of CAN databases; a source names one 
 
 from __future__ import annotations
 
+import re
+
 from .grammar import plain
 
 Row = tuple[str, str, str]
@@ -24,12 +26,20 @@ WORDS: tuple[Row, ...] = (
     ("tr/min", "rpm", "French: tours"),
     ("U/sec", "rev/s", "German: Umdrehungen; vw_pq.dbc"),
     ("U/s", "rev/s", "German: Umdrehungen"),
-    ("rps", "rev/s", "revolutions per second"),
     ("revolution", "rev", "the name of the unit"),
     ("revs", "rev", "plural of rev"),
     ("cycles", "cycle", "plural of cycle"),
     ("turns", "turn", "plural of turn"),
     ("HZ", "Hz", "SI symbol in capitals"),
+    ("krpm", "krpm", "thousands of revolutions per minute"),
+    ("rps", "rev/s | rad/s", "revolutions or radians per second"),
+    ("rad/s", "rad/s", "in capitals S is the second"),
+    ("rad/s2", "rad/s2", "as rad/s"),
+    ("rev/s", "rev/s", "as rad/s"),
+    ("deg/s", "deg/s", "as rad/s"),
+    ("deg/s2", "deg/s2", "as rad/s"),
+    ("dps", "deg/s", "degrees per second"),
+    ("bpm", "1/min", "beats per minute"),
     # angles and temperatures
     ("Deg", "deg", "hyundai_can.dbc"),
     ("degs", "deg", "gwm_haval_h6_phev_2024.dbc"),
@@ -38,6 +48,7 @@ WORDS: tuple[Row, ...] = (
     ("Degré", "deg", "French; psa_aee2010_r3.dbc"),
     ("°Grad", "deg", "German: Grad; vw_pq.dbc"),
     ("arcdeg", "deg", "UCUM: deg"),
+    ("Rad", "rad", "as Deg"),
     ("DegC", "degC", "ford_cgea1_2_ptcan_2011.dbc"),
     ("deg C", "degC", "ford_lincoln_base_pt.dbc"),
     ("Degrees C", "degC", "ford_lincoln_base_pt.dbc"),
@@ -59,6 +70,15 @@ WORDS: tuple[Row, ...] = (
     ("deg F", "degF", "as deg C"),
     ("Degrees F", "degF", "as Degrees C"),
     ("Fahrenheit", "degF", "the name of the scale"),
+    ("degrees Celsius", "degC", "as degree_Celsius"),
+    ("deg Celsius", "degC", "as degree_Celsius"),
+    ("Grad Celsius", "degC", "German"),
+    ("degrees Fahrenheit", "degF", "as degrees Celsius"),
+    ("deg Fahrenheit", "degF", "as degrees Celsius"),
+    ("degrees Kelvin", "K", "as degrees Celsius"),
+    ("deg K", "K", "as deg C"),
+    ("degree K", "K", "as degree C"),
+    ("degrees K", "K", "as Degrees C"),
     # time, length, speed
     ("sec", "s", "gm_global_a_lowspeed_1818125.dbc"),
     ("sek", "s", "German: Sekunde; vw_pq.dbc"),
@@ -68,6 +88,14 @@ WORDS: tuple[Row, ...] = (
     ("Min", "min", "hyundai_can.dbc"),
     ("minute", "min", "ford_lincoln_base_pt.dbc"),
     ("minutes", "min", "_toyota_2017.dbc"),
+    ("mins", "min", "plural of min"),
+    ("Minuten", "min", "German"),
+    ("Sekunde", "s", "German"),
+    ("Sekunden", "s", "German"),
+    ("Std", "h", "German: Stunde"),
+    ("Stunde", "h", "German"),
+    ("Stunden", "h", "German"),
+    ("hrs", "h", "plural of hr"),
     ("hr", "h", "gm_global_a_lowspeed_1818125.dbc"),
     ("hour", "h", "ford_lincoln_base_pt.dbc"),
     ("hours", "h", "_toyota_2017.dbc"),
@@ -85,6 +113,31 @@ WORDS: tuple[Row, ...] = (
     ("kmh", "kph", "vw_mqbevo.dbc"),
     ("kmph", "kph", "kilometers per hour"),
     ("km/hr", "kph", "tesla_can.dbc"),
+    ("kts", "kn | kt", "plural of kt"),
+    ("m/s", "m/s", "as rad/s"),
+    ("m/s2", "m/s2", "as rad/s"),
+    ("m/s3", "m/s3", "as rad/s"),
+    # area, volume, flow
+    ("qm", "m2", "German: Quadratmeter"),
+    ("sqm", "m2", "square meter"),
+    ("sq m", "m2", "as sqm"),
+    ("sqft", "square_foot", "as sqm"),
+    ("sq ft", "square_foot", "as sqm"),
+    ("sq in", "square_inch", "as sqm"),
+    ("cbm", "m3", "cubic meter"),
+    ("cu m", "m3", "as cbm"),
+    ("cuft", "cubic_foot", "as cbm"),
+    ("cu ft", "cubic_foot", "as cbm"),
+    ("cu in", "cubic_inch", "as cbm"),
+    ("ccm", "mL | mL/min", "German: Kubikzentimeter; cubic centimeters per minute"),
+    ("lpm", "L/min", "liters per minute"),
+    ("lps", "L/s", "liters per second"),
+    ("l/s", "L/s", "as rad/s"),
+    ("kg/s", "kg/s", "as rad/s"),
+    ("cfm", "cubic_foot/min", "cubic feet per minute"),
+    ("gpm", "gal/min | imperial_gallon/min", "as gal"),
+    ("gph", "gal/h | imperial_gallon/h", "as gal"),
+    ("mpg", "mi/gal | mi/imperial_gallon", "as gal"),
     # electricity, power, the rest
     ("Volts", "V", "ford_lincoln_base_pt.dbc"),
     ("Amps", "A", "ford_lincoln_base_pt.dbc"),
@@ -98,6 +151,7 @@ WORDS: tuple[Row, ...] = (
     ("amperehour", "Ah", "ford_lincoln_base_pt.dbc"),
     ("WattHr", "Wh", "ford_lincoln_base_pt.dbc: wattHr/km"),
     ("Whr", "Wh", "watt hour"),
+    ("Wh", "Wh", "in capitals too"),
     ("W-h", "Wh", "a hyphen for the product"),
     ("KW", "kW", "vw_pq.dbc"),
     ("KWh", "kWh", "as KW"),
@@ -106,12 +160,40 @@ WORDS: tuple[Row, ...] = (
     ("KV", "kV", "as KW"),
     ("KHz", "kHz", "as KW"),
     ("KPa", "kPa", "hyundai_santafe_2007.dbc"),
+    ("hPa", "hPa", "as KPa"),
+    ("mmWS", "mmH2O", "German: Wassersäule"),
+    ("mmWC", "mmH2O", "water column"),
+    ("kg/cm2", "kgf/cm2 | kg/cm2", "a pressure, by the force; as written"),
+    ("lb/in2", "psi | lb/in2", "as kg/cm2"),
+    ("lbs/in2", "psi | lb/in2", "as kg/cm2"),
     ("Psi", "psi", "ford_cgea1_2_ptcan_2011.dbc"),
     ("Bar", "bar", "hyundai_can.dbc"),
     ("millibar", "mbar", "gm_global_a_lowspeed_1818125.dbc"),
     ("N-m", "Nm", "a hyphen for the product"),
     ("ft-lb", "ft.lbf", "a foot-pound of torque"),
     ("lb-ft", "ft.lbf", "a pound-foot of torque"),
+    ("ft-lbs", "ft.lbf", "as ft-lb"),
+    ("ft-lbf", "ft.lbf", "as ft-lb"),
+    ("lbf-ft", "ft.lbf", "as lb-ft"),
+    ("ftlb", "ft.lbf", "as ft-lb"),
+    ("ft lb", "ft.lbf", "as ft-lb"),
+    ("ft lbs", "ft.lbf", "as ft-lb"),
+    ("lb ft", "ft.lbf", "as lb-ft"),
+    ("in-lb", "in.lbf", "as ft-lb"),
+    ("in-lbs", "in.lbf", "as ft-lb"),
+    ("in lb", "in.lbf", "as ft-lb"),
+    ("lb-in", "in.lbf", "as lb-ft"),
+    ("lb in", "in.lbf", "as lb-ft"),
+    ("oz-in", "in.ozf", "an ounce-inch of torque"),
+    ("in-oz", "in.ozf", "as oz-in"),
+    ("ft.lb", "ft.lbf | ft.lb", "as ft-lb; as written"),
+    ("lb.ft", "ft.lbf | ft.lb", "as ft.lb"),
+    ("Nm/s", "Nm/s", "as rad/s"),
+    ("lb", "lb", "as lbs"),
+    ("lbm", "lb", "pound of mass"),
+    ("VAr", "var", "as KW"),
+    ("kVAr", "kvar", "as KW"),
+    ("kVA", "kVA", "as KW"),
     ("KG", "kg", "as KW"),
     ("lbs", "lb", "NIST SP 811: lb"),
     ("lux", "lx", "SI: the name of the unit"),
@@ -119,10 +201,15 @@ WORDS: tuple[Row, ...] = (
     ("gal", "gal | imperial_gallon", "US liquid (231 in3); imperial (4.54609 L)"),
     ("gallon", "gal | imperial_gallon", "as gal"),
     ("gallons", "gal | imperial_gallon", "as gal"),
-    ("quart", "US_quart | imperial_quart", "as gal"),
-    ("quarts", "US_quart | imperial_quart", "as gal"),
-    ("pint", "US_pint | imperial_pint", "as gal"),
-    ("pints", "US_pint | imperial_pint", "as gal"),
+    ("quart", "US_liquid_quart | US_dry_quart | imperial_quart", "as gal; US dry goods"),
+    ("quarts", "US_liquid_quart | US_dry_quart | imperial_quart", "as quart"),
+    ("pint", "US_liquid_pint | US_dry_pint | imperial_pint", "as quart"),
+    ("pints", "US_liquid_pint | US_dry_pint | imperial_pint", "as quart"),
+    ("qt", "US_liquid_quart | US_dry_quart | imperial_quart", "as quart"),
+    ("US_quart", "US_liquid_quart | US_dry_quart", "liquids; dry goods"),
+    ("US_quarts", "US_liquid_quart | US_dry_quart", "as US_quart"),
+    ("US_pint", "US_liquid_pint | US_dry_pint", "as US_quart"),
+    ("US_pints", "US_liquid_pint | US_dry_pint", "as US_quart"),
     ("fluid_ounce", "US_fluid_ounce | imperial_fluid_ounce", "as gal"),
     ("fluid_ounces", "US_fluid_ounce | imperial_fluid_ounce", "as gal"),
     ("floz", "US_fluid_ounce | imperial_fluid_ounce", "as gal"),
@@ -141,6 +228,12 @@ WORDS: tuple[Row, ...] = (
     ("yr", "julian_year | common_year", "as year"),
     ("Percent", "%", "ford_lincoln_base_pt.dbc"),
     ("pct", "%", "percent"),
+    ("per cent", "%", "as Percent"),
+    ("Prozent", "%", "German"),
+    ("per mille", "‰", "as per cent"),
+    ("permil", "‰", "as per mille"),
+    ("Promille", "‰", "German"),
+    ("ppm", "ppm", "in capitals too"),
 )
 """Spellings that are read whatever their case, since the case of none of them tells two units apart."""
 
@@ -163,10 +256,44 @@ EXACT: tuple[Row, ...] = (
     ("nM", "Nm", "nissan_xterra_2011.dbc"),
     ("Km", "km", "as KW"),
     ("KM", "km", "as KW"),
-    ("KN", "kN", "as KW"),
+    ("KN", "kN | kn", "as KW; knots in capitals"),
+    ("KT", "kn | kt", "as kt"),
+    ("inHg", "inHg | inHg_60F", "NIST SP 811: conventional; at 60 degF"),
+    ("inH2O", "inH2O | inH2O_60F", "as inHg"),
+    ("mg", "mg | ‰.gn", "SI: milligram; thousandths of gravity"),
+    ("g's", "gn", "gravities"),
+    ("G's", "gn", "gravities"),
+    ("PA", "Pa | PA", "capitals: pascal; as written"),
+    ("1/S", "1/s | 1/S", "capitals: second; SI: siemens"),
+    ("%/S", "%/s | %/S", "as 1/S"),
+    ("A/S", "A/s | A/S", "as 1/S"),
+    ("V/S", "V/s | V/S", "as 1/S"),
+    ("MPA", "MPa | mPa", "capitals: mega or milli"),
+    ("mpa", "MPa | mPa", "small letters: mega or milli"),
+    ("mhz", "MHz | mHz", "as mpa"),
+    ("MWH", "MWh | mWh", "as MPA"),
+    ("mwh", "MWh | mWh", "as mpa"),
+    ("MAH", "mAh | MAh", "as MPA"),
+    ("mah", "mAh | MAh", "as mpa"),
+    ("MBAR", "mbar | Mbar", "as MPA"),
+    ("MOHM", "Mohm | mohm", "as MPA"),
+    ("mTorr", "millitorr", "SI prefix"),
+    ("mtorr", "millitorr", "SI prefix"),
+    ("kp", "kgf", "German: Kilopond"),
+    ("KP", "kgf", "as kp"),
+    ("Pas", "Pa.s", "without a sign for the product"),
+    ("mPas", "mPa.s", "as Pas"),
+    ("W/mK", "W/(m.K) | W/mK", "as Pas; as written"),
+    ("W/(mK)", "W/(m.K) | W/mK", "as W/mK"),
+    ("W/m2K", "W/(m2.K)", "as Pas"),
+    ("W/(m2K)", "W/(m2.K)", "as Pas"),
+    ("J/kgK", "J/(kg.K)", "as Pas"),
+    ("J/(kgK)", "J/(kg.K)", "as Pas"),
+    ("kJ/kgK", "kJ/(kg.K)", "as Pas"),
+    ("kJ/(kgK)", "kJ/(kg.K)", "as Pas"),
     ("Mpa", "MPa", "toyota_2017_ref_pt.dbc"),
     ("Mhz", "MHz", "as Mpa"),
-    ("MHZ", "MHz", "as Mpa"),
+    ("MHZ", "MHz | mHz", "as MPA"),
     ("mOhm", "mohm", "as Ohm"),
     ("MOhm", "Mohm", "as Ohm"),
     ("uOhm", "uohm", "as Ohm"),
@@ -242,11 +369,23 @@ NO_UNIT = (
 )
 """Texts that say that there is no unit: the unit 1 (psa_aee2010_r3.dbc, ford_lincoln_base_pt.dbc)."""
 
-_EXACT = {plain(spelling): meaning for spelling, meaning, _ in EXACT}
-_WORDS = {plain(spelling).casefold(): meaning for spelling, meaning, _ in WORDS}
+_SPACED = re.compile(r"\s*([*/.^()])\s*")
+_POWER = re.compile(r"(?:\^|\*\*)(?=[-+]?\d)")
+
+
+def _key(text: str) -> str:
+    """Return a text as it is looked up: "m / s^2" as "m/s2", "deg_C" as "deg C", "ft*lb" as "ft.lb"."""
+    return (
+        _POWER.sub("", _SPACED.sub(r"\1", plain(text))).replace("*", ".").replace("_", " ").removesuffix(".")
+    )
+
+
+_EXACT = {_key(spelling): meaning for spelling, meaning, _ in EXACT}
+_WORDS = {_key(spelling).casefold(): meaning for spelling, meaning, _ in WORDS}
 
 
 def meanings(text: str) -> tuple[str, ...]:
     """Return the meanings of a spelling in plain characters, the usual one first; none for another text."""
-    found = _EXACT.get(text) or _WORDS.get(text.casefold(), "")
+    key = _key(text)
+    found = _EXACT.get(key) or _WORDS.get(key.casefold(), "")
     return tuple(part.strip() for part in found.split("|")) if found else ()

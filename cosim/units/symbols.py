@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 
 from .measure import BASE_UNITS, Exponents
@@ -47,12 +48,12 @@ _PREFIXED: dict[str, _Size] = {
     "Gy": (1, {"m": 2, "s": -2}), "Sv": (1, {"m": 2, "s": -2}), "kat": (1, {"mol": 1, "s": -1}),
     "L": (Fraction(1, 1000), {"m": 3}), "l": (Fraction(1, 1000), {"m": 3}), "t": (1000, {"kg": 1}),
     "bar": (100_000, _PRESSURE), "Wh": (_HOUR, _ENERGY), "Ah": (_HOUR, {"s": 1, "A": 1}), "VA": (1, _POWER),
-    "Nm": (1, _ENERGY), "Nms": (1, _ENERGY | {"s": -1}), "Ws": (1, _ENERGY),
+    "Nm": (1, _ENERGY), "Ns": (1, _FORCE | {"s": -1}), "Nms": (1, _ENERGY | {"s": -1}), "Ws": (1, _ENERGY),
     "As": (1, {"s": 1, "A": 1}), "Vs": (1, _ENERGY | {"A": -1}), "var": (1, _POWER),
     "eV": (Fraction("1.602176634e-19"), _ENERGY),
 }  # fmt: skip # related units side by side
 _ALONE: dict[str, _Size] = {
-    "%": (Fraction(1, 100), {}), "ppm": (Fraction(1, 1_000_000), {}),
+    "%": (Fraction(1, 100), {}), "‰": (Fraction(1, 1000), {}), "ppm": (Fraction(1, 1_000_000), {}),
     "min": (60, {"s": 1}), "h": (_HOUR, {"s": 1}), "d": (24 * _HOUR, {"s": 1}),
     "deg": (_PI / 180, {"rad": 1}), "°": (_PI / 180, {"rad": 1}), "gon": (_PI / 200, {"rad": 1}),
     "rev": (2 * _PI, {"rad": 1}), "cycle": (2 * _PI, {"rad": 1}), "turn": (2 * _PI, {"rad": 1}),
@@ -81,6 +82,10 @@ _LONG = {
     "bar": "bar",
     "electronvolt": "eV", "electron_volt": "eV",
 }  # fmt: skip # as they are written out, with a long prefix or none
+
+_IN_ANY_CASE = {
+    name.casefold(): name for name in NAMES if len(name) > 3 and not name.startswith("cal")
+}  # a capital tells Cal from cal, and short names have homonyms
 
 LEVELS = frozenset({"Np", "neper", "Bel", "bel", "decibel", "db", "octave", "decade", "phon"})
 """Names of logarithmic units beside those that begin with dB: no factor converts them."""
@@ -129,12 +134,20 @@ def _written_out(name: str) -> _Size | None:
     return _prefixed(_LONG_PREFIXES[prefix] + base, _PREFIXED) if prefix else _PREFIXED[base]
 
 
+def _keys(name: str) -> Iterator[str]:
+    """Yield the keys of NAMES that a name may stand for: its singular, and the same in other capitals."""
+    for each in (name, name[:-1] if name[-1:] in "sS" else name):
+        yield each
+        if each in (each.upper(), each.capitalize(), each.title()):  # microN is a force, and no micron
+            yield _IN_ANY_CASE.get(each.casefold(), each)
+
+
 def _named(name: str) -> _Size | None:
     """Return the unit of a name of NAMES, of its plural, or of one behind a prefix that is written out."""
-    prefixes = ["", *(long for long in _LONG_PREFIXES if name.startswith(long))]
+    prefixes = ["", *(long for long in _LONG_PREFIXES if name.casefold().startswith(long))]
     for prefix in prefixes:
-        rest = name.removeprefix(prefix)
-        found = NAMES.get(rest) or NAMES.get(rest.removesuffix("s"))
+        rest = name[len(prefix) :]
+        found = next((NAMES[key] for key in _keys(rest) if key in NAMES), None)
         if found is not None:
             factor, base = found
             size, powers = _ALONE.get(base) or _PREFIXED.get(base) or _prefixed(base, _PREFIXED) or (0, {})

@@ -84,6 +84,19 @@ PLAIN = [
     "dB",
     "dBm",
 ]
+PLAIN += [
+    "N m",
+    "m s-1",
+    "l/100km",
+    "kWh/(100 km)",
+    "V/1000 rpm",
+    "kgm2",
+    "VDC",
+    "psia",
+    "%RH",
+    "‰",
+    "miles per hour",
+]
 TEXTS = [*PLAIN, *(spelling for spelling, _, _ in (*WORDS, *EXACT))]
 
 
@@ -92,6 +105,19 @@ def converted(a: str, b: str) -> Affine | None:
         return between(a, b)
     except ConfigError:
         return None
+
+
+@given(
+    st.lists(st.sampled_from(["N", "m", "s", "kg", "rad", "V", "min", "Wh"]), min_size=2, max_size=4),
+    st.lists(st.sampled_from([" ", " * ", "*", ".", "·", "⋅", "\u2022"]), min_size=3, max_size=3),
+    st.sampled_from(["", "2", "^2", "²", "-1", "⁻¹", "^(1/2)"]),
+)
+def test_a_product_is_one_whatever_its_sign(names, signs, exponent):
+    """A space, a point, a dot and an asterisk are one sign, whatever stands around them."""
+    written = "".join(f"{name}{exponent}{sign}" for name, sign in zip(names, [*signs, ""], strict=False))
+    written = written[: written.rindex(names[-1])] + names[-1] + exponent
+    plain = "*".join(f"{name}{exponent}" for name in names)
+    assert between(written, plain).identity
 
 
 def test_factors_are_rounded_once():

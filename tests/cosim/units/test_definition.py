@@ -17,7 +17,7 @@ RATE, TURNING = (0, 0, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 1)
 A_TURN = 2.0 * math.pi
 UNKNOWN = (
     "furlongs/fortnite", "#", "??", "€", "V(", "9**9**9**9", "count", "raw", "bit", "# of Bars", '"', "Grads",
-    "tbd", "Pas", "Ns", "Cs", "m" * 1000, "m^13", "Ym12.Ym12", "ym12/Ym12", "x" * 64, "(" * 10_000, "1e999",
+    "tbd", "Cs", "m" * 1000, "m^13", "Ym12.Ym12", "ym12/Ym12", "x" * 64, "(" * 10_000, "1e999",
     "__class__", "Quantity",
 )  # fmt: skip # a list
 LEFT_OUT = (

@@ -23,7 +23,9 @@ IN_PINT = {
     "US_liquid_ounce": "fluid_ounce", "US_liquid_pint": "US_pint", "survey_feet": "survey_foot",
     "cubic_inches": "cubic_inch", "gauss": "1e-4 tesla", "maxwell": "1e-8 weber", "curie": "3.7e10 / second",
     "mechanical_horsepower": "horsepower", "revolution_per_minute": "revolutions_per_minute",
-    "revolution_per_second": "revolutions_per_second", "degRk": "degree_Rankine",
+    "revolution_per_second": "revolutions_per_second", "Nmm": "newton * millimeter",
+    "Ncm": "newton * centimeter", "conventional_inHg": "inch_Hg", "conventional_inH2O": "249.08891 pascal",
+    "inHg_60F": "inch_Hg_60F", "inH2O_60F": "inch_H2O_60F", "degRk": "degree_Rankine",
 }  # fmt: skip # names that pint has not, or defines in other base units
 OTHERWISE = {
     "G": "standard gravity or gauss; pint defines it in units of the CGS system", "gauss": "as G",
@@ -32,6 +34,7 @@ OTHERWISE = {
     "Nm": "newton meter; pint: a yarn", "Tt": "teratonne; pint: a yarn",
     "kmph": "km/h; pint: 1000 mph", "kMPH": "as kmph", "Min": "minutes; pint: megainches",
     "Msec": "ms in capitals; pint: megaseconds", "mcd": "millicandela; pint: a micro-day",
+    "cfm": "cubic feet a minute; pint: 1e-17 m",
 }  # fmt: skip # what is read otherwise, and why
 
 
@@ -159,3 +162,105 @@ def test_constants_and_what_nobody_has_reviewed_are_no_units(text):
 
 def test_nothing_of_the_tables_is_doubtful():
     assert not {name for name in DOUBTFUL if name in NAMES or symbol(name) or is_level(name)}
+
+
+WRITTEN = """
+permille = ‰, per mille, Promille, permil
+ppm = PPM, ppm
+percent = Prozent, per cent
+liter / (100 * kilometer) = l/100km, L/100km, L/100 km, l / 100 km, l/(100 km), L/(100km), l per 100km
+liter / (100 * kilometer) = liters per 100 km
+kilowatt_hour / (100 * kilometer) = kWh/100km, kWh/100 km, KWH/100KM, kWh/(100 km), kW h/100km
+watt_hour / kilometer = Wh/km, W h/km, WH/KM, W·h/km
+volt / (1000 * revolutions_per_minute) = V/krpm, V/kRPM, V/1000rpm, V/1000 rpm, V/(1000 rpm)
+radian = Rad, RAD, rad
+radian / second = RAD/S, Rad/s, rad/S, rad s-1, rad per second
+degree / second = DEG/S, Deg/s, dps, degrees per second
+meter / second = m s-1, m s^-1, m·s⁻¹, m•s-1, m*s^-1, M/S, m/S, m per s, meters per second
+meter / second ** 2 = m s-2, M/S2, m/s^2, m/s², M/S², m/s/s, m / s2
+newton * meter = N m, N·m, N*m, N.m, NM, N⋅m, N-m
+newton * meter * second = N m s, Nm s
+newton * second / meter = Ns/m, N s/m, N*s/m, N·s/m
+kilogram * meter ** 2 = kgm2, kgm^2, kgm², kg m2, kg m², kg*m^2, KGM2, kgm**2
+kilogram * meter ** 2 / second = kgm2/s, kg m2/s, kg m2 s-1
+hour = hrs, HRS, Hrs, Stunden
+knot = kts, KTS, knots, KNOTS, Knots, KT
+volt = VDC, V DC
+liter / minute = lpm, LPM, l/min, L per min
+foot ** 3 / minute = cfm, CFM, cubic feet per minute
+centimeter ** 3 = ccm, CCM, cc
+centimeter ** 3 / minute = ccm
+psi = psia, PSI, lb/in2, lb/in², LBS/IN2
+torr = Torr, TORR, torr
+millitorr = mTorr
+hectopascal = HPA, hPA, hpa, HPa
+kilopascal = KPA, kpa, KPa
+megapascal = Mpa
+pascal = PA, Pa
+foot * force_pound = ft lb, ft-lb, ft·lb, lb·ft, lb ft, FT-LB, ft-lbf, lbf-ft, foot pound
+inch * force_pound = in lb, in-lb, lb-in, IN-LBS
+milligram = mg
+standard_gravity / 1000 = mg
+standard_gravity = g's, G's
+watt / (meter * kelvin) = W/mK, W/(m K), W/m·K, W/(m·K), W m-1 K-1
+watt / (meter ** 2 * kelvin) = W/m2K, W/m²K, W/(m2 K)
+joule / (kilogram * kelvin) = J/kgK, J/(kg K), J/kg K, J kg-1 K-1
+kilogram_force / centimeter ** 2 = kg/cm2, kg/cm², kgf/cm2, kp/cm2
+pascal * second = Pas, Pa s
+millipascal * second = mPas, mPa s
+nautical_mile = nautical mile, Nautical Mile, nautical miles
+gallon = US gallon
+mile / hour = miles per hour, MPH
+degree = deg., Deg, DEG
+kelvin = deg K, degrees Kelvin
+volt * ampere = VA, V A
+kilovolt * ampere = KVA, kVA, kva
+newton * millimeter = Nmm
+"""
+"""A unit as pint has it, and how people write it."""
+PAIRS = [
+    (meant, text)
+    for meant, _, texts in (line.partition(" = ") for line in WRITTEN.strip().splitlines())
+    for text in texts.split(", ")
+]
+
+
+@pytest.mark.parametrize(("meant", "text"), PAIRS)
+def test_what_people_write_is_what_pint_makes_of_what_they_mean(meant, text):
+    """One reading is it: beside those of other quantities, which the other end of a connection rules out."""
+    amount = REGISTRY(meant)
+    factor, powers = in_base_units(str(amount.units))
+    factor *= amount.magnitude
+    unit = by_text(text)
+    assert unit is not None and any(same(reading, factor, powers) for reading in unit.readings)
+    alike = [r for r in unit.readings if r.exponents == unit.exponents]
+    assert len(alike) == 1  # it is open between quantities at most
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("MPA", "bar"), ("mpa", "Pa"), ("MHZ", "Hz"), ("mhz", "1/min"), ("MWH", "kWh"), ("MAH", "A.h"),
+        ("MBAR", "Pa"), ("MOHM", "ohm"), ("rps", "rpm"), ("rps", "Hz"), ("mpg", "km/L"), ("gpm", "L/min"),
+        ("inHg", "kPa"), ("inH2O", "Pa"), ("US_quart", "L"), ("US pint", "L"), ("qt", "L"),
+    ],
+)  # fmt: skip # a table
+def test_what_may_be_two_sizes_of_one_quantity_is_open(text, target):
+    for ends in ((text, target), (target, text)):
+        with pytest.raises(OpenUnitError, match="the text has several meanings"):
+            between(*ends)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("mv", "MV or mV"), ("MM", "Mm or mm"), ("ma", "MA or mA"), ("kj", "kJ"), ("KNM/s", "kNm"), ("w", "W")],
+)
+def test_an_unknown_name_that_other_capitals_make_known_is_said(text, said):
+    with pytest.raises(UnknownUnitError, match=f"capitals count, and .* may be .*{said}"):
+        defined(text)
+
+
+def test_a_capital_inside_a_name_makes_another_one():
+    assert by_text("microN") is None
+    assert by_text("Micron").factor == by_text("MICRON").factor == 1e-6
+    assert by_text("MmH2O") is None

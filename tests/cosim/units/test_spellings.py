@@ -8,7 +8,7 @@ import pytest
 
 from evcosim.cosim.units.definition import _units, by_text
 from evcosim.cosim.units.grammar import parse, plain
-from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, meanings
+from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, _key, meanings
 from evcosim.cosim.units.symbols import symbol
 
 ROWS = [*WORDS, *EXACT]
@@ -36,8 +36,8 @@ def test_a_word_is_read_whatever_its_case(spelling):
 
 
 def test_no_spelling_stands_twice():
-    words = [plain(spelling).casefold() for spelling, _, _ in WORDS]
-    exact = [plain(spelling) for spelling, _, _ in EXACT]
+    words = [_key(spelling).casefold() for spelling, _, _ in WORDS]
+    exact = [_key(spelling) for spelling, _, _ in EXACT]
     assert len(set(words)) == len(words) and len(set(exact)) == len(exact)
 
 

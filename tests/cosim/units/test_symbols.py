@@ -19,7 +19,8 @@ OTHER_NAMES = {
     "%": "percent", "Ω": "ohm", "VA": "volt * ampere", "PS": "metric_horsepower", "kn": "knot", "d": "day",
     "gal": "gallon", "Ah": "ampere * hour", "Wh": "watt * hour", "lb": "pound", "ha": "hectare",
     "mmHg": "mmHg", "t": "tonne", "As": "ampere * second", "Vs": "volt * second", "Ws": "joule",
-    "Nms": "newton * meter * second", "var": "volt * ampere", "cmH2O": "centimeter_H2O",
+    "Nms": "newton * meter * second", "Ns": "newton * second", "‰": "permille",
+    "var": "volt * ampere", "cmH2O": "centimeter_H2O",
 }  # fmt: skip # as pint calls them
 PREFIXED = (
     ("km", 1e3), ("mV", 1e-3), ("MW", 1e6), ("uA", 1e-6), ("μs", 1e-6), ("dam", 10.0), ("mbar", 100.0),
