@@ -49,7 +49,8 @@ def framing_of(
 ) -> Framing | None:
     """Return how the frames of a message are made; None where its values alone say what receivers get.
 
-    `connected` are the names of the signals that a connection feeds. Raises ConfigError, which starts with
+    With resolution "ideal" there are no frames, and protection, timeouts and statuses do nothing. `connected`
+    are the names of the signals that a connection feeds. Raises ConfigError, which starts with
     `place`, for a protection that its signals do not hold.
     """
     own = settings.of_message(message.name)
@@ -67,7 +68,22 @@ def framing_of(
         raise ConfigError(
             f"{place}.messages.{message.name}: `e2e` and `timeout` are for messages that are not multiplexed"
         )
+    if settings.resolution == "ideal":
+        check_quantized(settings, place)
+        return None
     return Framing(protection) if special or settings.timing == "frame" else None
+
+
+def check_quantized(settings: BusSettings, place: str, fault: bool = False) -> None:
+    """Raise ConfigError, which starts with `place`, where values that are not quantized should make frames.
+
+    They are what a `fault` hits, and what takes time. A protection alone changes no value, and is left out.
+    """
+    if settings.resolution == "ideal" and (fault or settings.timing == "frame"):
+        needs = "a fault hits frames" if fault else 'timing = "frame" needs frames'
+        raise ConfigError(
+            f'{place}: with resolution = "ideal" values are not quantized, and make no frames; {needs}'
+        )
 
 
 def check_jitter(message: Message, settings: BusSettings, cycle: float, place: str) -> None:

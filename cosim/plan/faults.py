@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 
-from ..can.framing import Framing
+from ..can.framing import Framing, check_quantized
 from ..clock import Clock, picoseconds
 from ..errors import ConfigError, nearest
 from ..system.scenario import Fault, Scenario
@@ -41,6 +41,9 @@ def _planned(fault: Fault, messages: Sequence[MessagePlan], clock: Clock, place:
     target = fault.message or fault.node or ""
     bus, _, name = target.partition(".")
     known = {f"{m.bus}.{m.message.name if fault.message else node_of(m)}" for m in messages}
+    for message in messages:
+        if message.bus == bus:
+            check_quantized(message.settings, f"{place}: buses.{bus}", fault=True)
     if messages and target not in known:
         key = "message" if fault.message else "node"
         raise ConfigError(

@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any
 
 import numba
+import numpy as np
 
 
 def in_machine_code(*modules: ModuleType) -> dict[str, Any]:
@@ -18,7 +19,8 @@ def in_machine_code(*modules: ModuleType) -> dict[str, Any]:
             if isinstance(value, types.FunctionType):
                 functions[name] = value
             elif not name.startswith("__"):
-                scope[name] = value
+                table = isinstance(value, tuple) and len(value) == 256
+                scope[name] = np.array(value) if table else value
     for name, function in functions.items():
         scope[name] = numba.njit(types.FunctionType(function.__code__, scope, name))
     return {name: scope[name] for name in functions}

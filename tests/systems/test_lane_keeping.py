@@ -134,8 +134,8 @@ def test_the_ripple_follows_the_resolution_of_the_lane_camera(tmp_path, displace
     """The last one is that of series cameras: 4 mm and 0.05 deg."""
     dbc = (DATA / "can" / "ev.dbc").read_text()
     for signal, old, new in (
-        ("CAM_LatDisplacement : 0|16@1- ", 0.001, displacement),
-        ("CAM_HeadingAngle : 16|16@1- ", 0.01, heading),
+        ("CAM_LatDisplacement : 16|16@1- ", 0.001, displacement),
+        ("CAM_HeadingAngle : 32|16@1- ", 0.01, heading),
     ):
         assert f"{signal}({old:g},0)" in dbc
         dbc = dbc.replace(f"{signal}({old:g},0)", f"{signal}({new:g},0)")

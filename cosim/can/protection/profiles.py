@@ -37,22 +37,26 @@ def checksum_bytes(profile: int) -> int:
     return 2 if profile == P5 else 1
 
 
-def crc_8(polynomial: int, crc: int, byte: int) -> int:
-    """Return the register of 8 bits after one more byte, the most significant bit first."""
-    crc ^= byte
-    for _ in range(8):
-        crc = crc << 1 ^ (polynomial if crc & 0x80 else 0)
-        crc &= 0xFF
-    return crc
+def crc_8_table(polynomial: int) -> tuple[int, ...]:
+    """Return what a register of 8 bits is after each byte, the most significant bit first."""
+    return tuple(_shifted(byte, 8, polynomial) for byte in range(256))
 
 
-def crc_16(crc: int, byte: int) -> int:
-    """Return the register of 16 bits (CCITT) after one more byte, the most significant bit first."""
-    crc ^= byte << 8
+def crc_16_table(polynomial: int) -> tuple[int, ...]:
+    """Return what a register of 16 bits is after each byte, the most significant bit first."""
+    return tuple(_shifted(byte << 8, 16, polynomial) for byte in range(256))
+
+
+def _shifted(register: int, bits: int, polynomial: int) -> int:
     for _ in range(8):
-        crc = crc << 1 ^ (0x1021 if crc & 0x8000 else 0)
-        crc &= 0xFFFF
-    return crc
+        register = register << 1 ^ (polynomial if register >> (bits - 1) & 1 else 0)
+        register &= (1 << bits) - 1
+    return register
+
+
+J1850, H2F, CCITT = crc_8_table(0x1D), crc_8_table(0x2F), crc_16_table(0x1021)
+"""The tables of the three registers: that after one more byte is `J1850[register ^ byte]`, so `H2F`, and for
+16 bits `register << 8 & 0xFF00 ^ CCITT[register >> 8 ^ byte]`."""
 
 
 def checksum(
@@ -75,18 +79,16 @@ def checksum(
         crc = 0xFF
         for i in range(length):
             if i != place:
-                crc = crc_8(0x2F, crc, payload[at + i])
-        return crc_8(0x2F, crc, ids[first + counter]) ^ 0xFF
+                crc = H2F[crc ^ payload[at + i]]
+        return H2F[crc ^ ids[first + counter]] ^ 0xFF
     low, high = ids[first] & 0xFF, ids[first] >> 8 & 0xFF
-    crc = 0
     if profile == P1B:
-        crc = crc_8(0x1D, crc, high if counter & 1 else low)
+        crc = J1850[high if counter & 1 else low]
     else:
-        crc = crc_8(0x1D, crc, low)
-        crc = crc_8(0x1D, crc, high if profile == P1A else 0)
+        crc = J1850[J1850[low] ^ (high if profile == P1A else 0)]
     for i in range(length):
         if i != place:
-            crc = crc_8(0x1D, crc, payload[at + i])
+            crc = J1850[crc ^ payload[at + i]]
     return crc
 
 
@@ -94,5 +96,6 @@ def _profile_5(payload: Sequence[int], at: int, length: int, place: int, data_id
     crc = 0xFFFF
     for i in range(length):
         if i != place and i != place + 1:
-            crc = crc_16(crc, payload[at + i])
-    return crc_16(crc_16(crc, data_id & 0xFF), data_id >> 8 & 0xFF)
+            crc = crc << 8 & 0xFF00 ^ CCITT[crc >> 8 ^ payload[at + i]]
+    crc = crc << 8 & 0xFF00 ^ CCITT[crc >> 8 ^ data_id & 0xFF]
+    return crc << 8 & 0xFF00 ^ CCITT[crc >> 8 ^ data_id >> 8 & 0xFF]

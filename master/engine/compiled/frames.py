@@ -49,7 +49,7 @@ def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
 def function() -> Any:
     """Return the function action(address of a wire_table, what, i, k), to be compiled."""
     jitted: dict[str, Any] = {"ask": njit(forceinline=True, error_model="numpy")(_ask)}
-    scopes = [dict(vars(module)) for module in MODULES]
+    scopes = [{name: _constant(value) for name, value in vars(module).items()} for module in MODULES]
     for module, scope in zip(MODULES, scopes, strict=True):
         for name, value in vars(module).items():
             if isinstance(value, FunctionType) and value.__module__ == module.__name__ and name not in jitted:
@@ -59,6 +59,11 @@ def function() -> Any:
     for scope in scopes:
         scope.update({name: made for name, made in jitted.items() if name in scope})
     return FunctionType(_action.__code__, {**globals(), "act": jitted["act"]}, "wire_action")
+
+
+def _constant(value: Any) -> Any:
+    """Return a name's value as numba compiles it fast: a table of numbers as an array."""
+    return np.array(value, dtype=np.int64) if isinstance(value, tuple) and len(value) == 256 else value
 
 
 @njit(forceinline=True, error_model="numpy")

@@ -30,3 +30,11 @@ def test_jitter_of_a_message_is_shorter_than_its_cycle():
         ConfigError, match=r"^s.toml: message 'M': jitter = 0.01 s is not less than its cycle"
     ):
         check_jitter(MESSAGE, BusSettings(jitter=0.01), 0.01, "s.toml")
+
+
+def test_values_that_are_not_quantized_make_no_frames():
+    own = {"M": MessageSettings(timeout=3)}
+    assert framing_of(MESSAGE, BusSettings(messages=own)) is not None
+    assert framing_of(MESSAGE, BusSettings(messages=own, resolution="ideal")) is None
+    with pytest.raises(ConfigError, match=r'^s.toml: with resolution = "ideal".*timing = "frame" needs'):
+        framing_of(MESSAGE, BusSettings(timing="frame", resolution="ideal"), (), "s.toml")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.plan.faults import FOREVER
 from evcosim.master.simulation import Simulation
@@ -113,5 +114,14 @@ def test_what_a_fault_cannot_hit_is_refused(tmp_path, fault, reason):
 
 
 def test_a_byte_that_a_message_has_not(tmp_path):
-    with pytest.raises(ConfigError, match=r"fault 1.byte: can0.VCU_Request has the bytes 0 to 1, and no"):
-        ran(tmp_path, 'action = "corrupt"\ntime = 0.0\nmessage = "can0.VCU_Request"\nbyte = 2\n')
+    with pytest.raises(ConfigError, match=r"fault 1.byte: can0.VCU_Request has the bytes 0 to 2, and no"):
+        ran(tmp_path, 'action = "corrupt"\ntime = 0.0\nmessage = "can0.VCU_Request"\nbyte = 3\n')
+
+
+def test_values_that_are_not_quantized_have_no_faults(tmp_path):
+    with pytest.raises(ConfigError, match=r'fault 1: buses.can0: with resolution = "ideal".*hits frames'):
+        ran(
+            tmp_path,
+            'action = "lose"\ntime = 0.0\nmessage = "can0.VCU_Request"\n',
+            bus=BusVariation(resolution="ideal"),
+        )
