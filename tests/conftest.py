@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 
 import pytest
@@ -35,8 +36,13 @@ def pytest_configure(config):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection():
-    with bytecode.written():
-        return (yield)
+    gc.disable()
+    try:
+        with bytecode.written():
+            return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()  # no later search for garbage looks at ten thousand tests, nor in a child of `fork`
 
 
 def pytest_sessionfinish(exitstatus):

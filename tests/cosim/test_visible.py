@@ -7,6 +7,7 @@ import json
 import sys
 import tomllib
 import unicodedata
+from collections.abc import Iterator
 
 import pytest
 
@@ -20,9 +21,13 @@ from evcosim.cosim.visible import (
     visible_toml,
 )
 
-EVERY = [chr(code) for code in range(sys.maxunicode + 1)]
 SIGNS = set(map(chr, (*range(0x600, 0x606), 0x6DD, 0x890, 0x891, 0x8E2, 0x110BD, 0x110CD)))
 """Format characters that are seen: they stand around or above digits."""
+
+
+def every() -> Iterator[str]:
+    """All characters of Unicode."""
+    return map(chr, range(sys.maxunicode + 1))
 
 
 def steers(character: str) -> bool:
@@ -33,8 +38,8 @@ def steers(character: str) -> bool:
 
 
 def test_all_that_steers_or_hides_is_escaped_and_nothing_that_is_seen() -> None:
-    escaped = {c for c in EVERY if visible(c) != c}
-    assert {c for c in EVERY if steers(c)} - escaped == {"\n"}
+    escaped = {c for c in every() if visible(c) != c}
+    assert {c for c in every() if steers(c)} - escaped == {"\n"}
     letters = {c for c in escaped if unicodedata.category(c)[0] in "LNPSZ" and not steers(c)}
     blank = {"\u115f", "\u1160", "\u3164", "\uffa0"}  # letters without a shape
     assert letters == blank
@@ -66,7 +71,7 @@ def test_a_line_feed_stays_in_a_text_and_not_in_a_name() -> None:
 
 
 def test_files_for_machines_have_their_own_escapes() -> None:
-    whole = "".join(c for c in EVERY if steers(c) and unicodedata.category(c) != "Cs") + "\u3164é\U000e0041"
+    whole = "".join(c for c in every() if steers(c) and unicodedata.category(c) != "Cs") + "\u3164é\U000e0041"
     text = whole + "\udcff\udc80"  # bytes of a file's name that are no text
     written = visible_json(json.dumps({text: [text]}, ensure_ascii=False))
     assert visible(written) == written

@@ -6,8 +6,8 @@ those that are forked from the warm one (see `warm`); imports on collecting are 
 
 from __future__ import annotations
 
-import multiprocessing.forkserver
 import os
+import sys
 from collections import defaultdict
 from collections.abc import Generator
 from pathlib import Path
@@ -63,7 +63,8 @@ def used() -> float:
 
 def _of_warm() -> float:
     """Return those of the process that forks, which this one does not wait for, and of what it has forked."""
-    number = multiprocessing.forkserver._forkserver._forkserver_pid  # type: ignore[attr-defined]
+    module = sys.modules.get("multiprocessing.forkserver")  # imported by the first test that forks
+    number = module and module._forkserver._forkserver_pid
     about = Path(f"/proc/{number}/stat")
     if number is None or not about.exists():
         return 0.0

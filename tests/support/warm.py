@@ -1,4 +1,4 @@
-"""Commands and isolated units in processes that are forked from one which has imported what they need.
+"""Commands, their workers and isolated units in processes forked from one which has imported what they need.
 
 Each has its own arguments, folder, environment, output and exit code, and finds nothing left by those before.
 Only the imports are done once: a second of each command, and nine tenths of the start of a unit. Tests of the
@@ -137,6 +137,8 @@ def _carry_out(arguments: list[str], folder: Path, environment: dict[str, str], 
         with path.open("wb") as file:
             os.dup2(file.fileno(), descriptor)
     _take_over(arguments, folder, environment)
+    forking = multiprocessing.get_context("fork")
+    multiprocessing.get_context = lambda method=None: forking  # type: ignore # this process's workers: `run_all`
     from evcosim.master.cli import main
 
     sys.exit(main())

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 
-import pint
 import pytest
 
 from evcosim.cosim.errors import ConfigError
@@ -14,8 +13,8 @@ from evcosim.cosim.units.definition import by_text, defined
 from evcosim.cosim.units.measure import BASE_UNITS, OpenUnitError, UnitOfMeasure, UnknownUnitError
 from evcosim.cosim.units.names import DOUBTFUL, NAMES, doubt
 from evcosim.cosim.units.symbols import is_level, symbol
+from support.pints import errors, registry
 
-REGISTRY = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
 SYMBOLS = {"kilogram": "kg", "meter": "m", "second": "s", "ampere": "A", "kelvin": "K", "mole": "mol"}
 SYMBOLS |= {"candela": "cd", "radian": "rad"}
 IN_PINT = {
@@ -46,8 +45,8 @@ def otherwise(text: str) -> bool:
 def in_base_units(text: str) -> tuple[float, dict[str, float]] | None:
     """Return pint's factor of a unit in SI base units, and their exponents; None where pint has others."""
     try:
-        zero, one = (REGISTRY.Quantity(x, text).to_base_units() for x in (0.0, 1.0))
-    except (pint.PintError, ArithmeticError, TypeError, ValueError, AttributeError):
+        zero, one = (registry().Quantity(x, text).to_base_units() for x in (0.0, 1.0))
+    except (errors(), ArithmeticError, TypeError, ValueError, AttributeError):
         return None
     powers = {str(base): power for base, power in one.unit_items()}
     if not powers.keys() <= SYMBOLS.keys():
@@ -68,14 +67,14 @@ def same(unit: UnitOfMeasure, factor: float, powers: dict[str, float]) -> bool:
 def test_a_name_is_pints(name):
     unit = by_text(name)
     assert unit is not None and not unit.also
-    amount = REGISTRY.Quantity(IN_PINT.get(name, name))
+    amount = registry().Quantity(IN_PINT.get(name, name))
     factor, powers = in_base_units(str(amount.units))
     assert same(unit, factor * amount.magnitude, powers)
 
 
 @functools.cache
 def known_to_pint() -> list[str]:
-    return sorted(set(dir(REGISTRY)) | set(REGISTRY._units))
+    return sorted(set(dir(registry())) | set(registry()._units))
 
 
 def test_of_all_that_pint_knows_what_is_read_is_read_alike():
@@ -97,7 +96,7 @@ def test_of_all_with_a_prefix_what_is_read_is_read_alike(prefix):
     wrong = []
     for name in known_to_pint():
         text = prefix + name
-        unit = by_text(text) if text.isidentifier() and text not in REGISTRY._units else None
+        unit = by_text(text) if text.isidentifier() and text not in registry()._units else None
         if unit is None or unit.logarithmic or (found := in_base_units(text)) is None:
             continue
         if not (otherwise(text) or any(same(reading, *found) for reading in unit.readings)):
@@ -228,7 +227,7 @@ PAIRS = [
 @pytest.mark.parametrize(("meant", "text"), PAIRS)
 def test_what_people_write_is_what_pint_makes_of_what_they_mean(meant, text):
     """One reading is it: beside those of other quantities, which the other end of a connection rules out."""
-    amount = REGISTRY(meant)
+    amount = registry()(meant)
     factor, powers = in_base_units(str(amount.units))
     factor *= amount.magnitude
     unit = by_text(text)

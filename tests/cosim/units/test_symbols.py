@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-import pint
 import pytest
 
 from evcosim.cosim.units.measure import BASE_UNITS
 from evcosim.cosim.units.symbols import _ALONE, is_level, symbol
 from evcosim.cosim.units.symbols import _PREFIXED as _WITH_PREFIX
+from support.pints import registry
 
-REGISTRY = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
 SYMBOLS = {"kg": "kilogram", "m": "meter", "s": "second", "A": "ampere", "K": "kelvin", "mol": "mole"}
 SYMBOLS |= {"cd": "candela", "rad": "radian"}
 OTHER_NAMES = {
@@ -32,8 +31,8 @@ PREFIXED = (
 @pytest.mark.parametrize("name", sorted({*_ALONE, *_WITH_PREFIX}))
 def test_a_symbol_is_pints(name):
     factor, exponents, offset = symbol(name)
-    unit = REGISTRY.Unit(OTHER_NAMES.get(name, name))
-    zero, one = (REGISTRY.Quantity(x, unit).to_base_units() for x in (0.0, 1.0))
+    unit = registry().Unit(OTHER_NAMES.get(name, name))
+    zero, one = (registry().Quantity(x, unit).to_base_units() for x in (0.0, 1.0))
     angle = exponents[-1] if name in ("Hz", "sr", "lm", "lx") else 0  # a turn, or steradians that pint drops
     assert float(factor) / (2.0 * math.pi if name == "Hz" else 1.0) == pytest.approx(
         one.magnitude - zero.magnitude, rel=1e-7
