@@ -26,6 +26,8 @@ Times = NDArray[np.float64]
 """Times [s], shape (n,)."""
 
 _FINEST = 10**9  # parts of a second
+LATEST = 1e12
+"""The greatest time [s] of a run, 32,000 years."""
 WHOLE = 2**53  # below it a double holds every whole number
 _ROUNDING, _SHARE = 5e-12, 1e-3  # of a time, and of a step
 

@@ -1,9 +1,11 @@
 """Numbers in CSV files: a header with the names of the columns, and in each line below a value for each.
 
 `csv_text` says how a file may be written. Double quotes may stand around a value, or around a name that holds
-separators or line ends. A file of numbers alone is read by numpy. Any other one is read line by line: one of
-which few columns are wanted, one with decimal commas or a column of texts, and one with a mistake, whose
-place is found so. Beside the numbers, no more than a few lines are in memory.
+separators or line ends. Lines without any value count for nothing, and so do separators at the end of a line,
+behind which there is nothing, as spreadsheets and loggers write both. A file of numbers alone is read by
+numpy. Any other one is read line by line: one of which few columns are wanted, one with decimal commas or a
+column of texts, and one with a mistake, whose place is found so. Beside the numbers, no more than a few lines
+are in memory.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from .csv_text import (
     CutRow,
     cut_row,
     encoding_of,
+    filled,
     number_in,
     opened,
     quoted_name,
@@ -39,7 +42,10 @@ _TRUTHS = {"true": 1.0, "false": 0.0}
 
 @dataclasses.dataclass(frozen=True)
 class CsvFile:
-    """A CSV file of which the header was read: the `names` of its columns, and the lines up to its end."""
+    """A CSV file of which the header was read: the `names` of its columns, and the lines up to its end.
+
+    A column may have no name: "".
+    """
 
     path: Path
     names: tuple[str, ...]
@@ -58,6 +64,11 @@ class CsvFile:
         names, lines, separator = read_header(path, encoding)
         return cls(path, names, lines, encoding, separator)
 
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The names of the columns that have one."""
+        return tuple(filter(None, self.names))
+
     def time_column(self) -> int:
         """Return the column of the time, by its name. Raises ConfigError where there is none, or several."""
         return time_column(self.names, f"{self.path}: line {self.header_lines}")
@@ -71,7 +82,7 @@ class CsvFile:
 
         Raises ConfigError for a file as evcosim writes it, whose lines all end: one that does not was cut
         off, and that within its last number nobody could see. In any other file it was cut off where it ends
-        with a decimal mark, or within quotes.
+        with a decimal mark, within quotes, or without the separator with which the line above ends.
         """
         try:
             row = cut_row(self.path)
@@ -94,13 +105,17 @@ class CsvFile:
         """Return how the last value of a file that does not end shows that it was cut; "" if it does not."""
         behind = "\0"  # in a row of its own, unless a quote above it is open
         last: list[str] = []
+        before: list[str] = []
         with opened(self.path, self.encoding, self.header_lines) as file:
             for _, row in self._rows(itertools.chain(file, ("\n", behind))):
                 if row == [behind]:
                     break
-                last = row or last
+                if row:
+                    last, before = row, last
             else:
                 return "has no closing quote"
+        if len(filled(self.names)) <= len(last) < len(before) and not any(before[len(last) :]):
+            return f"lacks the '{self.separator}' behind it, which the line above has"
         text = last[-1].strip() if len(last) == len(self.names) else ""  # else its length is the mistake
         number = number_in(text, self.separator) is not None
         return "ends with its decimal mark" if number and text.endswith((".", ",")) else ""
@@ -113,55 +128,45 @@ class CsvFile:
             header = "".join(itertools.islice(lines, self.header_lines))
         return header.rstrip("\r\n") == ",".join(map(quoted_name, self.names))
 
-    def numbers(
-        self, columns: Sequence[int] | None = None, *, empty_lines: bool = False, truths: Sequence[int] = ()
-    ) -> Array:
+    def numbers(self, columns: Sequence[int] | None = None, *, truths: Sequence[int] = ()) -> Array:
         """Return the numbers of some columns (default: of all), shape (n, len(columns)).
 
         In the columns `truths` true and false are 1 and 0. What stands in columns that are not wanted counts
-        for nothing, but each line has as many values as the header. Empty lines at the end are passed over;
-        with `empty_lines`, those above are too. Raises ConfigError naming file, line, column and value of
-        what is missing or is not a finite number.
+        for nothing, but each line has as many values as the header has names. Raises ConfigError naming file,
+        line, column and value of what is missing or is not a finite number.
         """
         wanted = range(len(self.names)) if columns is None else columns
         table = None
         if _NUMPY_PAYS * len(wanted) >= len(self.names):
-            table = self._by_numpy(wanted, empty_lines)
-        return self._line_by_line(wanted, empty_lines, truths) if table is None else table
+            table = self._by_numpy(wanted)
+        return self._line_by_line(wanted, truths) if table is None else table
 
     def texts(self, column: int) -> list[str]:
-        """Return the texts of a column, without spaces around them; empty lines are passed over.
+        """Return the texts of a column, without spaces around them.
 
         Raises ConfigError as `numbers` does for a line of another length.
         """
-        return [row[column].strip() for _, row in self._full_rows(empty_lines=True)]
+        return [row[column].strip() for _, row in self._full_rows()]
 
     def line_of(self, row: int) -> int:
-        """Return the line of the file in which a row (0, 1, ...) ends; empty lines are passed over."""
-        return next(itertools.islice(self._full_rows(empty_lines=True), row, None))[0]
+        """Return the line of the file in which a row (0, 1, ...) ends."""
+        return next(itertools.islice(self._full_rows(), row, None))[0]
 
-    def _by_numpy(self, columns: Sequence[int], empty_lines: bool) -> Array | None:
+    def _by_numpy(self, columns: Sequence[int]) -> Array | None:
         """Return the numbers as `numbers` does, shape (n, len(columns)), or None where a value is none."""
-        if self.encoding.startswith(("utf-16", "utf-32")):
-            return None  # the lines of such a file are not counted by their bytes
-        comments = Comments()
         with opened(self.path, self.encoding, self.header_lines) as file:
-            table = _all_numbers(comments.without(file), len(self.names), self.separator)
+            table = _all_numbers(Comments().without(file), len(self.names), self.separator)
         if table is None:
             return None
         if columns != range(len(self.names)):
             table = table[:, list(columns)]
-        if not np.isfinite(table).all():
-            return None
-        if not empty_lines and _count_lines(self.path) != self.header_lines + comments.count + len(table):
-            return None  # numpy passes over empty lines without a word
-        return table
+        return table if np.isfinite(table).all() else None
 
-    def _line_by_line(self, columns: Sequence[int], empty_lines: bool, truths: Sequence[int] = ()) -> Array:
+    def _line_by_line(self, columns: Sequence[int], truths: Sequence[int] = ()) -> Array:
         """Return the numbers, shape (n, len(columns)). Raises ConfigError for the file's first mistake."""
         found = array.array("d")
         marks: dict[str, str] = {}
-        for line, row in self._full_rows(empty_lines):
+        for line, row in self._full_rows():
             for j in columns:
                 text = row[j]
                 if self.separator != ",":
@@ -172,26 +177,21 @@ class CsvFile:
                 found.append(self._no_number(text, line, j) if value is None else value)
         return np.asarray(found, dtype=np.float64).reshape(-1, len(columns))
 
-    def _full_rows(self, empty_lines: bool) -> Iterator[tuple[int, list[str]]]:
-        """Yield the rows with the line that each ends in; an empty one is passed over as in `numbers`.
-
-        At the end of the file, so are rows of spaces and separators, which spreadsheets leave.
-        """
-        blank: list[tuple[int, list[str]]] = []
+    def _full_rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Yield the rows that have a value, with the line that each ends in; each as long as the header."""
         with opened(self.path, self.encoding, self.header_lines) as file:
             for line, row in self._rows(file):
-                if not any(map(str.strip, row)):
-                    blank.append((line, row))
-                    continue
-                for each in (*blank, (line, row)):
-                    if each[1] or not empty_lines:
-                        yield self._full(*each)
-                blank.clear()
+                if any(map(str.strip, row)):
+                    yield line, self._full(line, row)
 
-    def _full(self, line: int, row: list[str]) -> tuple[int, list[str]]:
-        if len(row) != len(self.names):
+    def _full(self, line: int, row: list[str]) -> list[str]:
+        """Return a row as long as the header. Raises ConfigError for one of another number of values."""
+        count = len(self.names)
+        if len(row) == count:
+            return row
+        if len(filled(row)) > count or len(row) < len(filled(self.names)):
             raise self._wrong_length(line, len(row))
-        return line, row
+        return [*row, *[""] * (count - len(row))][:count]
 
     def _rows(self, file: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
         """Yield the values of each row with the line that it ends in."""

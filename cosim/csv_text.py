@@ -16,9 +16,11 @@ import math
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
+from .clock import LATEST
 from .errors import ConfigError, counted
 from .reading import LARGEST, require_file
 from .shortage import reason
@@ -138,7 +140,7 @@ def read_header(path: Path, encoding: str) -> Header:
     candidates = [given] if given else SEPARATORS
     found = [_with_separator(path, encoding, above, separator) for separator in candidates]
     several = [(h, row) for h, row in found if len(h.names) > 1]
-    fits = [h for h, row in several if len(row) == len(h.names)]
+    fits = [h for h, row in several if len(row) == len(h.names) or len(filled(row)) == len(filled(h.names))]
     header = fits[0] if fits else several[-1][0] if several else found[-1][0]
     if header.names and all(number_in(name, header.separator) is not None for name in header.names):
         names = _cells(comment, header.separator)
@@ -206,6 +208,11 @@ def _cells(text: str, separator: str) -> tuple[str, ...]:
     return tuple(cell.strip() for cell in next(csv.reader([text], delimiter=separator), []))
 
 
+def filled(cells: Sequence[str]) -> Sequence[str]:
+    """Return the cells of a line up to the last one in which something stands."""
+    return cells[: next((k for k in range(len(cells), 0, -1) if cells[k - 1].strip()), 0)]
+
+
 def number_in(text: str, separator: str) -> float | None:
     """Return the number that a text is, or None: for other texts, NaN, infinity, and '_' among digits.
 
@@ -244,6 +251,31 @@ def time_column(names: tuple[str, ...], place: str) -> int:
         f"{place}: no column has a name of the time in s ('time', 't', 'Time [s]', 'time_s', 'timestamps', "
         f"...): {listed}"
     )
+
+
+_SINCE_1970 = {"seconds": 1.0, "milliseconds": 1e3, "microseconds": 1e6, "nanoseconds": 1e9}
+_FIRST, _LAST = 3e8, 4.2e9  # of these seconds, 1979 to 2103
+
+
+def as_date(time: float) -> str:
+    """Return what a time looks like that is a date, as `milliseconds since 1970 (2026-05-04 12:00:00 UTC)`.
+
+    "" for one that is none.
+    """
+    for name, parts in _SINCE_1970.items():
+        if _FIRST <= (seconds := time / parts) < _LAST:
+            return f"{name} since 1970 ({datetime.fromtimestamp(int(seconds), UTC):%Y-%m-%d %H:%M:%S} UTC)"
+    return ""
+
+
+def check_seconds(time: float, place: str) -> None:
+    """Raise ConfigError, which begins with `place`, for a time that cannot be in seconds."""
+    if not abs(time) <= LATEST:
+        seems = f"; it looks like {date}" if (date := as_date(time)) else ""
+        raise ConfigError(
+            f"{place}: {time:.16g} s is beyond the {LATEST:g} s of a run{seems}: the time is in s, best from "
+            "the start of the run on"
+        )
 
 
 def both(names: Sequence[str], columns: Sequence[int]) -> str:

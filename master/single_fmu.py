@@ -136,7 +136,7 @@ def _stimulus(text: str, name: str, value: object, interface: UnitInterface, pat
     if not isinstance(value, str | Path) or ".csv" not in str(value).lower():
         return to | {"constant": value}
     csv, column = _csv(str(value))
-    known = CsvFile.of(Path(csv)).names
+    known = CsvFile.of(Path(csv)).named
     if not column and name in known:
         column = name
     if not column and len(known) > 2:

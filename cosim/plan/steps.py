@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from numbers import Integral
 
-from ..clock import Clock, nearest_step, point
+from ..clock import LATEST, Clock, nearest_step, point
 from ..errors import ConfigError, short
-from ..system.system import LATEST
 
 _MOST_VALUES = 2**31
 """Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole

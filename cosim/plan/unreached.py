@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..clock import Clock, point
+from ..csv_text import as_date
 from ..system.scenario import Event, Scenario, StimulusEntry
 from ..system.stimuli import moves_between
 from .plan import Drive, InputPlan, MessagePlan
@@ -30,6 +31,20 @@ def before_start(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> l
         f"{place} ends at {_seconds(end)}, before {start}: its last value holds throughout"
         for place, (_, end) in _stimuli(scenario, drives)
         if end < clock.start
+    ]
+
+
+def of_dates(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
+    """Return a sentence for each stimulus whose times look like dates, which the run does not reach.
+
+    `drives` are those of the scenario's stimuli, in their order.
+    """
+    span = f"from {_seconds(clock.start)} to {_seconds(clock.stop)}"
+    return [
+        f"{place} begins at {_seconds(begin)}, which looks like {date}: the run, {span}, has its first value "
+        "throughout; write times from the start of the run on, or set start_time"
+        for place, (begin, _) in _stimuli(scenario, drives)
+        if begin >= clock.stop and (date := as_date(begin))
     ]
 
 
@@ -60,7 +75,7 @@ def after_stop(
         *(
             f"{place} begins at {_seconds(begin)}, not before {stop}: it stays at its first value"
             for place, (begin, _) in _stimuli(scenario, drives)
-            if begin >= clock.stop
+            if begin >= clock.stop and not as_date(begin)
         ),
         *(said for each in messages if (said := _message(each, messages, inputs, clock, stop))),
     ]

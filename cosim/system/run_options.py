@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, get_args
 
 from ..can.bus_settings import LONGEST_DELAY, BusVariation
+from ..clock import LATEST
 from ..errors import ConfigError, nearest, short
 from ..interface import Value
-from .system import LATEST, SHORTEST, Algorithm, EngineName, Isolation
+from .system import SHORTEST, Algorithm, EngineName, Isolation
 
 
 class RunOptions(TypedDict, total=False):

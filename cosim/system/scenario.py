@@ -8,10 +8,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
+from ..clock import LATEST
 from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
-from .system import LATEST, SHORTEST, Algorithm, System, VariableName
+from .system import SHORTEST, Algorithm, System, VariableName
 from .toml import FORBIDDEN_KEY, FileModel, FileValue, FiniteModel, GivenValue, find, names_in, read_toml
 
 Interpolation = Literal["linear", "hold"]
@@ -85,10 +86,10 @@ class StimulusEntry(FiniteModel):
     csv: str | None = None
     """A CSV file with a header, beside this file or built in, with rows as in `table`: UTF-8, UTF-16 or
     Windows-1252, separated by commas, or by semicolons or tabs with decimal points or commas; a line that
-    begins with # is a comment."""
+    begins with # is a comment, and one without a value counts for nothing."""
 
     column: str | None = None
-    """The column of `csv` that holds the values; without it the first one beside the time."""
+    """The column of `csv` that holds the values; without it the first one with a name beside the time."""
 
     time_column: str | None = None
     """The column of `csv` that holds the time in s; without it the one of a name like time, t, Time [s] or

@@ -11,9 +11,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..clock import Clock
+from ..clock import LATEST, Clock
 from ..csv_numbers import CsvFile
-from ..csv_text import both
+from ..csv_text import both, check_seconds
 from ..errors import ConfigError, nearest
 from ..interface import VariableInfo
 from .scenario import Interpolation, Ramp, Sine, StimulusEntry
@@ -46,7 +46,7 @@ def stimulus(
         times = np.array([time for time, _ in entry.table], dtype=float)
         return _table(clock.on_points(times), np.array(values), entry.interpolation, rows)
     file, rows = csv_of(entry, place, beside)
-    table = file.numbers((rows.time, rows.value), empty_lines=True)
+    table = file.numbers((rows.time, rows.value))
     _check_whole(table[:, 1], variable, rows)
     return _table(clock.on_points(table[:, 0]), table[:, 1].copy(), entry.interpolation, rows)
 
@@ -124,8 +124,7 @@ def _table(
     check_times(times, rows)
     if interpolation == "hold":
         return held(times, values)
-    _check_differences(times, 0, rows)
-    _check_differences(values, 1, rows)
+    _check_differences(values, rows)
     return _Table(times, values, "linear")
 
 
@@ -135,7 +134,10 @@ def held(times: NDArray[np.float64], values: NDArray[np.float64]) -> TimeFunctio
 
 
 def check_times(times: NDArray[np.float64], rows: Rows) -> None:
-    """Raise ConfigError naming the row unless there are times [s], shape (n,), that never go back."""
+    """Raise ConfigError naming the row unless there are times [s], shape (n,), that never go back.
+
+    They are times of a run: one that is none says what date it looks like.
+    """
     if len(times) == 0:
         raise ConfigError(f"{rows.place}: there is no row")
     # two equal times are a jump: the later row holds from that time on
@@ -143,6 +145,9 @@ def check_times(times: NDArray[np.float64], rows: Rows) -> None:
     if len(backward):
         row = int(backward[0]) + 1
         raise ConfigError(f"{rows.at(row, 0)}: time goes back from {times[row - 1]} s to {times[row]} s")
+    beyond = np.flatnonzero(np.abs(times) > LATEST)
+    if len(beyond):
+        check_seconds(float(times[beyond[0]]), rows.at(int(beyond[0]), 0))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -186,14 +191,14 @@ def initial_value(signal: TimeFunction, start_time: float) -> float:
     return float(signal(np.array([start_time]))[0])
 
 
-def _check_differences(column: NDArray[np.float64], number: Literal[0, 1], rows: Rows) -> None:
-    """Raise ConfigError where the difference of two rows of a column, shape (n,), overflows."""
+def _check_differences(column: NDArray[np.float64], rows: Rows) -> None:
+    """Raise ConfigError where the difference of two values, shape (n,), overflows."""
     with np.errstate(over="ignore"):
         beyond = np.flatnonzero(~np.isfinite(np.diff(column)))
     if len(beyond):
         row = int(beyond[0]) + 1
         raise ConfigError(
-            f"{rows.at(row, number)}: {column[row]} is too far from {column[row - 1]} in the row above for a "
+            f"{rows.at(row, 1)}: {column[row]} is too far from {column[row - 1]} in the row above for a "
             f'straight line between them; interpolation = "hold" needs none'
         )
 
@@ -212,17 +217,17 @@ def csv_of(entry: StimulusEntry, place: str, beside: Path | None) -> tuple[CsvFi
     """Return the CSV file of an entry and its columns.
 
     The time is the column of the name `time_column`, else that whose name says so (`csv_text.time_column`);
-    the values are in that of the name `column`, else in the first one beside the time. What stands in the
-    others counts for nothing, nor do empty lines. Raises ConfigError where there is no such file or column.
+    the values are in that of the name `column`, else in the first one beside the time that has a name. What
+    stands in the others counts for nothing. Raises ConfigError where there is no such file or column.
     """
     assert entry.csv is not None  # the entry has exactly one kind
     path = data_file(entry.csv, beside, f"{place}.csv") if beside else Path(entry.csv)
     file = CsvFile.of(path)
-    every = range(len(file.names))
-    if len(file.names) < 2:
+    every = [j for j, name in enumerate(file.names) if name]
+    if len(every) < 2:
         raise ConfigError(
             f"{path}: line {max(1, file.header_lines)}: a header of two or more column names is needed, not "
-            f"{list(file.names)}"
+            f"{list(file.named)}"
         )
     file.last_line_without_end()  # raises for results that were cut off
     time = file.time_column() if entry.time_column is None else _column(file, entry.time_column, every)
@@ -233,7 +238,7 @@ def csv_of(entry: StimulusEntry, place: str, beside: Path | None) -> tuple[CsvFi
 
 def read_times(file: CsvFile, rows: Rows) -> NDArray[np.float64]:
     """Return the times [s] of a CSV file, shape (n,). Raises ConfigError naming the row that has none."""
-    times = file.numbers((rows.time,), empty_lines=True)[:, 0]
+    times = file.numbers((rows.time,))[:, 0]
     check_times(times, rows)
     return times
 

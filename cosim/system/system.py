@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from ..can.bus_settings import BusSettings
+from ..clock import LATEST
 from ..errors import ConfigError
 from ..interface import InterfaceType
 from .figure_spec import FigureSpec
@@ -35,10 +36,8 @@ Isolation = Literal["process", "none"]
 EngineName = Literal["compiled", "python"]
 
 
-LATEST = 1e12
-"""The greatest time [s] of a run, 32,000 years: with the step below, a run's steps can be counted."""
 SHORTEST = 1e-12
-"""The shortest communication step [s]."""
+"""The shortest communication step [s]: with the greatest time, the steps of a run can be counted."""
 _LONGEST_WAIT = 1e6  # s
 
 

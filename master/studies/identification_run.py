@@ -16,12 +16,12 @@ import numpy as np
 from ...cosim.analysis.first_order import Fit, Prediction, predict
 from ...cosim.analysis.frequency_response import averaged, block_length, midpoints
 from ...cosim.analysis.sweep import Sweep
+from ...cosim.clock import LATEST
 from ...cosim.errors import ConfigError, RunError, nearest
 from ...cosim.interface import VariableInfo
 from ...cosim.plan.plan import Plan
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
-from ...cosim.system.system import LATEST
 from ...cosim.units.conversion import conversion
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import Affine

@@ -41,9 +41,9 @@ def test_the_numbers_are_those_that_were_written_whoever_reads_them(
     for wanted in (every, columns):
         expected = table[:, list(wanted)].tobytes()
         assert file.numbers(wanted).tobytes() == expected
-        by_numpy = file._by_numpy(wanted, empty_lines=False)
+        by_numpy = file._by_numpy(wanted)
         assert by_numpy is not None and by_numpy.tobytes() == expected
-        assert file._line_by_line(wanted, empty_lines=False).tobytes() == expected
+        assert file._line_by_line(wanted).tobytes() == expected
 
 
 def test_one_of_many_columns_is_the_one_that_was_asked_for(tmp_path: Path) -> None:
@@ -59,25 +59,61 @@ def test_what_nobody_wants_may_be_anything(tmp_path: Path) -> None:
         file.numbers((0, 1))
 
 
-@pytest.mark.parametrize("end", ["  \n", " \n\t\n", ",\n", " , \n,\n\n", '"",""\n'])
-def test_rows_of_spaces_and_separators_at_the_end_count_for_nothing(tmp_path: Path, end: str) -> None:
+@pytest.mark.parametrize(
+    "end", ["\n", "\r\n", "  \n", " \n\t\n", ",\n", " , \n,\n\n", '"",""\n', ",,,,\n", "\f\n"]
+)
+def test_lines_without_a_value_count_for_nothing(tmp_path: Path, end: str) -> None:
     path = tmp_path / "a.csv"
-    path.write_text(f"time,a\n0,1\n2,3\n{end}")
-    assert CsvFile.of(path).numbers().tolist() == [[0.0, 1.0], [2.0, 3.0]]
-    path.write_text(f"time,a\n0,1\n{end}2,3\n")
-    with pytest.raises(ConfigError, match=r"a.csv: line 3"):
+    for text in (f"time,a\n0,1\n2,3\n{end}", f"time,a\n0,1\n{end}2,3\n", f"time,a\n{end}0,1\n2,3\n"):
+        path.write_text(text)
+        assert CsvFile.of(path).numbers().tolist() == [[0.0, 1.0], [2.0, 3.0]]
+        assert CsvFile.of(path).texts(1) == ["1", "3"]
+    path.write_text(f"time,a\n{end}0,1\n{end}2,x\n")
+    line = 4 + 2 * (end.count("\n") - 1) + 1
+    with pytest.raises(ConfigError, match=rf"a.csv: line {line}, column 'a': 'x' is not a number"):
         CsvFile.of(path).numbers()
 
 
-def test_empty_lines_at_the_end_count_for_nothing_and_others_if_allowed(tmp_path: Path) -> None:
-    between = opened(tmp_path / "a.csv", "t,v\n\n0,1\r\n\r\n\n2,3\n\n\r\n\n")
-    assert between.numbers(empty_lines=True).tolist() == [[0.0, 1.0], [2.0, 3.0]]
-    with pytest.raises(ConfigError, match="line 2 has 0 values, the header has 2 columns"):
-        between.numbers()
-    at_the_end = opened(tmp_path / "b.csv", "t,v\n0,1\n\n\r\n\n")
-    assert at_the_end.numbers().tolist() == [[0.0, 1.0]]
-    for nothing in ("t,v", "t,v\n", "t,v\n\n\n"):
+def test_a_file_without_a_row_has_none(tmp_path: Path) -> None:
+    for nothing in ("t,v", "t,v\n", "t,v\n\n\n", "t,v\n,\n"):
         assert opened(tmp_path / "c.csv", nothing).numbers().shape == (0, 2)
+
+
+@given(
+    table=tables,
+    separator=st.sampled_from([",", ";", "\t"]),
+    header=st.integers(0, 3),
+    row=st.integers(0, 3),
+    end=st.sampled_from(["\n", "\r\n"]),
+)
+def test_separators_at_the_end_of_lines_count_for_nothing(
+    table: np.ndarray,
+    separator: str,
+    header: int,
+    row: int,
+    end: str,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    lines = text_of(table).replace(",", separator).splitlines()
+    more = [lines[0] + header * separator, *(line + row * separator for line in lines[1:])]
+    file = opened(tmp_path_factory.getbasetemp() / "ends.csv", "".join(line + end for line in more))
+    if table.shape[1] > 1:
+        every = range(table.shape[1])
+        assert file.named == tuple(f"c{j}" for j in every)
+        assert file.numbers(every).tobytes() == table.tobytes()
+
+
+@pytest.mark.parametrize("rows", ["0,1,\n2,3,x\n", "0,1,,\n2,3,,x\n"])
+def test_a_value_behind_the_last_name_is_one_too_many(rows: str, tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", f"t,v\n{rows}")
+    with pytest.raises(ConfigError, match=r"line 3 has \d values, the header has 2 columns"):
+        file.numbers()
+
+
+def test_trailing_separators_do_not_choose_the_separator(tmp_path: Path) -> None:
+    file = opened(tmp_path / "x.csv", "t;v [m/s, raw];\n0;1,5\n1;2,5\n")
+    assert file.named == ("t", "v [m/s, raw]")
+    assert opened(tmp_path / "y.csv", "t;v [m/s, raw]\n0;1,5;\n").numbers().tolist() == [[0.0, 1.5]]
 
 
 def test_a_name_may_hold_commas_and_line_ends(tmp_path: Path) -> None:
@@ -136,7 +172,6 @@ def test_a_broken_header_is_refused(text: bytes, said: str, tmp_path: Path) -> N
         (b"t,v\n0,1_000\n", "line 2, column 'v': '1_000' is not a finite number"),
         (b"t,v\n0,1\n1\n", "line 3 has 1 value, the header has 2 columns"),
         (b"t,v\n0,1,2\n1,1,2\n", "line 2 has 3 values, the header has 2 columns"),
-        (b"t,v\n0,1\n  \n2,3\n", "line 3 has 1 value, the header has 2 columns"),
         (b'"t\n",v\n0,"1\n"\n1,x\n', "line 5, column 'v': 'x' is not a number"),
         (b"t,v\n0,1\n0,\x81\n", "is not UTF-8 or Windows-1252 text: character maps to <undefined> at byte"),
         (b't,v\n# 1\n0,1\n#\n"1",no\n', "line 5, column 'v': 'no' is not a number"),
@@ -224,7 +259,7 @@ def test_comments_and_separators_are_told_from_names_and_numbers(
     file = opened(tmp_path / "x.csv", text)
     assert file.names == names
     assert file.numbers().tolist() == rows
-    assert file._line_by_line(range(2), empty_lines=False).tolist() == rows
+    assert file._line_by_line(range(2)).tolist() == rows
 
 
 def test_truth_is_a_number_only_where_it_is_allowed(tmp_path: Path) -> None:
@@ -252,6 +287,8 @@ CUT = {
     "t,v\n0,1\n1,-": "line 3, column 'v': '-' is not a number",
     "t,v\n0,1\n1,": "line 3, column 'v': the value is missing",
     "t,v\n0,1\n1": "line 3 has 1 value, the header has 2 columns",
+    "t,v\n0,1,\n1,2": "line 3, the last, does not end: '1,2'; the file was cut off: its last value l",
+    "t;v;\n0;1;\n1;2": "line 3, the last, does not end: '1;2'; the file was cut off: its last value l",
     't,\N{DEGREE SIGN}C,w\n0,1,"5 \N{DEGREE SIGN}': "line 2, the last, does not end: ",
 }
 

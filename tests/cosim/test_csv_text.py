@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import codecs
+import math
 import os
+import re
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.csv_text import Header, encoding_of, number_in, read_header, time_column
+from evcosim.cosim.csv_text import Header, as_date, encoding_of, number_in, read_header, time_column
 from evcosim.cosim.errors import ConfigError
 
 
@@ -35,6 +38,19 @@ def test_the_encoding_is_known_by_the_bytes(content: bytes, name: str, tmp_path:
     path = tmp_path / "x.csv"
     path.write_bytes(content)
     assert encoding_of(path) == name
+
+
+@given(st.datetimes(datetime(1980, 1, 1), datetime(2102, 1, 1)), st.sampled_from([0, 3, 6, 9]))
+def test_a_date_is_told_in_each_of_its_units(date: datetime, power: int) -> None:
+    seconds = int(date.replace(tzinfo=UTC).timestamp())
+    name = {0: "seconds", 3: "milliseconds", 6: "microseconds", 9: "nanoseconds"}[power]
+    said = re.fullmatch(rf"{name} since 1970 \((.*) UTC\)", as_date(float(seconds * 10**power)))
+    assert said and abs((datetime.fromisoformat(said[1]) - date).total_seconds()) <= 1.0
+
+
+@pytest.mark.parametrize("time", [0.0, 1.0, -1.7e9, 1e6, 2.9e8, 4.2e9, 2e11, 5e12, 1e30, math.inf, math.nan])
+def test_other_times_are_no_dates(time: float) -> None:
+    assert as_date(time) == ""
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

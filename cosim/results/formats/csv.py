@@ -12,8 +12,9 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ...clock import LATEST
 from ...csv_numbers import CsvFile
-from ...csv_text import both, quoted_name
+from ...csv_text import both, check_seconds, quoted_name
 from ...errors import ConfigError
 from ...row_store import Array
 from ..recording import Recording
@@ -52,21 +53,25 @@ def read(path: Path) -> Contents:
     """Read any CSV file of finite numbers of which a column is the time [s], by its name.
 
     Its variables, in the order of the other columns, are Reals without a unit of measure; true is 1 and
-    false is 0. The last line of another tool's file need not end, if it is complete; one with a header as
-    `write` makes it was cut off then, maybe within its last number. Raises ConfigError naming file, line,
-    column and value of what is missing, is no finite number, or is a time before the one above it.
+    false is 0. A column without a name is left out where it is empty or counts the rows. The last line of
+    another tool's file need not end, if it is complete; one with a header as `write` makes it was cut off
+    then, maybe within its last number. Raises ConfigError naming file, line, column and value of what is
+    missing, is no finite number, or is a time before the one above it or beyond any run.
     """
     file = CsvFile.of(path)
     time = _time_column(file)
     row = file.last_line_without_end()
-    others = [j for j in range(len(file.names)) if j != time]
+    named = [j for j, name in enumerate(file.names) if name]
+    others = [j for j in named if j != time]
     try:
-        table = file.numbers(truths=others)
+        table = file.numbers(None if len(named) == len(file.names) else named, truths=others)
+        _check_unnamed(file)
     except ConfigError as error:
         if row is None or not str(error).startswith(f"{path}: line {row.line}"):
             raise
         raise ConfigError(f"{error}; the line, the last, does not end: the file was cut off") from error
-    times = table[:, time]
+    place = named.index(time)
+    times = table[:, place]
     backward = np.flatnonzero(times[1:] < times[:-1])
     if len(backward):
         k = int(backward[0])
@@ -74,20 +79,27 @@ def read(path: Path) -> Contents:
             f"{path}: line {file.line_of(k + 1)}, column '{file.names[time]}': {float(times[k + 1])!r} "
             f"comes after {float(times[k])!r}; time must not decrease"
         )
+    for k in (0, len(times) - 1) if len(times) else ():
+        if abs(times[k]) > LATEST:  # only then the file is read again for the line
+            check_seconds(float(times[k]), f"{path}: line {file.line_of(k)}, column '{file.names[time]}'")
     variables = [ResultVariable(file.names[j]) for j in others]
-    return Contents(times, table[:, 1:] if time == 0 else table[:, others], variables)
+    return Contents(times, table[:, 1:] if place == 0 else np.delete(table, place, axis=1), variables)
 
 
 def _time_column(file: CsvFile) -> int:
-    """Return the column of the time. Raises ConfigError where a column has no name, or another one's."""
+    """Return the column of the time. Raises ConfigError where a column has another one's name."""
     names = file.names
-    if not any(names):
+    if not file.named:
         raise ConfigError(f"{file.path}: line 1: a header with the names of the columns is needed")
     for j, name in enumerate(names):
-        place = f"{file.path}: line {file.header_lines}, column {j + 1}"
-        if not name:
-            raise ConfigError(f"{place}: a name is needed")
-        if name in names[:j]:
+        if name and name in names[:j]:
             found = both(names, [names.index(name), j])
             raise ConfigError(f"{file.path}: line {file.header_lines}: {found} both have this name")
     return file.time_column()
+
+
+def _check_unnamed(file: CsvFile) -> None:
+    """Raise ConfigError for a column without a name that holds something, other than the numbers of rows."""
+    for j, name in enumerate(file.names):
+        if not name and any(text and text != str(k) for k, text in enumerate(file.texts(j))):
+            raise ConfigError(f"{file.path}: line {file.header_lines}, column {j + 1}: a name is needed")

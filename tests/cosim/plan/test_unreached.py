@@ -40,6 +40,26 @@ def test_events_of_all_kinds(action):
     assert said.startswith(f"test.toml: event 1, {action['action']} of car.throttle at t = 11 s, never acts")
 
 
+@pytest.mark.parametrize(
+    ("begin", "date"),
+    [
+        (1.7e9, "seconds since 1970 (2023-11-14 22:13:20 UTC)"),
+        (9e11, "milliseconds since 1970 (1998-07-09 16:00:00 UTC)"),
+    ],
+)
+def test_times_that_look_like_dates_are_told(begin, date):
+    stimulus = {"to": "car.grade", "table": [(begin, 1.0), (begin + 1.0, 2.0)]}
+    found = made({"stimulus": [stimulus]})
+    said = (
+        f"test.toml: stimulus 1, the table of car.grade, begins at {begin:.10g} s, "
+        f"which looks like {date}: the run, from 0 s to 10 s, has its first value throughout; "
+        "write times from the start of the run on, or set start_time"
+    )
+    assert (found.warnings, found.open_ended().warnings, found.unreached) == ((said,), (said,), ())
+    reached = made({"stimulus": [stimulus]}, experiment=RUN | {"start_time": begin, "stop_time": begin + 2.0})
+    assert reached.warnings == reached.unreached == ()
+
+
 def test_an_event_after_the_last_turn_of_its_unit_is_told():
     units = {"car": {"period": 3.0}}  # turns at 0, 3, 6 and 9 s
     (said,) = made({"event": [event(9.0), event(9.1)]}, units=units).unreached

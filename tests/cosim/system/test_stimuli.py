@@ -91,7 +91,19 @@ def test_linear_is_numpys_where_times_differ(points):
         ("b,t,Time [s]\n0,1,2\n", r"line 1: 2 columns could be the time: 'b', 't', 'Time \[s\]'"),
         ("t,v\n0,1\n1,true\n", r"line 3, column 'v': 'true' is not a number"),
         ("t,v\n0,1e308\n1,-1e308\n", r"line 3, column 'v': -1e\+308 is too far from 1e\+308"),
-        ("t,v\n-1e308,1\n1e308,1\n", r"line 3, column 't': 1e\+308 is too far from -1e\+308"),
+        (
+            "t,v\n-1e308,1\n1e308,1\n",
+            r"line 2, column 't': -1e\+308 s is beyond the 1e\+12 s of a run: the time",
+        ),
+        (
+            "timestamp,v\n\n1700000000000,1\n",
+            r"line 3, column 'timestamp': 1700000000000 s .* like milliseconds",
+        ),
+        (
+            "time,v\n0,1\n1.7e18,1\n",
+            r"line 3, column 'time': 1\.7e\+18 s is .* looks like nanoseconds since 1970",
+        ),
+        (",t\n0,0\n1,1\n", r"a header of two or more column names is needed, not \['t'\]"),
         ("t,v\n0,1_0\n", r"line 2, column .v.: .1_0. is not a finite number"),
         ("t,v\n0,1\n1,1,2\n", r"line 3 has 3 values, the header has 2 columns"),
         ("0,1\n1,2\n", r"line 1: a header with names is needed, not numbers: '0,1'"),
@@ -135,6 +147,26 @@ def test_of_several_names_of_the_time_the_plain_one_counts_then_the_first_column
     assert values([1], csv=str(path)) == pytest.approx([2])
     path.write_text("t,u,Time [s]\n0,2,7\n2,4,9\n")
     assert values([1], csv=str(path)) == pytest.approx([3])
+
+
+UNNAMED = [",time,v\n0,0,1\n1,2,3\n", "time,,v,\n0,,1,\n,,,\n\n2,5,3,\n", "x;time;v;\n;0;1\n;2;3\n"]
+
+
+@pytest.mark.parametrize("text", UNNAMED)
+def test_a_column_without_a_name_is_none(tmp_path, text):
+    path = tmp_path / "cycle.csv"
+    path.write_text(text)
+    assert values([1], csv=str(path), column="v") == pytest.approx([2])
+    if "x" not in text:
+        assert values([1], csv=str(path)) == pytest.approx([2])
+
+
+def test_times_beyond_every_run_are_refused_in_a_table_too():
+    with pytest.raises(
+        ConfigError,
+        match=r"^here.table: row 2: 1700000000000000 s is .* microseconds since 1970 \(2023-11-14",
+    ):
+        values([0], table=[[0.0, 1.0], [1.7e15, 2.0]])
 
 
 def test_the_time_of_another_name_is_named(tmp_path):

@@ -88,17 +88,22 @@ BROKEN = {
     "time,x\n0,1_000\n": "line 2, column 'x': '1_000' is not a finite number",
     "time,x\n0,1\n1\n": "line 3 has 1 value, the header has 2 columns",
     "time,x\n0,1,2\n1,1,2\n": "line 2 has 3 values, the header has 2 columns",
-    "time,x\n0,1\n\n1,1\n": "line 3 has 0 values, the header has 2 columns",
-    "time,x\n\n0,1\n": "line 2 has 0 values, the header has 2 columns",
     "time,x\n0,1\n2,1\n1.5,1\n": "line 4, column 'time': 1.5 comes after 2.0; time must not decrease",
     'time,"x\ny"\n0,1\n2,1\n1.5,1\n': "line 5, column 'time': 1.5 comes after 2.0; time must not decrease",
     "time;x\n0;1\n2;no\n": "line 3, column 'x': 'no' is not a number",
     "x,y\n0,1\n": "line 1: no column has a name of the time in s",
-    "time,x\n# run 2\n0,1\n\n1,1\n": "line 4 has 0 values, the header has 2 columns",
     "time,x,x\n0,1,1\n": "line 1: columns 2 ('x') and 3 ('x') both have this name",
     "time,time\n0,1\n": "line 1: columns 1 ('time') and 2 ('time') both have this name",
     "time,Time\n0,1\n": "line 1: columns 1 ('time') and 2 ('Time') both have the name of the time",
     "time,,x\n0,1,1\n": "line 1, column 2: a name is needed",
+    "time,x,\n0,1,\n1,1,no\n": "line 1, column 3: a name is needed",
+    ",time,x\n0,0,1\n2,1,1\n": "line 1, column 1: a name is needed",
+    "timestamp,x\n1700000000000,1\n": "1700000000000 s is beyond the 1e+12 s of a run; it looks like "
+    "milliseconds since 1970 (2023-11-14 22:13:20 UTC)",
+    "x,t\n1,0\n\n1,1.7e15\n": "line 4, column 't': 1700000000000000 s is beyond the 1e+12 s of a run; it "
+    "looks like microseconds since 1970",
+    "t,x\n1.7e18,0\n": "it looks like nanoseconds since 1970",
+    "t,x\n-1e13,0\n": "-10000000000000 s is beyond the 1e+12 s of a run: the time is in s",
     "0,1\n1,2\n": "a header with names is needed, not numbers: '0,1'",
     ",,\n1,2,3\n": "line 1: a header with the names of the columns is needed",
     "": "line 1: a header with the names of the columns is needed",
@@ -129,3 +134,18 @@ def test_an_integer_beyond_64_bits_keeps_its_value(value: float, tmp_path: Path)
     path = results.to_csv(tmp_path / "r.csv")
     assert path.read_text() == f"time,a.n\n0.0,{int(value)}\n"
     assert Results.read(path).column("a.n")[0] == value
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["time,x,\n0,1,\n2,3,\n", "time,x,,\n0,1\n2,3\n", "time,x\n0,1,\n\n2,3,\n", ",time,x\n0,0,1\n1,2,3\n",
+     "time;;x;\r\n0;;1;\r\n\r\n;;;\r\n2;;3;\r\n", "x,,time\n1,,0\n,,\n3,,2\n"],
+)  # fmt: skip # a table of files
+def test_a_column_without_name_and_values_is_none(text: str, tmp_path: Path) -> None:
+    (tmp_path / "x.csv").write_text(text, newline="")
+    read = Results.read(tmp_path / "x.csv")
+    assert (read.names, read.time.tolist(), read.data.tolist()) == (
+        ("x",),
+        [0.0, 2.0],
+        [[1.0], [3.0]],
+    )
