@@ -34,7 +34,7 @@ from .slots import Slots, allot
 from .steps import check_kept, steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
-from .unreached import after_stop, before_start, of_dates
+from .unreached import after_stop, out_of_time
 
 _UNIT_IN_NAME = re.compile(r".*[\[(]([^][()]+)[\])]")
 
@@ -109,12 +109,7 @@ def resolve(
         column_slots=slots.shown(columns),
         initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
-        warnings=(
-            *network.warnings,
-            *_loads(system, network, clock),
-            *before_start(scenario, drives, clock),
-            *of_dates(scenario, drives, clock),
-        ),
+        warnings=(*network.warnings, *_loads(system, network, clock), *out_of_time(scenario, drives, clock)),
         unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, first, clock)),
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),

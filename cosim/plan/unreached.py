@@ -16,8 +16,8 @@ from .plan import Drive, InputPlan, MessagePlan
 _MOST = 3  # events that are told one by one
 
 
-def before_start(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
-    """Return a sentence for each event before the start time, and for each table that ends there.
+def out_of_time(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
+    """Return a sentence for each event before the start time, each table that ends there, and dates.
 
     `drives` are those of the scenario's stimuli, in their order.
     """
@@ -27,18 +27,19 @@ def before_start(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> l
         for place, event in _events(scenario)
         if clock.step_at(event.time) < 0
     ]
-    return _first(said) + [
-        f"{place} ends at {_seconds(end)}, before {start}: its last value holds throughout"
-        for place, (_, end) in _stimuli(scenario, drives)
-        if end < clock.start
-    ]
+    return (
+        _first(said)
+        + [
+            f"{place} ends at {_seconds(end)}, before {start}: its last value holds throughout"
+            for place, (_, end) in _stimuli(scenario, drives)
+            if end < clock.start
+        ]
+        + _dates(scenario, drives, clock)
+    )
 
 
-def of_dates(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
-    """Return a sentence for each stimulus whose times look like dates, which the run does not reach.
-
-    `drives` are those of the scenario's stimuli, in their order.
-    """
+def _dates(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
+    """Return a sentence for each stimulus whose times look like dates, which the run does not reach."""
     span = f"from {_seconds(clock.start)} to {_seconds(clock.stop)}"
     return [
         f"{place} begins at {_seconds(begin)}, which looks like {date}: the run, {span}, has its first value "
