@@ -53,6 +53,15 @@ NAMES = {
         "ASCWriter.log_event ASCWriter.on_message_received ASCWriter.stop",
     ),
     "numba": ("master/engine/compiled", "cfunc njit types.intp config.CACHE_DIR extending.intrinsic"),
+    "numba.core.cgutils": (
+        "master/engine/compiled/wire_types.py",
+        "create_struct_proxy unpack_tuple _StructProxy._getvalue",
+    ),
+    "numba.core.compiler": ("master/engine/compiled/cache.py", "Compiler.define_pipelines"),
+    "numba.core.typing.templates": (
+        "master/engine/compiled/wire_types.py",
+        "AbstractTemplate AttributeTemplate infer_getattr infer_global signature",
+    ),
     "pythonfmu.fmi2slave": (
         "fmus/slave.py",
         "Fmi2Slave._get_fmu_state Fmi2Slave._set_fmu_state Fmi2Slave._fmu_state_to_bytes "

@@ -31,7 +31,7 @@ def build(
 ) -> None:
     """Build FMUs, built-in ones or those of your own models, and print where they are.
 
-    Without a Python file the engine is compiled too, for later runs.
+    Without a Python file the engine is compiled too, with the frames of buses, for later runs.
     """
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.system.kinds import kind_of

@@ -5,12 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import typer
 
 from ...cosim.visible import raw_stream, visible, visible_stream
+from ..engine.progress import reporting
 from . import interrupts, outputs
 from .typed_paths import check_given
 from .wrapping import message_lines
@@ -45,7 +46,7 @@ def visible_streams() -> Iterator[None]:
 def _guarded(command: Any, arguments: Sequence[str], debug: bool) -> int:
     try:
         check_given(arguments)
-        with command.make_context("evcosim", arguments) as context:
+        with reporting(_report_to(arguments)), command.make_context("evcosim", arguments) as context:
             code = command.invoke(context)
         sys.stdout.flush()
         return int(code or 0)
@@ -69,6 +70,12 @@ def _guarded(command: Any, arguments: Sequence[str], debug: bool) -> int:
         return code
     finally:
         outputs.release()
+
+
+def _report_to(arguments: Sequence[str]) -> Callable[[str], None] | None:
+    """Return what prints a word on what takes long: to a terminal, unless nothing but a result is wanted."""
+    quiet = any(argument in ("--quiet", "-q", "--json") for argument in arguments)
+    return None if quiet or not sys.stderr.isatty() else complain
 
 
 def open_closed_streams() -> None:

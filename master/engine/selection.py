@@ -33,15 +33,16 @@ def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
 
 
 def compile_engine() -> str:
-    """Compile the engine into its cache, also the one that measures a profile, if they are not there.
+    """Compile the engine into its cache, with the one that measures a profile and the frames of buses.
 
+    What is there is not compiled anew.
     Return a notice if that is impossible, else "".
     """
     try:
-        from .compiled.cache import compiled
+        from .compiled.cache import compiled, wire
     except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
         return _without_numba(error)
-    return compiled()[1] or compiled(timed=True)[1]
+    return compiled()[1] or compiled(timed=True)[1] or wire()[1]
 
 
 def _without_numba(error: ImportError | OSError) -> str:

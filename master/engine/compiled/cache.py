@@ -26,6 +26,7 @@ from ....cosim import leftovers
 from ...builtin import cache_folder, keep, kept
 from ...fmi import types
 from ...machine import access, calling, flat, handing, serving, slots, tables
+from ..progress import announce
 from . import frames, kernel
 
 SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types)
@@ -44,17 +45,19 @@ def compiled(timed: bool = False) -> tuple[int, str]:
     notice = ""
     if timed not in _made:
         function = kernel.run_timed if timed else kernel.run
-        _made[timed], reason = _through_the_cache(function, _name(timed))
+        _made[timed], reason = _through_the_cache(function, _name(timed), what="the engine")
         if reason:
             notice = _not_kept(reason)
     return int(_made[timed].address), notice
 
 
 def wire() -> tuple[int, str]:
-    """Return the address of the frame path's function and a notice, as `compiled` does."""
+    """Return the address of the frame path's function and a notice, as `compiled` does: in 10 s, or 0.1 s."""
     if _WIRE not in _made:
-        name = f"wire-{_digest(frames.SOURCES, str(frames.__file__).encode())}.zip"
-        _made[_WIRE], reason = _through_the_cache(frames.function(), name, frames.SIGNATURE)
+        name = f"wire-{_digest((frames, *frames.SOURCES), str(frames.__file__).encode())}.zip"
+        _made[_WIRE], reason = _through_the_cache(
+            frames.function(), name, frames.SIGNATURE, "the frames of buses"
+        )
         if reason:
             return int(_made[_WIRE].address), _not_kept(reason)
     return int(_made[_WIRE].address), ""
@@ -95,22 +98,31 @@ def _digest(modules: tuple[ModuleType, ...], *more: bytes) -> str:
     return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
 
 
-def _through_the_cache(function: Any, name: str, signature: str = _KERNEL) -> tuple[Any, str]:
-    """Return the compiled function, and why it could not be kept, or ""."""
+def _through_the_cache(
+    function: Any, name: str, signature: str = _KERNEL, what: str = "a function"
+) -> tuple[Any, str]:
+    """Return the compiled function, and why it could not be kept, or ""; `what` is its name in a report."""
     try:
         with leftovers.temporary() as folder:
             if (packed := kept(name)) is not None:
                 with zipfile.ZipFile(io.BytesIO(packed)) as archive:
                     archive.extractall(folder)
             with _cached_in(str(folder)):
-                made = _compiled(function, signature, cache=True)
+                made = _compiled(function, signature, what, cache=True)
             return made, "" if made.cache_hits else keep(name, _packed(folder))
     except OSError as error:  # no temporary folder, or a full disk
-        return _compiled(function, signature, cache=False), error.strerror or str(error)
+        return _compiled(function, signature, what, cache=False), error.strerror or str(error)
 
 
-def _compiled(function: Any, signature: str, cache: bool) -> Any:
-    return numba.cfunc(signature, cache=cache, error_model="numpy")(function)
+def _compiled(function: Any, signature: str, what: str, cache: bool) -> Any:
+    """Return the compiled function, or the one that numba's cache has; say so before it is compiled."""
+
+    class Compiler(numba.core.compiler.Compiler):  # type: ignore[misc] # numba's
+        def define_pipelines(self) -> Any:
+            announce(f"compiling {what}, once: some seconds")
+            return super().define_pipelines()
+
+    return numba.cfunc(signature, cache=cache, error_model="numpy", pipeline_class=Compiler)(function)
 
 
 def _packed(folder: Path) -> bytes:

@@ -1,7 +1,8 @@
 """The frame path in machine code: the functions of `cosim.can.wire`, compiled as they stand.
 
 They are Python that numba compiles, in modules that know nothing of it: copies of them, with compiled ones in
-place of the functions that they call, become one C function of actions.
+place of the functions that they call, become one C function of actions. Each is compiled once, for the types
+that its annotations say.
 """
 
 # numba compiles functions without annotations, and has no types
@@ -9,11 +10,13 @@ place of the functions that they call, become one C function of actions.
 
 from __future__ import annotations
 
+import functools
 from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
-from numba import carray, njit
+from numba import njit
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from ....cosim.can.protection import counters, profiles
@@ -21,15 +24,19 @@ from ....cosim.can.timing import draws, lengths
 from ....cosim.can.wire import arbitration, faults, log, medium, payload, protect, tables, values
 from ....cosim.can.wire.tables import Wire
 from ...machine import access
-from ...machine.access import call_3, pointer, word
+from ...machine.access import call_3
 from ..wire_tables import Arrays
+from . import wire_types
+from .wire_types import BY_ANNOTATION, WORDS, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
     draws, lengths, profiles, counters, payload, values, log, arbitration, protect, faults, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
-SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access)
+SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access, wire_types)
 SIGNATURE = "int32(int64, int64, int64, int64)"
+_FLAGS = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_SMALL = 600  # bytes of Python's code: with more, compiling takes longer and a frame no less
 
 
 def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
@@ -37,7 +44,7 @@ def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
 
     `helper` is the address of the function of Python that `ask` calls.
     """
-    found = np.zeros((len(Wire._fields), 3), dtype=np.int64)
+    found = np.zeros((len(Wire._fields), WORDS), dtype=np.int64)
     for row, name in zip(found, Wire._fields, strict=True):
         if name == "helper":
             row[0] = helper
@@ -48,17 +55,47 @@ def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
 
 def function() -> Any:
     """Return the function action(address of a wire_table, what, i, k), to be compiled."""
-    jitted: dict[str, Any] = {"ask": njit(forceinline=True, error_model="numpy")(_ask)}
-    scopes = [{name: _constant(value) for name, value in vars(module).items()} for module in MODULES]
-    for module, scope in zip(MODULES, scopes, strict=True):
-        for name, value in vars(module).items():
-            if isinstance(value, FunctionType) and value.__module__ == module.__name__ and name not in jitted:
-                copy = FunctionType(value.__code__, scope, name)
-                inline = "w" in value.__code__.co_varnames[:1]  # all tables, which no call should copy
-                jitted[name] = njit(forceinline=inline, error_model="numpy")(copy)
-    for scope in scopes:
-        scope.update({name: made for name, made in jitted.items() if name in scope})
-    return FunctionType(_action.__code__, {**globals(), "act": jitted["act"]}, "wire_action")
+    return _action
+
+
+def _action(t, what, i, k):
+    return _act(wire_at(t), what, i, k)
+
+
+def _act(w, what, i, k):
+    """Stand for `medium.act`, compiled."""
+
+
+@overload(_act)
+def _compiled_act(w, what, i, k):
+    # numba asks for it when `_action` is compiled, and not where the cache has that
+    act = _compiled()
+    return lambda w, what, i, k: act(w, what, i, k)
+
+
+@functools.cache
+def _compiled() -> Any:
+    """Return the compiled `medium.act`: what it calls is compiled first."""
+    ask = FunctionType(_ask.__code__, globals(), "ask")
+    ask.__annotations__ = values.ask.__annotations__
+    made: dict[str, Any] = {"ask": _jitted(ask)}
+    scopes = {m.__name__: {name: _constant(v) for name, v in vars(m).items()} for m in MODULES}
+
+    def compiled(original: Any) -> Any:
+        if original.__name__ not in made:
+            scope = scopes[original.__module__]
+            for name in original.__code__.co_names:
+                called = scope.get(name)
+                if called is original:  # `log` reads an attribute `log`
+                    continue
+                if isinstance(called, FunctionType) and called.__module__ in scopes:
+                    scope[name] = compiled(called)
+            copy = FunctionType(original.__code__, scope, original.__name__)
+            copy.__annotations__ = original.__annotations__
+            made[original.__name__] = _jitted(copy)
+        return made[original.__name__]
+
+    return compiled(medium.act)
 
 
 def _constant(value: Any) -> Any:
@@ -66,39 +103,13 @@ def _constant(value: Any) -> Any:
     return np.array(value, dtype=np.int64) if isinstance(value, tuple) and len(value) == 256 else value
 
 
-@njit(forceinline=True, error_model="numpy")
-def _ints(t, i):
-    return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1), word(t, 3 * i + 2)), np.int64)
-
-
-@njit(forceinline=True, error_model="numpy")
-def _reals(t, i):
-    return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1), word(t, 3 * i + 2)), np.float64)
-
-
-@njit(forceinline=True, error_model="numpy")
-def _row(t, i, kind):
-    return carray(pointer(word(t, 3 * i)), (word(t, 3 * i + 1),), kind)
-
-
-@njit(forceinline=True, error_model="numpy")
-def _wire(t):
-    """Return the tables at the addresses of a `wire_table`."""
-    return Wire(
-        _ints(t, 0), _ints(t, 1), _reals(t, 2), _ints(t, 3), _reals(t, 4),  # messages to maps
-        _ints(t, 5), _ints(t, 6), _ints(t, 7), _ints(t, 8),  # base to faults
-        _ints(t, 9), _ints(t, 10), _ints(t, 11), _ints(t, 12),  # rings to nodes
-        _reals(t, 13), _ints(t, 14), _ints(t, 15),  # chances to log
-        _row(t, 16, np.float64), _row(t, 17, np.float64),  # fallback and memory
-        _row(t, 18, np.int64), _row(t, 19, np.int64), _row(t, 20, np.float64), _row(t, 21, np.int64),
-        _row(t, 22, np.float32), _row(t, 23, np.int32), _row(t, 24, np.float64), _row(t, 25, np.int64),
-        _row(t, 26, np.int64), word(t, 3 * 27),  # state and helper
-    )  # fmt: skip # in the order of Wire
+def _jitted(function: FunctionType) -> Any:
+    """Return a function compiled for the types of its annotations; a small one is part of its callers."""
+    kinds = {name: BY_ANNOTATION[text] for name, text in function.__annotations__.items()}
+    code = function.__code__
+    signature = kinds["return"](*(kinds[name] for name in code.co_varnames[: code.co_argcount]))
+    return njit(signature, forceinline=len(code.co_code) < _SMALL, **_FLAGS)(function)
 
 
 def _ask(w, what, i, k):
     return call_3(w.helper, what, i, k)
-
-
-def _action(t, what, i, k):
-    return act(_wire(t), what, i, k)  # type: ignore[name-defined] # noqa: F821 - see `function`

@@ -18,6 +18,8 @@ import pytest
 from evcosim.cosim.results.results import Results
 from evcosim.cosim.system.toml import DATA
 from evcosim.master.builtin import fmu_file
+from evcosim.master.cli import failures
+from evcosim.master.engine import progress
 from support.answers import refused
 
 SCOOTER = (DATA / "systems" / "scooter.toml").read_text(encoding="utf-8")
@@ -377,3 +379,19 @@ def test_output_that_finds_no_room_is_named(arguments, process):
         err = run.communicate(timeout=60)[1]
     said = "evcosim: standard output: No space left on device: make room on the disk\n"
     assert (run.returncode, err) == (1, said)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "terminal", "told"),
+    [
+        (["run", "scooter"], True, True),
+        (["run", "scooter"], False, False),
+        (["run", "scooter", "-q"], True, False),
+        (["run", "scooter", "--json"], True, False),
+    ],
+)
+def test_what_takes_long_is_told_on_a_terminal(monkeypatch, capsys, arguments, terminal, told):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    with progress.reporting(failures._report_to(arguments)):
+        progress.announce("compiling the engine, once: some seconds")
+    assert capsys.readouterr().err == ("evcosim: compiling the engine, once: some seconds\n" if told else "")

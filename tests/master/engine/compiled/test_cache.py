@@ -11,7 +11,8 @@ from types import ModuleType
 
 import pytest
 
-from evcosim.master.engine.compiled import cache, kernel
+from evcosim.master.engine.compiled import cache, frames, kernel
+from evcosim.master.engine.progress import reporting
 from evcosim.master.machine import flat, serving
 from evcosim.master.machine.hands import POSSIBLE
 
@@ -123,8 +124,23 @@ def test_machine_code_comes_from_the_cache_unless_it_was_changed(
 def test_an_entry_in_which_numba_finds_nothing_is_made_anew(own_cache: Path, tmp_path: Path) -> None:
     """As after an installation that gave the sources another date, which some versions of numba compare."""
     (tmp_path / "empty").mkdir()
-    assert cache.keep("small.zip", cache._packed(tmp_path / "empty")) == ""
-    assert [hits(), hits()] == [0, 1]
+    said: list[str] = []
+    with reporting(said.append):
+        assert [hits(), hits()] == [0, 1]
+        assert said == ["compiling a function, once: some seconds"]
+        assert cache.keep("small.zip", cache._packed(tmp_path / "empty")) == ""
+        assert [hits(), hits()] == [0, 1]
+    assert said == ["compiling a function, once: some seconds"] * 2
+
+
+def test_the_frames_of_buses_from_the_cache_compile_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    cache.wire()  # it is in the cache now
+    monkeypatch.setattr(cache, "_made", {})
+    monkeypatch.setattr(frames, "_compiled", None)  # would be called
+    said: list[str] = []
+    with reporting(said.append):
+        assert cache.wire()[0] != 0
+    assert said == []
 
 
 def test_without_a_temporary_folder_it_is_compiled_in_memory(

@@ -7,8 +7,9 @@ from types import FunctionType
 
 import numpy as np
 
+from evcosim.cosim.can.wire import tables
 from evcosim.cosim.can.wire.tables import Wire
-from evcosim.master.engine.compiled import frames
+from evcosim.master.engine.compiled import frames, wire_types
 from evcosim.master.engine.wire_tables import wire_arrays
 
 
@@ -17,6 +18,11 @@ def test_every_module_that_is_called_is_among_the_sources():
     known = {module.__name__ for module in frames.SOURCES}
     for module in frames.MODULES:
         assert {f.__module__ for _, f in inspect.getmembers(module, inspect.isfunction)} <= known
+
+
+def test_modules_know_all_sources_of_their_tables():
+    """The types of numba are made of them too."""
+    assert {wire_types, tables} <= set(frames.SOURCES)
 
 
 def test_names_of_functions_are_used_once():
