@@ -9,6 +9,7 @@ from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
 from ..can.framing import check_jitter, framing_of
+from ..can.limits import notes_on
 from ..can.pages import pages
 from ..can.resolution import with_resolution
 from ..can.send_steps import send_steps
@@ -293,11 +294,11 @@ def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signa
     bus, message_name, signal_name = via.split(".", 2)  # some long names of signals have a dot
     if bus not in work.databases:
         raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
-    message = as_sent(work.databases[bus].require(message_name, place), work.system.file.buses[bus])
+    settings, known = work.system.file.buses[bus], work.network.warnings
+    message = as_sent(work.databases[bus].require(message_name, place), settings)
     signal = message.require(signal_name, place)
-    if signal.note:
-        work.network.warnings.append(f"{message.file}: line {signal.line}: {via}: {signal.note}")
-    return message, with_unit(signal, work.system.file.buses[bus].units)
+    known += [note for note in notes_on(message, signal, via, settings) if note not in known]
+    return message, with_unit(signal, settings.units)
 
 
 def _message(

@@ -10,11 +10,15 @@ from ...cosim.can.as_sent import as_sent
 from ...cosim.can.bus_settings import BusSettings
 from ...cosim.can.database import Database, Message, Signal
 from ...cosim.can.formats import load_database
+from ...cosim.can.limits import limits_note
 from ...cosim.can.timing.lengths import INTERFRAME, least_bits, most_bits
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import UnknownUnitError
 from .console import number, print_fields, print_paragraph, print_table, print_title
+
+_BUS = BusSettings()  # as a bus is without any
+_MOST_NOTES = 20
 
 
 def described(
@@ -83,6 +87,7 @@ def _load(message: Message, bitrate: int | None, data_bitrate: int | None) -> li
 
 
 def _signal(message: Message, signal: Signal) -> dict[str, Any]:
+    refused = _refusal(message, signal.name)
     return {
         "name": signal.name,
         "start": signal.start,
@@ -103,8 +108,8 @@ def _signal(message: Message, signal: Signal) -> dict[str, Any]:
         "multiplexer_ranges": [list(ends) for ends in signal.multiplexer_ranges],
         "receivers": list(signal.receivers),
         "comment": signal.comment,
-        "note": signal.note,
-        "refused": _refusal(message, signal.name),
+        "note": "; ".join(filter(None, (signal.note, "" if refused else limits_note(signal, _BUS)))),
+        "refused": refused,
     }
 
 
@@ -159,6 +164,8 @@ def show(about: dict[str, Any]) -> None:
     print_table(_HEADERS, [_row(message) for message in messages])
     if len(messages) == 1:
         _show_signals(messages[0])
+    else:
+        _show_notes(messages)
     if about["flaws"]:
         print_title(counted(len(about["flaws"]), "flaw"))
         for flaw in about["flaws"]:
@@ -198,6 +205,18 @@ def _show_signals(message: dict[str, Any]) -> None:
         for word, said in (("refused", signal["refused"]), ("note", signal["note"])):
             if said:
                 print_paragraph(f"{word}: {signal['name']}: {said}")
+
+
+def _show_notes(messages: list[dict[str, Any]]) -> None:
+    """Print the notes on the signals of all messages, the first ones."""
+    notes = [(m["name"], s["name"], s["note"]) for m in messages for s in m["signals"] if s["note"]]
+    if notes:
+        print_title(counted(len(notes), "note"))
+    for message, signal, note in notes[:_MOST_NOTES]:
+        print_paragraph(f"{message}.{signal}: {note}")
+    if len(notes) > _MOST_NOTES:
+        more = len(notes) - _MOST_NOTES
+        print_paragraph(f"and {more} more: 'evcosim info FILE MESSAGE' has those of a message, --json all")
 
 
 def _signal_row(s: dict[str, Any]) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from evcosim.cosim.interface import VariableInfo
 from evcosim.cosim.system.system import BusEntry
 from evcosim.cosim.units.measure import Affine
 from support.car import BUS, SENT, car, ecu, plan, unit
+from support.databases import HEAD
 from support.mocks import MockUnit, column, plan_of, real, started
 
 
@@ -92,6 +93,22 @@ def test_a_missing_unit_of_measure_is_said():
     bare = unit("car", real("speed", "output"))
     plan_ = plan_of([ecu(), bare], {"connect": [{"from": "car.speed", "to": ["ecu.speed"]}]})
     assert plan_.warnings == ("car.speed declares no unit of measure; it is taken as [km/h]",)
+
+
+def test_limits_that_no_frame_holds_are_said_of_signals_in_use_alone(tmp_path):
+    text = (HEAD + "BO_ 256 M: 8 A\n" + ' SG_ Speed : 0|8@1+ (1,0) [0|1000] "km/h" B\n'
+            + ' SG_ Other : 8|8@1+ (1,0) [0.4|2.6] "" B\n' + 'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\n'
+            + 'BA_ "GenMsgCycleTime" BO_ 256 10;\n')  # fmt: skip # a file
+    (tmp_path / "car.dbc").write_text(text)
+    bus = {"can0": {"dbc": str(tmp_path / "car.dbc")}}
+    warned = plan([SENT | {"via": "can0.M.Speed"}], buses=bus).warnings
+    (said,) = [warning for warning in warned if "limits" in warning]
+    assert (
+        f"line {text[: text.index('SG_ Speed')].count(chr(10)) + 1}: can0.M.Speed: its limits [0, 1000]"
+        in said
+    )
+    assert "255 arrives for 1000" in said
+    assert not [warning for warning in plan([SENT], **BUS).warnings if "limits" in warning]
 
 
 def test_a_mailbox_stands_between_a_bus_and_its_receiver():

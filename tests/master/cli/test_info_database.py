@@ -99,6 +99,24 @@ def test_what_is_printed(car, evcosim):
     assert "note: Q: its maximum 3 would be sent as raw 3" in said
 
 
+def test_limits_that_no_frame_holds_are_listed(car, evcosim):
+    car.write_text(CAR.replace("Speed : 8|16@1- (0.1,-5) [0|255]", "Speed : 8|16@1- (0.1,-5) [0|9999]"))
+    said = " ".join(evcosim("info", str(car)).out.split())
+    assert "2 notes Fast.Speed: its limits [0, 9999] km/h mean raw 50 to 100040, and 16 signed bits" in said
+    assert "3271.7 arrives for 9999" in said and "Fast.Q: its maximum 3 would be sent as raw 3" in said
+    about = json.loads(evcosim("info", str(car), "Fast", "--json").out)
+    (note,) = [s["note"] for s in about["messages"][0]["signals"] if s["name"] == "Speed"]
+    assert "3271.7 arrives for 9999" in note
+
+
+def test_many_notes_are_cut_short(car, evcosim):
+    more = "".join(f'BO_ {300 + i} N{i}: 8 A\n SG_ S{i} : 0|8@1+ (1,0) [0|999] "" B\n' for i in range(25))
+    car.write_text(CAR.replace("BA_DEF_ BO_", f"{more}BA_DEF_ BO_", 1))
+    said = " ".join(evcosim("info", str(car)).out.split())
+    assert "26 notes" in said and "N18.S18: its limits" in said and "N19" not in said.split("26 notes")[1]
+    assert "and 6 more" in said
+
+
 def test_json_and_options_of_others(car, evcosim):
     assert json.loads(evcosim("info", str(car), "Fast", "--json").out)["messages"][0]["name"] == "Fast"
     for arguments in (("scooter", "EMD_Status"), ("Scooter", "--bitrate", "5")):
