@@ -43,15 +43,15 @@ class CanLogs:
     def asked(cls, paths: Sequence[Path] | None, start: str | None) -> CanLogs:
         """Return what the options ask for.
 
-        Raises ConfigError for a suffix that no format has, a path given twice, and a start that is no date
-        with a time zone, or that no file is there for.
+        Raises ConfigError for a suffix that no format has, a format whose library is not installed, a path
+        given twice, and a start that is no date with a time zone, or that no file is there for.
         """
-        from ...cosim.can.logs.writing import check_suffix
+        from ...cosim.can.logs.writing import check_format
         from ...cosim.errors import ConfigError
 
         paths = tuple(paths or ())
         for path in paths:
-            check_suffix(path)
+            check_format(path)
             if paths.count(path) > 1:
                 raise ConfigError(f"--can-log {path} is given twice")
         if start is None:
@@ -63,6 +63,20 @@ class CanLogs:
     def __bool__(self) -> bool:
         return bool(self.paths)
 
+    def check(self, folder: Path, start: float) -> None:
+        """Raise ConfigError where a file cannot be written after a run that begins at `start` [s]."""
+        from ...cosim.can.logs.writing import check_start
+        from ...cosim.writing import check_writable
+
+        for path in self.paths:
+            check_start(path, start)
+            check_writable(self._place(path, folder))
+
+    @staticmethod
+    def _place(path: Path, folder: Path) -> Path:
+        own = path.parent != Path() or path.is_absolute()
+        return path if own else folder / path
+
     def write(self, folder: Path, simulation: Simulation) -> list[str]:
         """Write the files, those without a folder of their own into `folder`; return them as they are shown.
 
@@ -70,8 +84,7 @@ class CanLogs:
         """
         shown = []
         for path in self.paths:
-            own = path.parent != Path() or path.is_absolute()
-            simulation.write_can_log(path if own else folder / path, self.start)
+            simulation.write_can_log(self._place(path, folder), self.start)
             shown.append(str(path))
         return shown
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import importlib.util
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
@@ -68,6 +69,17 @@ class Wanted(NamedTuple):
     can_logs: CanLogs
     figure: bool
     report: bool
+
+    def check(self, folder: Path, start: float) -> None:
+        """Raise ConfigError before a run from `start` [s] on, where one of them cannot be made after it."""
+        from ...cosim.errors import ConfigError
+
+        self.can_logs.check(folder, start)
+        if (self.figure or self.report) and importlib.util.find_spec("matplotlib") is None:
+            raise ConfigError(
+                "figure and page need matplotlib, which is not installed: `pip install matplotlib`, or run "
+                "with --no-plot --no-report"
+            )
 
 
 @dataclasses.dataclass(frozen=True)
@@ -162,6 +174,7 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
         folder, remarks = run_folder(order.output or named, about, suffix, order.replace)
         interrupts = keeping.enter_context(Interrupts(folder.rescue))
         try:
+            order.files.check(folder.path, simulation.plan.clock.start)
             with running.pop_all():
                 simulation.keep_in(folder)
                 _step(simulation, interrupts, order.bar)

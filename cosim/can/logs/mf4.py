@@ -55,14 +55,19 @@ def writing(file: BinaryIO, buses: Sequence[str], start: datetime) -> Iterator[C
         file.write(packed.getbuffer())
 
 
-def _opened(start: datetime) -> Any:
+def check_library() -> Any:
+    """Return the class of MDF files. Raises ConfigError where asammdf is not installed."""
     try:
         from asammdf import MDF
     except ImportError as error:
         raise ConfigError(
             "MF4 logs need the library asammdf: install evcosim with its extra, pip install 'evcosim[mf4]'"
         ) from error
-    mdf = MDF(version="4.10")
+    return MDF
+
+
+def _opened(start: datetime) -> Any:
+    mdf = check_library()(version="4.10")
     mdf.header.start_time = start
     return mdf
 

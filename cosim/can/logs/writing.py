@@ -51,14 +51,11 @@ def write_can_log(
     is missing, and for times before the start or a start without a time zone.
     """
     path = Path(path)
-    check_suffix(path)
+    check_format(path)
+    check_start(path, clock.start)
     start = START if start is None else start
     if start.tzinfo is None:
         raise ConfigError(f"{path}: the start {start.isoformat()} needs a time zone, as in 2000-01-01T00:00Z")
-    if clock.start < 0.0:
-        raise ConfigError(
-            f"{path}: a CAN log has no times before its start, and the run begins at {clock.start} s"
-        )
     count = 0
     form = FORMATS[path.suffix.lower()]
     with replacing(path) as file, form(file, [log.bus for log in logs], start) as write:
@@ -68,8 +65,16 @@ def write_can_log(
     return count
 
 
-def check_suffix(path: str | Path) -> None:
-    """Raise ConfigError when no log format has this file's suffix."""
+def check_format(path: str | Path) -> None:
+    """Raise ConfigError when no log format has this file's suffix, or the library for it is missing."""
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         raise ConfigError(f"{path}: CAN logs are written as {', '.join(FORMATS)}, not as '{suffix}'")
+    if suffix == ".mf4":
+        mf4.check_library()
+
+
+def check_start(path: str | Path, start: float) -> None:
+    """Raise ConfigError for a run that begins at a time [s] before the start of a log."""
+    if start < 0.0:
+        raise ConfigError(f"{path}: a CAN log has no times before its start, and the run begins at {start} s")

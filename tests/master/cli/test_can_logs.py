@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -43,3 +44,41 @@ def test_what_no_log_can_be_is_refused(paths: list[str], start: str | None, said
 def test_without_files_nothing_is_asked() -> None:
     assert not CanLogs.asked(None, None)
     assert CanLogs.asked([Path("a.log")], None)
+
+
+def test_a_missing_library_is_known_before_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "asammdf", None)
+    with pytest.raises(
+        ConfigError, match=r"asammdf: install evcosim with its extra, pip install 'evcosim\[mf4\]'"
+    ):
+        CanLogs.asked([Path("a.log"), Path("b.MF4")], None)
+
+
+NEVER = {
+    "taken.log": "taken.log: cannot be written: Is a directory",
+    "file/x.log": "file is a file, not a folder",
+    "/dev/null/x.log": "/dev/null is a file, not a folder",
+}
+
+
+@pytest.mark.parametrize("name", NEVER)
+def test_a_place_that_takes_no_log_is_known_before_the_run(evcosim, tmp_path, name):
+    (tmp_path / "out" / "taken.log").mkdir(parents=True)
+    (tmp_path / "file").touch()
+    answer = evcosim("run", "scooter", "--stop-time", "0.2", "-o", "out", "--can-log", name)
+    assert (answer.code, NEVER[name] in answer.err) == (2, True)
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["taken.log"]
+
+
+def test_a_run_that_begins_before_the_log_is_known_before_its_first_step(tmp_path):
+    logs = CanLogs.asked([Path("can.log")], None)
+    logs.check(tmp_path, 0.0)
+    with pytest.raises(ConfigError, match=r"^can.log: a CAN log has no times .* the run begins at -1.0 s$"):
+        logs.check(tmp_path, -1.0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_matplotlib_a_figure_is_refused_before_the_run(evcosim, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    answer = evcosim("run", "scooter", "--stop-time", "0.2", "-o", "out")
+    assert (answer.code, "figure and page need matplotlib" in answer.err) == (2, True)
