@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,8 +22,9 @@ def save(figure: Figure, folder: Path, stem: str = "figure") -> tuple[Path, Path
     Raises ConfigError when a file cannot be written.
     """
     paths = (Path(folder) / f"{stem}.png", Path(folder) / f"{stem}.svg")
-    for path in paths:
-        write(figure, path)
+    with _laid_out(figure):
+        for path in paths:
+            write(figure, path)
     return paths
 
 
@@ -38,7 +41,28 @@ def write(figure: Figure, path: Path) -> None:
         )
     dated = {"svg": "Date", "pdf": "CreationDate", "png": "Software"}
     metadata = {dated[kind]: None} if kind in dated else None
-    with style(), warnings.catch_warnings(), replacing(path) as file:
+    with _laid_out(figure), _quietly(), replacing(path) as file:
+        figure.savefig(file, format=kind, metadata=metadata)
+
+
+@contextlib.contextmanager
+def _laid_out(figure: Figure) -> Iterator[None]:
+    """Place what a figure has once, for all formats: else matplotlib draws it another time before each."""
+    if (engine := figure.get_layout_engine()) is None:
+        yield
+        return
+    with _quietly():
+        engine.execute(figure)
+    figure.set_layout_engine("none")
+    try:
+        yield
+    finally:
+        figure.set_layout_engine(engine)
+
+
+@contextlib.contextmanager
+def _quietly() -> Iterator[None]:
+    with style(), warnings.catch_warnings():
         # a letter that the font lacks, or no room beside a long name: the figure shows it
         warnings.simplefilter("ignore", UserWarning)
-        figure.savefig(file, format=kind, metadata=metadata)
+        yield

@@ -8,6 +8,7 @@ import pytest
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.figures.draw import draw
 from evcosim.cosim.figures.saving import save, write
+from evcosim.cosim.figures.style import style
 from support.outlined_scooter import SPEC, scooter
 
 PNG_WIDTH = 1440
@@ -23,6 +24,20 @@ def test_saved_twice_is_the_same_bytes_whatever_the_user_s_settings(tmp_path: Pa
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in second]
     width = int.from_bytes(first[0].read_bytes()[16:20], "big")
     assert width == PNG_WIDTH
+
+
+def test_what_it_shows_is_placed_once_for_both_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    figure = draw(scooter(), SPEC)
+    engine, placed = figure.get_layout_engine(), []
+    assert engine is not None
+    execute = engine.execute
+    monkeypatch.setattr(engine, "execute", lambda of: placed.append(execute(of)))
+    save(figure, tmp_path)
+    assert len(placed) == 1
+    assert figure.get_layout_engine() is engine  # whoever goes on with the figure finds it so
+    with style():
+        draw(scooter(), SPEC).savefig(tmp_path / "beside.png", metadata={"Software": None})
+    assert (tmp_path / "beside.png").read_bytes() == (tmp_path / "figure.png").read_bytes()
 
 
 def test_a_format_or_a_place_that_does_not_exist_is_named(tmp_path: Path) -> None:
