@@ -11,20 +11,28 @@ section 5. For the vehicle x' = A x + B u of `bicycle`, x = (y', theta, w_z, bet
 
 K and S are computed from the parameters, once for each set of them, in continuous time as in the paper.
 
+Where the status of the lane camera's frames says that none was taken, theta and beta are predicted from the
+last ones by what the inertial sensors measure, and after t_p the steering fades to straight within t_f:
+
+    theta[k] = theta[k-1] + dt w_z[k],   beta[k] = beta[k-1] - dt (y'[k] + v_x theta[k-1])           (C5)
+    u max(0, min(1, 1 - (t_b - t_p)/t_f)) in place of u, t_b without a frame for so long             (C6)
+
 Deviations: the paper's text names y' and theta as what is tracked (c_beta = 0), for which there is no S
 ("Not reproducible, and misprints" in docs/systems/lane_keeping.md). The K-hat that the paper also prints
 contradicts its own K; it is not used.
 
 published: Q = I (4 x 4), R = I (2 x 2), A, B, K, S.
-chosen: c_theta = 1 m/rad, c_beta = 1, which give the printed S; `delay_steps` = 0.
+chosen: c_theta = 1 m/rad, c_beta = 1, which give the printed S; `delay_steps` = 0; (C5), (C6), t_p = 2 s,
+t_f = 1 s.
 
 At the edges: `delay_steps` gives out the request of so many samples ago, the time that a slow control unit
 needs; at the start the older requests are that of the first inputs. Refused at the end of the initialization:
 a vehicle that no steering stabilizes; weights that leave out of the cost what does not decay by itself;
-outputs (C4) that steering cannot set independently.
+outputs (C4) that steering cannot set independently. `reads_status` = false takes what stands at the inputs
+for true, which a bus holds while it takes no frame.
 
 Step: the sample at t_k computes (C1) from the inputs at t_k, and u is held until the next; there is no memory
-but the older requests, and no error.
+but the older requests and the last place in the lane, and no error. (C5) is order 1.
 """
 
 from __future__ import annotations
@@ -36,6 +44,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .base import Model, record, var
 from .bicycle import Bicycle, Matrix
+from .constants import SAME_TIME
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,6 +54,7 @@ if TYPE_CHECKING:
 
 SINGULAR = 1e-9  # a singular value below this part of the largest counts as 0
 MAX_DELAY = 3  # steps
+TAKEN = (0, 4, 32)  # statuses of E2E with which values reach a receiver: ok, initial, some lost
 
 
 class LaneKeepingController(Model):
@@ -73,6 +83,9 @@ class LaneKeepingController(Model):
         tracked_heading: float = var(1.0, "m/rad", "Part of theta in the second tracked output (c_theta)")
         tracked_displacement: float = var(1.0, "1", "Part of beta in the second tracked output (c_beta)")
         delay_steps: int = var(0, "", "Samples from measurement to request", min=0, max=MAX_DELAY)
+        reads_status: bool = var(True, "", "Whether the status of the lane camera's frames is read")
+        prediction_time: float = var(2.0, "s", "Longest prediction without the lane camera (t_p)", min=0.0)
+        fade_time: float = var(1.0, "s", "Time in which the steering then goes straight (t_f)", min=1e-3)
 
         @cached_property
         def gain(self) -> Matrix:
@@ -99,6 +112,7 @@ class LaneKeepingController(Model):
         displacement: float = var(0.0, "m", "Displacement from the lane center (beta)")
         lateral_velocity_reference: float = var(0.0, "m/s", "Reference of y' (r_1)")
         displacement_reference: float = var(0.0, "m", "Reference of theta + beta (r_2)")
+        camera_status: int = var(0, "", "E2E status of the lane camera's last frame; 0, 4, 32: taken")
 
     @record
     class State:
@@ -112,6 +126,9 @@ class LaneKeepingController(Model):
         rear_2: float = var(0.0, "rad", "Rear angle two samples ago")
         front_3: float = var(0.0, "rad", "Front angle three samples ago")
         rear_3: float = var(0.0, "rad", "Rear angle three samples ago")
+        heading_angle: float = var(0.0, "rad", "Heading of the last sample, measured or predicted")
+        displacement: float = var(0.0, "m", "Displacement of the last sample, measured or predicted")
+        blind_time: float = var(0.0, "s", "Time without a frame of the lane camera (t_b)", min=0.0)
 
     @record
     class Outputs:
@@ -128,8 +145,10 @@ class LaneKeepingController(Model):
 
         Raises ValueError for parameters to which there is no K or S.
         """
-        front, rear = _law(p, u)
-        return LaneKeepingController.State(front, rear, front, rear, front, rear, front, rear)
+        front, rear = _law(p, u, u.heading_angle, u.displacement)
+        return LaneKeepingController.State(
+            front, rear, front, rear, front, rear, front, rear, u.heading_angle, u.displacement
+        )
 
     @staticmethod
     def step(
@@ -139,10 +158,13 @@ class LaneKeepingController(Model):
         dt: float,
     ) -> LaneKeepingController.State:
         """Return the request at t_k and those before it."""
-        front, rear = _law(p, u)
-        return LaneKeepingController.State(
-            front, rear, x.front_0, x.rear_0, x.front_1, x.rear_1, x.front_2, x.rear_2
-        )
+        heading, displacement, blind = _place(p, x, u, dt)
+        front, rear = _law(p, u, heading, displacement)
+        if blind > p.prediction_time + SAME_TIME:  # (C6)
+            part = max(0.0, 1.0 - (blind - p.prediction_time) / p.fade_time)
+            front, rear = part * front, part * rear
+        older = (x.front_0, x.rear_0, x.front_1, x.rear_1, x.front_2, x.rear_2)
+        return LaneKeepingController.State(front, rear, *older, heading, displacement, blind)
 
     @staticmethod
     def outputs(
@@ -153,8 +175,23 @@ class LaneKeepingController(Model):
         return LaneKeepingController.Outputs(front, rear)
 
 
-def _law(p: LaneKeepingController.Parameters, u: LaneKeepingController.Inputs) -> tuple[float, float]:
-    y, th, w, beta = u.lateral_velocity, u.heading_angle, u.yaw_rate, u.displacement
+def _place(
+    p: LaneKeepingController.Parameters,
+    x: LaneKeepingController.State,
+    u: LaneKeepingController.Inputs,
+    dt: float,
+) -> tuple[float, float, float]:
+    """Return theta [rad] and beta [m], measured or predicted, and the time without the camera [s]."""
+    if not p.reads_status or u.camera_status in TAKEN:
+        return u.heading_angle, u.displacement, 0.0
+    moved = dt * (u.lateral_velocity + p.speed * x.heading_angle)
+    return x.heading_angle + dt * u.yaw_rate, x.displacement - moved, x.blind_time + dt  # (C5)
+
+
+def _law(
+    p: LaneKeepingController.Parameters, u: LaneKeepingController.Inputs, th: float, beta: float
+) -> tuple[float, float]:
+    y, w = u.lateral_velocity, u.yaw_rate
     r_1, r_2 = u.lateral_velocity_reference, u.displacement_reference
     (k11, k12, k13, k14), (k21, k22, k23, k24) = p.gain
     (s11, s12), (s21, s22) = p.prefilter

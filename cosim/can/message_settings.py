@@ -73,3 +73,6 @@ class MessageSettings(BaseModel):
     """Inputs that receive the status of the last frame, as "unit.input": with `e2e` 0 ok, 1 no new data,
     2 wrong CRC, 4 the first one, 8 repeated, 32 some lost, 64 wrong sequence; with `timeout`
     alone 1 after one."""
+
+    status_optional: bool = False
+    """Leave an input of `status` out, with a warning, where the unit's FMU does not have it."""

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
+from ..can.message_settings import MessageSettings
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..plan.unit_maps import End, scaled_map
@@ -19,7 +20,7 @@ from ..system.figure_spec import FigureSpec
 from ..system.metric_spec import MetricSpec
 from ..system.problems import spelled
 from ..system.scenario import Event, Scenario, StimulusEntry
-from ..system.system import Connection, MapEntry, System, UnitEntry
+from ..system.system import BusEntry, Connection, MapEntry, System, SystemFile, UnitEntry
 from ..units.definition import defined
 
 _FROM: dict[str, tuple[str, ...]] = {
@@ -175,6 +176,7 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
             "figure": _figure(file.figure, absent, left_out),
             "budget": budget,
             "record": _recorded(file.record, absent, left_out),
+            "buses": without_status(file.buses, absent, left_out),
         }
     )
     driven = driven.model_copy(
@@ -195,8 +197,8 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
 def without_untaken(
     system: System, interfaces: Mapping[str, UnitInterface]
 ) -> tuple[System, tuple[str, ...]]:
-    """Return the system without the ends of `optional` connections that its FMUs do not have, and a sentence
-    for each. `interfaces` are those of the units that take part."""
+    """Return the system without the ends of `optional` connections, and the inputs of statuses that are, that
+    its FMUs do not have, and a sentence for each. `interfaces` are those of the units that take part."""
     kept, said = [], []
     for connection in system.file.connect:
         ends = (connection.source, *connection.to)
@@ -206,9 +208,36 @@ def without_untaken(
         if left is not None:
             kept.append(left)
         said += [f"left out, since the FMU has no {', '.join(sorted(lost))}: {text}" for text in losses]
+    losses = []
+    readers = {name for own in optional_statuses(system.file) for name in own.status}
+    lost = {name for name in readers if not _there(name, interfaces)}
+    buses = without_status(system.file.buses, lost, losses)
+    said += [f"left out, since the FMU has no such variable: {text}" for text in losses]
     if not said:
         return system, ()
-    return dataclasses.replace(system, file=system.file.model_copy(update={"connect": kept})), tuple(said)
+    changed = system.file.model_copy(update={"connect": kept, "buses": buses})
+    return dataclasses.replace(system, file=changed), tuple(said)
+
+
+def optional_statuses(file: SystemFile) -> list[MessageSettings]:
+    """Return the settings of the messages whose status need not be read."""
+    return [own for bus in file.buses.values() for own in bus.messages.values() if own.status_optional]
+
+
+def without_status(
+    buses: Mapping[str, BusEntry], gone: Collection[str], left_out: list[str]
+) -> dict[str, BusEntry]:
+    """Return the buses without these inputs of statuses; adds what is lost to `left_out`."""
+    found: dict[str, BusEntry] = {}
+    for bus, entry in buses.items():
+        messages: dict[str, MessageSettings] = {}
+        for name, own in entry.messages.items():
+            lost = [full for full in own.status if full in gone]
+            left_out += [f"the status of {bus}.{name} -> {full}" for full in lost]
+            kept = [full for full in own.status if full not in gone]
+            messages[name] = own.model_copy(update={"status": kept}) if lost else own
+        found[bus] = entry.model_copy(update={"messages": messages})
+    return found
 
 
 def _there(name: str, interfaces: Mapping[str, UnitInterface]) -> bool:

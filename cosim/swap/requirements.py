@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
 from ..interface import UnitInterface, VariableInfo
@@ -11,6 +11,7 @@ from ..system.figure_spec import FigureSpec
 from ..system.scenario import Scenario
 from ..system.selection import figure_spec, metric_specs
 from ..system.system import Connection, System
+from .mapping import optional_statuses, without_status
 
 Role = Literal["input", "output", "parameter"]
 """The part that a variable plays at a unit, as the system sees it."""
@@ -72,6 +73,7 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
         takers = [to for to in c.to if _unit(to) not in out]
         if _unit(c.source) not in out and (takers or c.via):
             used += _ends(c, takers)
+    used += _statuses(system)
     used += [(stimulus.to, f"stimulus of {scenario.name}") for stimulus in scenario.file.stimuli]
     spec = figure_spec(system, scenario)
     shown = [s.name for panel in spec.panels for s in panel.signals] if spec else []
@@ -96,7 +98,14 @@ def _without_optional(system: System, scenario: Scenario) -> tuple[System, Scena
         return not c.optional or any(given.get(name) == value for name, value in c.needed_where.items())
 
     needed = [c for c in system.file.connect if is_needed(c)]
-    of_system = system.file.model_copy(update={"connect": needed, "figure": _needed(system.file.figure)})
+    free = {name for own in optional_statuses(system.file) for name in own.status}
+    of_system = system.file.model_copy(
+        update={
+            "connect": needed,
+            "figure": _needed(system.file.figure),
+            "buses": without_status(system.file.buses, free, []),
+        }
+    )
     of_scenario = scenario.file.model_copy(update={"figure": _needed(scenario.file.figure)})
     return dataclasses.replace(system, file=of_system), dataclasses.replace(scenario, file=of_scenario)
 
@@ -112,6 +121,13 @@ def _ends(c: Connection, takers: Sequence[str]) -> list[tuple[str, str]]:
     return [*((to, f"from {c.source}{via}") for to in takers), (c.source, taken)]
 
 
+def _statuses(system: System) -> Iterator[tuple[str, str]]:
+    """Yield each input that receives the status of a message, with that."""
+    for bus, entry in system.file.buses.items():
+        for name, own in entry.messages.items():
+            yield from ((full, f"the status of {bus}.{name}") for full in own.status)
+
+
 def _unit(variable: str) -> str:
     return variable.partition(".")[0]
 
@@ -123,6 +139,9 @@ def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role,
         for name, other_end in _ends(c, c.to):
             if name.startswith(own):
                 yield "output" if name == c.source else "input", name.removeprefix(own), other_end
+    for name, source in _statuses(system):
+        if name.startswith(own):
+            yield "input", name.removeprefix(own), source
     for stimulus in scenario.file.stimuli:
         if stimulus.to.startswith(own):
             yield "input", stimulus.to.removeprefix(own), f"stimulus of {scenario.name}"

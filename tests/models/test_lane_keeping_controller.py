@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_lyapunov
 
+from evcosim.models.lane_keeping_controller import TAKEN
 from evcosim.models.lane_keeping_controller import LaneKeepingController as Controller
 
 P = Controller.Parameters()
@@ -129,3 +130,48 @@ def test_what_cannot_be_is_refused_at_the_start(changed: dict[str, float], messa
     p = dataclasses.replace(P, **changed)
     with pytest.raises(ValueError, match=message):
         Controller.initial(p, Controller.Inputs())
+
+
+@settings(max_examples=30)
+@given(st.lists(inputs, min_size=1, max_size=6), st.sampled_from(TAKEN))
+def test_a_status_that_is_good_changes_no_bit(samples: list[Controller.Inputs], status: int) -> None:
+    for reads in (True, False):
+        p = dataclasses.replace(P, reads_status=reads)
+        told = [dataclasses.replace(u, camera_status=status) for u in samples]
+        assert requests(p, told) == requests(P, samples)
+
+
+def requests(p: Controller.Parameters, samples: list[Controller.Inputs]) -> list[Controller.Outputs]:
+    """The angles asked for in each sample."""
+    x, found = Controller.initial(p, samples[0]), []
+    for u in samples:
+        x = Controller.step(p, x, u, DT)
+        found.append(Controller.outputs(p, x))
+    return found
+
+
+@pytest.mark.parametrize("status", [1, 2, 8, 64])
+def test_without_the_camera_the_place_is_predicted_from_the_inertial_sensors(status: int) -> None:
+    """(C5): whatever stands at the inputs of the camera."""
+    start = Controller.Inputs(0.1, 0.02, 0.05, 0.3)
+    blind = [Controller.Inputs(0.1, 9.0, 0.05, 9.0, camera_status=status)] * 3
+    theta = [0.02 + 0.05 * DT * k for k in range(4)]
+    beta = [0.3]
+    for k in range(3):
+        beta.append(beta[-1] - DT * (0.1 + P.speed * theta[k]))
+    seen = [Controller.Inputs(0.1, theta[k], 0.05, beta[k]) for k in range(4)]
+    for found, expected in zip(requests(P, [start, *blind]), requests(P, seen), strict=True):
+        assert dataclasses.astuple(found) == pytest.approx(dataclasses.astuple(expected), abs=1e-12)
+    # the first frame that is taken counts again, whatever was predicted
+    again = Controller.Inputs(0.1, 0.0, 0.05, 0.0)
+    assert requests(P, [start, *blind, again])[-1] == requests(P, [again])[-1]
+
+
+def test_the_steering_fades_to_straight_when_the_camera_stays_away() -> None:
+    """(C6), after 0.1 s within 0.2 s."""
+    p = dataclasses.replace(P, prediction_time=0.1, fade_time=0.2)
+    u = Controller.Inputs(displacement_reference=0.3, camera_status=1)
+    asked = [found.front_steering_angle for found in requests(p, [u] * 40)]
+    assert asked[:10] == [asked[0]] * 10
+    assert asked[19] == pytest.approx(0.5 * asked[0])
+    assert asked[30:] == [0.0] * 10

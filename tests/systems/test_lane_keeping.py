@@ -268,3 +268,44 @@ def test_without_steering_a_disturbance_takes_the_vehicle_out_of_its_lane():
             sim.override(f"vehicle.{angle}", 0.0)
         sim.run()
         assert sim.results["vehicle.displacement"].min() < -10.0
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_a_controller_that_reads_the_status_of_the_camera_keeps_the_lane_without_it(engine):
+    runs = {
+        reads: simulate(
+            "lane_keeping", "camera_corrupt", engine=engine, parameters={"controller.reads_status": reads}
+        )
+        for reads in (True, False)
+    }
+    sound = simulate("lane_keeping", "step", engine=engine)["vehicle.displacement"]
+    read, unread = (runs[reads]["vehicle.displacement"] for reads in (True, False))
+    blind = slice(150, 351)
+    status = runs[True]["controller.camera_status"]
+    assert set(status[150:350]) == {2.0}
+    assert not status[1:150].any()
+    assert status[350] == 32.0  # frames were lost before it
+    assert not status[351:].any()
+    assert np.array_equal(read[:151], sound[:151])
+    assert np.abs(read - sound)[blind].max() < 0.02
+    assert np.abs(unread - sound)[blind].max() > 5.0
+    # what is received is the same: the bus holds the last values that were taken
+    assert not runs[True]["controller.displacement"][150:350].any()
+    counted = runs[True].manifest["frames"]["can0"]["messages"]["CAM_LaneStatus"]
+    assert counted["statuses"]["wrong_crc"] == counted["rejected"] == 200
+
+
+def test_an_fmu_that_cannot_read_the_status_runs_without_it(tmp_path):
+    """`status_optional`: left out, with a warning; without it the FMU is refused."""
+    text = (DATA / "systems" / "lane_keeping.toml").read_text()
+    other = text.replace("controller.camera_status", "controller.camera_state").replace(
+        '"!controller.camera_state"', '"!vehicle.crosswind"'
+    )
+    (tmp_path / "s.toml").write_text(other)
+    results = simulate(tmp_path / "s.toml")
+    said = "the status of can0.CAM_LaneStatus -> controller.camera_state"
+    assert any(said in warning for warning in results.manifest["warnings"])
+    assert np.array_equal(results["vehicle.displacement"], simulate("lane_keeping")["vehicle.displacement"])
+    (tmp_path / "s.toml").write_text(other.replace("status_optional = true\n", ""))
+    with pytest.raises(ConfigError, match=r"camera_state.*did you mean 'camera_status'"):
+        simulate(tmp_path / "s.toml")
