@@ -146,11 +146,11 @@ class CsvFile:
 
         Raises ConfigError as `numbers` does for a line of another length.
         """
-        return [row[column].strip() for _, row in self._full_rows()]
+        return [row[column].strip() for _, row in self.full_rows()]
 
     def line_of(self, row: int) -> int:
         """Return the line of the file in which a row (0, 1, ...) ends."""
-        return next(itertools.islice(self._full_rows(), row, None))[0]
+        return next(itertools.islice(self.full_rows(), row, None))[0]
 
     def _by_numpy(self, columns: Sequence[int]) -> Array | None:
         """Return the numbers as `numbers` does, shape (n, len(columns)), or None where a value is none."""
@@ -166,7 +166,7 @@ class CsvFile:
         """Return the numbers, shape (n, len(columns)). Raises ConfigError for the file's first mistake."""
         found = array.array("d")
         marks: dict[str, str] = {}
-        for line, row in self._full_rows():
+        for line, row in self.full_rows():
             for j in columns:
                 text = row[j]
                 if self.separator != ",":
@@ -177,7 +177,7 @@ class CsvFile:
                 found.append(self._no_number(text, line, j) if value is None else value)
         return np.asarray(found, dtype=np.float64).reshape(-1, len(columns))
 
-    def _full_rows(self) -> Iterator[tuple[int, list[str]]]:
+    def full_rows(self) -> Iterator[tuple[int, list[str]]]:
         """Yield the rows that have a value, with the line that each ends in; each as long as the header."""
         with opened(self.path, self.encoding, self.header_lines) as file:
             for line, row in self._rows(file):

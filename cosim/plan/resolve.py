@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from ..clock import Clock
 from ..csv_numbers import CsvFile
+from ..csv_thousands import thousands_note
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..results.results import ResultVariable
@@ -266,6 +267,9 @@ def _drives(
         elif entry.csv is not None:
             where = "the stimulus" if scenario.path else "a stimulus of a system"
             _note_unit_of_column(csv_of(entry, place, scenario.path), target, where, network.warnings)
+        if entry.csv is not None:
+            file, rows = csv_of(entry, place, scenario.path)
+            network.warnings += filter(None, [thousands_note(file, (rows.time, rows.value))])
         slot = slots.valid[unit, name]
         network.drive(
             entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"

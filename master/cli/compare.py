@@ -41,6 +41,7 @@ def compare(
     from .plot import is_page
 
     first, second = Results.read(a), Results.read(b)
+    _warn_of_thousands(a, b)
     if signals:
         first, second = _chosen(first, second, signals)
     found = comparing.compare(first, second, tolerance, relative, common)
@@ -68,6 +69,18 @@ def compare(
     for line in found.summary().split("\n"):
         print_paragraph(line)
     return 0 if found.equal else 1
+
+
+def _warn_of_thousands(*paths: Path) -> None:
+    from ...cosim.csv_numbers import CsvFile
+    from ...cosim.csv_thousands import thousands_note
+    from .failures import complain
+
+    for path in paths:
+        if path.suffix.lower() == ".csv":
+            file = CsvFile.of(path)
+            if note := thousands_note(file, range(len(file.names))):
+                complain(f"warning: {note}")
 
 
 def _names(results: Results) -> list[str]:

@@ -74,3 +74,19 @@ def test_a_variable_on_one_side_alone(evcosim, tmp_path):
         assert evcosim("compare", *pair, "--signals", "u.*", "--plot", "x.png").code == 1
         data = evcosim("compare", *pair, "--common", "--json").json
         assert (data["equal"], data["common"], data["only_a"] + data["only_b"]) == (True, True, ["u.w"])
+
+
+SHORT = ("--stop-time", "0.1")
+
+
+def test_a_run_and_a_comparison_say_it(tmp_path, evcosim):
+    path = tmp_path / "drive.csv"
+    path.write_text("time;throttle\n0;10\n1;1.500\n")
+    answer = evcosim(
+        "run", "Scooter", "--input", f"throttle={path}", "--stop-time", "0.1", "-o", str(tmp_path / "r")
+    )
+    said = " ".join(answer.err.split()) + " ".join(answer.out.split())
+    assert answer.code == 0
+    assert "drive.csv: line 3, column 'throttle': '1.500' is read as 1.5; where the point" in said
+    answer = evcosim("compare", str(path), str(path))
+    assert answer.code == 0 and "'1.500' is read as 1.5; where" in " ".join(answer.err.split())
