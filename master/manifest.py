@@ -10,11 +10,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..cosim.plan.bus_load import bus_loads
+from ..cosim.plan.faults import described
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.system import Isolation, System
 from .engine.bus_statistics import bus_statistics
 from .engine.engine import Engine
+from .engine.fault_tables import hits_of
 from .fmi.tolerance import tolerance_of
 from .prepare import Prepared
 
@@ -51,6 +53,7 @@ def manifest(
         "connections": _scaled(system),
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
         "frames": bus_statistics(engine.frames, engine.k),
+        "faults": described(plan.faults, hits_of(engine.frames.arrays, plan.faults)),
         "bus_load": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "events": [
             {"time": plan.clock.at(k), **event.model_dump(exclude={"time"})} for k, event in plan.events

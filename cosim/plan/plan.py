@@ -24,7 +24,8 @@ from ..can.database import Message
 from ..can.framing import Framing
 from ..clock import Clock
 from ..results.results import ResultVariable
-from ..system.scenario import Event, Fault
+from ..system.fault_spec import Fault
+from ..system.scenario import Event
 from ..system.stimuli import TimeFunction, initial_value
 from ..system.system import Algorithm, Experiment
 from ..texts import Texts
@@ -73,7 +74,7 @@ class MessagePlan:
     mailbox). A message with a `framing` is sent as the bytes of a frame: its routes end in the mailboxes.
 
     A multiplexed message has a plan for each page that is sent; `page` are the raw values of its
-    multiplexers by name.
+    multiplexers by name. In `latest` [ps] as many of its frames are sent as faults make late at once.
     """
 
     bus: str
@@ -88,6 +89,7 @@ class MessagePlan:
     arrivals: tuple[tuple[int, int], ...] = ()
     framing: Framing | None = None
     page: Mapping[str, int] = dataclasses.field(default_factory=dict)
+    latest: int = 0
 
     @property
     def watched(self) -> bool:
@@ -121,7 +123,8 @@ class Plan:
     results shows the slot `column_slots[j]`, and of the texts the slot `text_slots[j]`. `texts` has the texts
     whose numbers stand in slots. `initial` are the values of slots, in the inputs' own units,
     before anything was computed or received. `unreached` are sentences on what the stop time leaves no time
-    for.
+    for. `babblers` are the frames of those of `faults` that babble, in their order; `receiving_nodes` are bus
+    and node of mailboxes whose node can be off the bus.
     """
 
     system: str
@@ -146,6 +149,8 @@ class Plan:
     texts: Texts = dataclasses.field(default_factory=Texts, compare=False)
     unreached: tuple[str, ...] = ()
     faults: tuple[FaultPlan, ...] = ()
+    babblers: tuple[MessagePlan, ...] = ()
+    receiving_nodes: Mapping[int, tuple[str, str]] = dataclasses.field(default_factory=dict)
 
     @functools.cached_property
     def timed_buses(self) -> tuple[str, ...]:

@@ -116,7 +116,7 @@ def resolve(
         text_slots=slots.shown(text_columns),
         texts=texts,
     )
-    return with_faults(plan, scenario)
+    return with_faults(plan, system, scenario)
 
 
 def _loads(system: System, network: Network, clock: Clock) -> list[str]:

@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 
 from ..clock import Clock, point
 from ..csv_text import as_date
+from ..system.fault_spec import target_of
 from ..system.scenario import Event, Scenario, StimulusEntry
 from ..system.stimuli import moves_between
 from .plan import Drive, InputPlan, MessagePlan
 
-_MOST = 3  # events that are told one by one
+_MOST = 3  # events, and faults, that are told one by one
 
 
 def out_of_time(scenario: Scenario, drives: Sequence[Drive], clock: Clock) -> list[str]:
@@ -73,6 +74,7 @@ def after_stop(
             events.append(f"{place} never acts: {late}{stop} comes before it has an effect")
     return [
         *_first(events),
+        *_first(_late_faults(scenario, clock), "faults"),
         *(
             f"{place} begins at {_seconds(begin)}, not before {stop}: it stays at its first value"
             for place, (begin, _) in _stimuli(scenario, drives)
@@ -138,10 +140,24 @@ def _kind(entry: StimulusEntry) -> str:
     )
 
 
-def _first(said: list[str]) -> list[str]:
+def _late_faults(scenario: Scenario, clock: Clock) -> list[str]:
+    """Return a sentence for each fault whose time is over before the run, or comes after it."""
+    said = []
+    for n, fault in enumerate(scenario.file.faults, 1):
+        place = (
+            f"{scenario.path}: fault {n}, {fault.action} of {target_of(fault)} at t = {_seconds(fault.time)},"
+        )
+        if fault.time >= clock.stop:
+            said.append(f"{place} never acts: the stop time {_seconds(clock.stop)} comes before it")
+        elif fault.duration is not None and fault.time + fault.duration <= clock.start:
+            said.append(f"{place} never acts: it ends before the start time {_seconds(clock.start)}")
+    return said
+
+
+def _first(said: list[str], what: str = "events") -> list[str]:
     """Return the first sentences, and how many more there are."""
     left = len(said) - _MOST
-    return [*said[:_MOST], f"... and {left} more events of this kind"] if left > 0 else said
+    return [*said[:_MOST], f"... and {left} more {what} of this kind"] if left > 0 else said
 
 
 def _seconds(time: float) -> str:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from ..errors import counted
 from ..figures.text import pretty
 from ..results.manifest import described, manifest_text
 from ..results.metrics import Metric
@@ -207,11 +208,16 @@ def manifest_section(about: Mapping[str, Any], variables: Iterable[ResultVariabl
 
 
 def events_of(about: Mapping[str, Any]) -> list[tuple[float, str]]:
-    """Return time [s] and text of each event of a run, in their order."""
+    """Return time [s] and text of each event of a run, and behind them of each fault on a bus."""
     found = []
     for event in records_of(about.get("events")):
         time = event.get("time")
         if isinstance(time, int | float):
             value = f" = {shown(event['value'])}" if "value" in event else ""
             found.append((float(time), f"{shown(event.get('action'))} {shown(event.get('variable'))}{value}"))
+    for fault in records_of(about.get("faults")):
+        time, frames = fault.get("time"), fault.get("frames")
+        if isinstance(time, int | float) and isinstance(frames, int):
+            hit = counted(frames, "frame")
+            found.append((float(time), f"{shown(fault.get('action'))} {shown(fault.get('on'))} ({hit})"))
     return found

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from ..clock import LATEST
+from .fault_spec import Fault
 from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
 from .metric_spec import MetricSpec
@@ -198,55 +199,6 @@ class Set(_EventRecord):
 Event = Annotated[Override | Bias | Reset | Set, Field(discriminator="action")]
 """An event, by its `action`. Code that acts on one ends its `match` with `assert_never`: mypy then names each
 place that a new action must be added to."""
-
-
-class Fault(FiniteModel):
-    """A fault on a bus: what happens to the frames of a message, or of all messages of a node."""
-
-    action: Literal["lose", "silence", "corrupt", "freeze"]
-    """Frames are sent, but nobody receives them (lose); they are not sent (silence); bits of a byte are
-    flipped behind the sender's protection (corrupt); the sender repeats its last payload (freeze)."""
-
-    time: float = Field(ge=-LATEST, le=LATEST)
-    """Time in s from which on frames that are sampled are hit."""
-
-    duration: float | None = Field(default=None, gt=0.0, le=LATEST)
-    """Time in s for which it lasts; without it to the end."""
-
-    message: str | None = Field(default=None, examples=["can0.EMD_Status"])
-    """The message, as "bus.message"."""
-
-    node: str | None = Field(default=None, examples=["can0.EMD"])
-    """The node whose messages are hit, as "bus.node"; a fault has a message or a node."""
-
-    count: int | None = Field(default=None, ge=1, le=10**9)
-    """Greatest number of frames that are hit; without it all."""
-
-    every: int = Field(default=1, ge=1, le=10**9)
-    """Every how many-th frame is hit."""
-
-    probability: float = Field(default=1.0, ge=0.0, le=1.0)
-    """Probability with which each of these is hit."""
-
-    seed: int = Field(default=0, ge=0, lt=2**63)
-    """Seed of the draws: equal ones give equal runs."""
-
-    byte: int | None = Field(default=None, ge=0, le=63)
-    """The byte that `corrupt` flips bits of."""
-
-    mask: int = Field(default=0xFF, ge=1, le=0xFF)
-    """The bits that are flipped in it."""
-
-    counter: Literal["runs", "frozen"] = "runs"
-    """The counter of a protected message goes on while it is frozen, with a right checksum, or stays too."""
-
-    @model_validator(mode="after")
-    def _one_target(self) -> Fault:
-        if (self.message is None) == (self.node is None):
-            raise ValueError("a fault has a 'message' or a 'node', and not both")
-        if (self.byte is None) != (self.action != "corrupt"):
-            raise ValueError("'byte' says which one 'corrupt' acts on, and no other action")
-        return self
 
 
 class ScenarioExperiment(FiniteModel):

@@ -36,6 +36,33 @@ BUS_LOAD = record(
 _TIMES = record(
     "Times [s].", {"min": number("The least."), "mean": number("The mean."), "max": number("The greatest.")}
 )
+_OF_FAULTS = ("lost", "silenced", "delayed", "held", "unheard")
+_OF_ACTIONS = {
+    "duration": number("How long [s]; without it to the end."),
+    "count": whole("Greatest number of frames that are hit."),
+    "every": whole("Every how many-th frame is hit."),
+    "probability": number("Probability with which each of these is hit."),
+    "seed": whole("Seed of the draws."),
+    "byte": whole("The byte that is corrupted."),
+    "mask": whole("The bits of it."),
+    "counter": text('"runs" or "frozen".'),
+    "by": number("How much later frames arrive [s]."),
+    "id": whole("The identifier that babbles."),
+    "extended": flag("Whether it has 29 bits."),
+    "length": whole("Bytes of its frames."),
+    "period": number("Time from one of them to the next [s]; without it back to back."),
+}
+FAULT = record(
+    "A fault on a bus, with the keys of its action.",
+    {
+        "action": text("What happens."),
+        "on": text("The message, node or bus."),
+        "frames": whole("The number of frames that it hit."),
+        "time": number("When [s]."),
+        **_OF_ACTIONS,
+    },
+    optional=tuple(_OF_ACTIONS),
+)
 FRAMES = record(
     "What was counted of the frames on a bus in a run.",
     {
@@ -53,11 +80,16 @@ FRAMES = record(
                     "arrived": whole("Frames that receivers got."),
                     "latency": or_null(_TIMES | {"description": "From sampling to the end of the frame."}),
                     "seen": or_null(_TIMES | {"description": "From sampling to when receivers saw it."}),
+                    "lost": whole("Frames that a fault took from receivers."),
+                    "silenced": whole("Frames that a fault did not let be sent."),
+                    "delayed": whole("Frames that a fault made late."),
+                    "held": whole("Frames that were sampled while their node was off the bus."),
+                    "unheard": whole("Frames that arrived while a receiver was off the bus."),
                     "timeouts": whole("How often no frame came in time."),
                     "rejected": whole("Frames that the check of their protection did not take."),
                     "statuses": by_name("Frames by the status of their check.", whole("Their number.")),
                 },
-                optional=("timeouts", "rejected", "statuses"),
+                optional=(*_OF_FAULTS, "timeouts", "rejected", "statuses"),
             ),
         ),
         "nodes": by_name(

@@ -5,7 +5,7 @@ Numbers that are not finite are null in JSON, so that a measured number may be n
 
 from __future__ import annotations
 
-from .json_bus import BUS_TIMES
+from .json_bus import BUS_TIMES, FAULT
 from .json_info import INFO_DATABASE, INFO_FMU, INFO_SYSTEM, LIST
 from .json_parts import FILES, VALUE, Schema, by_name, flag, listed, number, of, or_null, record, text, whole
 
@@ -36,6 +36,7 @@ _RUN = record(
                 {"count": number("How often."), "first_time": number("Time of the first [s].")},
             ),
         ),
+        "faults": listed("The faults on buses.", FAULT),
         "loop_seconds": number("Time that the steps took [s]."),
         "algorithm": text('"gauss_seidel" or "jacobi".'),
         "error": or_null(text("Why the run failed; null: it did not.")),

@@ -35,6 +35,8 @@ def show(finished: FinishedRun) -> None:
         fields.append(
             ("saturated" if i == 0 else "", f"{signal} {times}, first at {about['first_time']:g} s")
         )
+    for i, fault in enumerate(manifest["faults"]):
+        fields.append(("faults" if i == 0 else "", _fault(fault)))
     fields += [("warning", remark) for remark in finished.remarks]
     print_fields(fields)
     print()
@@ -49,6 +51,13 @@ def show(finished: FinishedRun) -> None:
     print()
     print_paragraph(f"in {on_one_line(str(finished.folder.path))}: {', '.join(finished.files)}")
     print_next(_next(finished))
+
+
+def _fault(fault: dict[str, Any]) -> str:
+    """Return what a fault on a bus did."""
+    duration = f" for {fault['duration']:g} s" if "duration" in fault else ""
+    hit = counted(int(fault["frames"]), "frame") if fault["frames"] else "no frame"
+    return f"{fault['action']} {fault['on']} at {fault['time']:g} s{duration}: {hit}"
 
 
 def _isolated(units: dict[str, Any]) -> str:
@@ -77,7 +86,17 @@ def _next(finished: FinishedRun) -> list[str]:
 def as_data(finished: FinishedRun) -> dict[str, Any]:
     """Return the summary as data; `final` holds the last value of every recorded variable."""
     results, manifest = finished.results, finished.results.manifest
-    keys = ("system", "scenario", "status", "order", "ideal", "steps", "saturations", "loop_seconds")
+    keys = (
+        "system",
+        "scenario",
+        "status",
+        "order",
+        "ideal",
+        "steps",
+        "saturations",
+        "faults",
+        "loop_seconds",
+    )
     return {key: manifest[key] for key in keys} | {
         "algorithm": manifest["experiment"]["algorithm"],
         "error": manifest.get("error"),

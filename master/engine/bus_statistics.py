@@ -20,6 +20,13 @@ _COUNTS = {
     "errors": T.ERRORS,
     "arrived": T.ARRIVED,
 }
+_FAULTY = {
+    "lost": T.LOST,
+    "silenced": T.SILENCED,
+    "delayed": T.DELAYED,
+    "held": T.HELD,
+    "unheard": T.UNHEARD,
+}
 
 
 def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
@@ -55,12 +62,12 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
 
 
 def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, Any]:
-    """Return the counts of timeouts, of frames that were not taken and of statuses, where there are any."""
+    """Return the counts of timeouts, faults, frames that were not taken and statuses, where there are any."""
     found: dict[str, Any] = {}
     if row[T.TIMEOUT]:
         found["timeouts"] = int(row[T.TIMEOUTS])
-    if row[T.LOST] or row[T.SILENCED]:
-        found |= {"lost": int(row[T.LOST]), "silenced": int(row[T.SILENCED])}
+    if any(row[column] for column in _FAULTY.values()):
+        found |= {name: int(row[column]) for name, column in _FAULTY.items()}
     if row[T.PROFILE]:
         found["rejected"] = int(row[T.REJECTED])
         found["statuses"] = {name: int(verdicts[code]) for code, name in STATUSES.items() if verdicts[code]}

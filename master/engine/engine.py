@@ -29,7 +29,7 @@ from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
 from ...cosim.visible import on_one_line
 from ..unit import Unit, floats
 from .ending import EndedWithin, Ending
-from .frame_path import FramePath
+from .frame_path import frames_of
 from .initialization import typed
 from .profile import Profile
 from .routes import Act, compile_routes
@@ -177,9 +177,7 @@ class Engine:
         self.ending = Ending()
         self.turns = [Turn(units[p.name], p, self.view, plan.clock, self.ending) for p in plan.units]
         self.senders = senders_of(plan, self.view, self.late, log_raw)
-        self.frames = FramePath(
-            self.senders, self.memory, plan.clock.step, log_raw, plan.initial, plan.faults
-        )
+        self.frames = frames_of(plan, self.senders, self.memory, log_raw)
         self._events = list(plan.events)
         self._turn_of_input = {
             group.slot + i: turn

@@ -18,17 +18,19 @@ from ...cosim.can.wire import medium
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.values import set_raw
-from ...cosim.plan.plan import FaultPlan
+from ...cosim.plan.plan import FaultPlan, Plan
+from .fault_tables import nodes_of
 from .schedule import Action
 from .sender import Sender
-from .wire_tables import key_of, nodes_of, ring_of_bus, views, wire_arrays
+from .wire_tables import key_of, ring_of_bus, views, wire_arrays
 
 
 class FramePath:
     """The frames of those messages of `senders`, all of a run, that have a framing.
 
     `memory` is the run's, shape (size,), `step` [s] its step. With `logs` the frames are kept for `log_of`.
-    `initial` are the values of mailboxes before the first frame, by slot.
+    `initial` are the values of mailboxes before the first frame, by slot, `receiving` their nodes that can be
+    off the bus (`Plan.receiving_nodes`).
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class FramePath:
         logs: bool,
         initial: Mapping[int, float] | None = None,
         faults: Sequence[FaultPlan] = (),
+        receiving: Mapping[int, tuple[str, str]] | None = None,
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
@@ -46,7 +49,7 @@ class FramePath:
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}
-        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {}, faults)
+        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {}, faults, receiving)
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
@@ -139,3 +142,8 @@ class FramePath:
         settings = next((s.plan.settings for s in self._all if s.plan.bus == bus), None)
         switch = settings is not None and settings.data_bitrate is not None
         return BusLog(bus, values, FrameLog(messages, self._kept.table()), switch)
+
+
+def frames_of(plan: Plan, senders: Sequence[Sender], memory: NDArray[np.float64], logs: bool) -> FramePath:
+    """Return the frames of a plan, whose messages are `senders`; the rest is as in `FramePath`."""
+    return FramePath(senders, memory, plan.clock.step, logs, plan.initial, plan.faults, plan.receiving_nodes)

@@ -146,8 +146,11 @@ def _message(plan: Plan, index: int) -> list[Action]:
     if message.timed:
         return [send]
     if not message.delay:
-        return [send, *watch]
+        # frames that a fault made late arrive at any step
+        return [*([Action("deliver", index, 1, message.first)] if message.latest else []), send, *watch]
     deliver = dataclasses.replace(send, kind="deliver", first=message.first + message.delay)
+    if message.latest:
+        deliver = dataclasses.replace(deliver, every=1)
     return [deliver, *watch, send]
 
 

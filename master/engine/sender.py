@@ -46,7 +46,7 @@ class Sender:
 def senders_of(
     plan: Plan, memory: memoryview[float], late: Mapping[int, Waiting], log_raw: bool
 ) -> list[Sender]:
-    """Return the messages of a plan in the schedule, in their order.
+    """Return the messages of a plan in the schedule, in their order, and behind them those that babble.
 
     `late` are the waiting slots of those with a delay; with `log_raw` the channels keep raw values, but for
     messages whose frames are kept.
@@ -58,5 +58,5 @@ def senders_of(
             memory,
             late.get(i),
         )
-        for i, m in enumerate(plan.messages)
+        for i, m in enumerate((*plan.messages, *plan.babblers))
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +18,10 @@ from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
-from ...cosim.plan.faults import node_of
 from ...cosim.plan.plan import FaultPlan, MessagePlan
+from ...cosim.plan.receivers import node_of
+from .fault_tables import Arrays, add_faults, nodes_of, owner_of
 from .sender import Sender
-
-Arrays = dict[str, NDArray[Any]]
-"""Tables by the names of `Wire`; `helper` is not among them."""
 
 _MOST_BITS = 1024  # no frame is longer
 _LOG_ROWS = 1024  # frames that are logged between two calls of Python
@@ -36,12 +34,14 @@ def wire_arrays(
     logs: bool,
     initial: Mapping[int, float] | None = None,
     faults: Sequence[FaultPlan] = (),
+    receiving: Mapping[int, tuple[str, str]] | None = None,
 ) -> Arrays:
-    """Return the tables of the messages of `senders`; message i is that of sender i.
+    """Return the tables of the messages of `senders`, but for `helper`; message i is that of sender i.
 
     They stand bus by bus, on each in the order in which they win it. `memory` is the run's, shape (size,);
     `step` [s] that of the run. `logs`: frames are logged.
-    `initial` are the values of mailboxes before the first frame, by slot.
+    `initial` are the values of mailboxes before the first frame, by slot, `receiving` their nodes that can be
+    off the bus.
     """
     plans = [sender.plan for sender in senders]
     made: Arrays = {
@@ -60,17 +60,18 @@ def wire_arrays(
     }
     made["single_bits"], made["double_bits"] = made["single"].view(np.int32), made["double"].view(np.int64)
     made["state"][T.STEP_TIME] = picoseconds(step)
-    _add_signals(made, senders)
+    _add_signals(made, senders, receiving or {})
     _add_fallback(made, plans, initial or {})
-    _add_protection(made, plans)
+    _add_protection(made, plans, receiving or {})
     _add_buses(made, plans, step)
-    _add_faults(made, plans, faults)
     _add_rings(made, plans)
     same = [(plan.bus, key_of(plan.message)) for plan in plans]
     for i, plan in enumerate(plans):
         pages = {T.PAGE: i - same.index(same[i]), T.PAGES: same.count(same[i])}
         _fill(made["messages"], i, _message_row(plan) | pages | {T.LOGGED: logs})
         made["base"][i, : plan.message.length] = list(_base(plan))
+    made["waiting"][:] = made["base"]  # what babbles has no other payload
+    add_faults(made, plans, faults)
     return made
 
 
@@ -119,51 +120,9 @@ def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
         made["chances"][row] = [-math.expm1(bits * right) for bits in range(_MOST_BITS)]
 
 
-def _add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[FaultPlan]) -> None:
-    """Add the faults of the scenario."""
-    buses, nodes = list(dict.fromkeys(plan.bus for plan in plans)), nodes_of(plans)
-    keys = {(plan.bus, plan.message.name): key_of(plan.message) for plan in plans}
-    faults = [fault for fault in faults if fault.bus in buses]  # with no bus there is none
-    made["faults"], made["odds"] = _table(len(faults), T.FAULT_WIDTH), np.ones(max(1, len(faults)))
-    made["state"][T.FAULTS] = len(faults)
-    for row, found in enumerate(faults):
-        fault = found.fault
-        made["odds"][row] = fault.probability
-        _fill(
-            made["faults"], row,
-            {T.FAULT_KIND: _fault_kind(fault.action), T.FAULT_BUS: buses.index(found.bus),
-             T.FAULT_KEY: keys.get((found.bus, found.message), -1),
-             T.FAULT_NODE: nodes.index((found.bus, found.node)) if found.node else -1,
-             T.SINCE_TIME: found.since, T.UNTIL_TIME: found.until,
-             T.LEFT: -1 if fault.count is None else fault.count, T.EACH: fault.every,
-             T.FAULT_SEED: fault.seed, T.BYTE: fault.byte or 0, T.MASK: fault.mask,
-             T.COUNTER_TOO: fault.counter == "frozen"},
-        )  # fmt: skip # a row
-
-
-def _fault_kind(action: Literal["lose", "silence", "corrupt", "freeze"]) -> int:
-    """Return the code of what a fault does."""
-    match action:
-        case "lose":
-            return T.LOSE
-        case "silence":
-            return T.SILENCE
-        case "corrupt":
-            return T.CORRUPT
-        case "freeze":
-            return T.FREEZE
-        case _:
-            assert_never(action)
-
-
 def _bit(rate: int) -> int:
     """Return the time of a bit [ps] at a rate [bit/s]."""
     return round(10**12 / rate)
-
-
-def nodes_of(plans: Sequence[MessagePlan]) -> list[tuple[str, str]]:
-    """Return bus and name of each node that sends one of these messages, in the order of their table."""
-    return list(dict.fromkeys(_node(plan) for plan in plans))
 
 
 def _node(plan: MessagePlan) -> tuple[str, str]:
@@ -201,16 +160,20 @@ def _add_fallback(made: Arrays, plans: Sequence[MessagePlan], initial: Mapping[i
     made["fallback"] = np.array(found or [math.nan])
 
 
-def _add_protection(made: Arrays, plans: Sequence[MessagePlan]) -> None:
+def _add_protection(
+    made: Arrays, plans: Sequence[MessagePlan], receiving: Mapping[int, tuple[str, str]]
+) -> None:
     """Add the protection of messages, their timeouts, and the inputs that receive their status."""
     statuses: list[int] = []
+    nodes = nodes_of(plans)
     for i, plan in enumerate(plans):
         if plan.framing is None:
             continue
         own, slots = plan.settings.of_message(plan.message.name), plan.framing.status
         row: dict[int, Any] = {T.TIMEOUT: own.timeout or 0, T.LAST: -1}
-        row |= {T.FIRST_STATUS: len(statuses), T.STATUSES: len(slots)}
-        statuses += slots
+        row |= {T.FIRST_STATUS: len(statuses) // 2, T.STATUSES: len(slots)}
+        for slot in slots:
+            statuses += [slot, owner_of(slot, nodes, receiving)]
         if (protection := plan.framing.protection) is not None:
             made["ids"][16 * i : 16 * i + len(protection.ids)] = protection.ids
             start, little = place_of(protection.counter)
@@ -222,21 +185,24 @@ def _add_protection(made: Arrays, plans: Sequence[MessagePlan]) -> None:
             if protection.nibble is not None:
                 row[T.NIBBLE_START], row[T.NIBBLE_LITTLE] = place_of(protection.nibble)
         _fill(made["messages"], i, row)
-    made["statuses"] = np.array(statuses or [0], dtype=np.int64)
+    made["statuses"] = np.array(statuses or [0, -1], dtype=np.int64)
 
 
-def _add_signals(made: Arrays, senders: Sequence[Sender]) -> None:
+def _add_signals(made: Arrays, senders: Sequence[Sender], receiving: Mapping[int, tuple[str, str]]) -> None:
     """Add the tables of signals and their receivers, and where those of each message begin."""
     signals: list[dict[int, Any]] = []
     reals: list[dict[int, Any]] = []
     sinks: list[dict[int, Any]] = []
     maps: list[dict[int, Any]] = []
+    nodes = nodes_of([sender.plan for sender in senders])
     for i, sender in enumerate(senders):
         _fill(made["messages"], i, {T.FIRST_SIGNAL: len(signals), T.SIGNALS: len(sender.plan.routes)})
         for route, operation in zip(sender.plan.routes, sender.channel.operations, strict=True):
             signals.append(_signal_row(route, operation, len(sinks)))
             reals.append(_real_row(route, operation))
-            sinks += [{T.SLOT: slot} for slot, _ in route.sinks]
+            sinks += [{T.SLOT: s, T.OWNER: owner_of(s, nodes, receiving)} for s, _ in route.sinks]
+            if any(slot in receiving for slot, _ in route.sinks):
+                _fill(made["messages"], i, {T.OWNED: 1})
             # adding an offset of 0.0 would turn -0.0 into 0.0
             maps += [{T.FACTOR: a.scale, T.ADDEND: a.offset or -0.0} for _, a in route.sinks]
     made["signals"], made["reals"] = _table(len(signals), T.SIGNAL), _table(len(signals), T.REAL, np.float64)
@@ -300,9 +266,11 @@ def _add_rings(made: Arrays, plans: Sequence[MessagePlan]) -> None:
         bus = made["buses"][made["messages"][i, T.BUS]]
         if plan.timed and plan.bus in places:
             ring = places[plan.bus]
-        elif plan.timed or plan.delay:
+        elif plan.timed or plan.delay or plan.latest:
             ring = places[plan.bus] = len(rings)
-            room = _under_way(made, bus, plans) if plan.timed else plan.delay // plan.every + 1
+            late = -(-plan.latest // int(made["state"][T.STEP_TIME]))
+            waits = (plan.delay + late) // plan.every + 1 + (late > 0)
+            room = _under_way(made, bus, plans) if plan.timed else waits
             rings.append({T.START_ROW: rows, T.ROWS: room})
             rows += room
         else:
@@ -322,7 +290,7 @@ def _under_way(made: Arrays, bus: NDArray[np.int64], plans: Sequence[MessagePlan
     span = step + int(bus[T.DELAY])
     first = int(bus[T.FIRST_MESSAGE])
     own = plans[first : first + int(bus[T.MESSAGES])]
-    return sum(span // (plan.every * step) + 3 for plan in own)
+    return sum((span + plan.latest) // (plan.every * step) + 3 for plan in own)
 
 
 def _table(rows: int, width: int, kind: Any = np.int64) -> NDArray[Any]:

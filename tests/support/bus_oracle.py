@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 
 @dataclasses.dataclass
@@ -20,6 +20,7 @@ class Sent:
     cycle: int
     first: int
     jitter: int
+    node: str = ""
     waiting: Frame | None = None
     replaced: int = 0
 
@@ -40,6 +41,44 @@ class Frame:
     sampled: int
     ready: int
     end: int = -1
+    start: int = -1
+
+
+@dataclasses.dataclass
+class Babbler:
+    """A message of zeros that is there from `since` to before `until`, at a period or (0) always."""
+
+    message: Sent
+    length: int
+    since: int
+    until: int
+    period: int
+
+
+@dataclasses.dataclass
+class Off:
+    """A node that is forced off the bus from `since` to before `until`, and recovers then."""
+
+    node: str
+    since: int
+    until: int
+
+    def back(self, frames: list[Frame], bit: int) -> int:
+        """Return when it is back if the bus, which carried these frames, stays idle after the last one.
+
+        Each stretch of recessive bits counts as many rows of 11 as are in it: those from the delimiter of a
+        frame's acknowledgment (8 bits before its end) to the next frame's start.
+        """
+        begins = [0] + [frame.end - 8 * bit for frame in frames]
+        ends = [frame.start for frame in frames] + [10**18]
+        left = 128
+        for begin, end in zip(begins, ends, strict=True):
+            begin = max(begin, self.until)
+            rows = max(0, end - begin) // (11 * bit)
+            if rows >= left:
+                return begin + left * 11 * bit
+            left -= rows
+        raise AssertionError("the last stretch has no end")
 
 
 def stuffed_length(bits: str) -> int:
@@ -76,38 +115,54 @@ def carried(
     step: int,
     bit: int,
     drawn: Callable[[Sent, int], float],
+    offs: Sequence[Off] = (),
+    babblers: Sequence[Babbler] = (),
 ) -> list[Frame]:
     """Return the frames in the order in which the bus carried them, of those that start before the end.
 
     `payloads` are by message and step; `drawn` gives the share of the jitter of a message's n-th frame.
     """
-    samplings = sorted(
-        (k * step, k, message.name)
+    end = steps * step
+    samplings = [
+        (k * step, message, payloads[message.name, k])
         for message in messages
         for k in range(message.first, steps, message.cycle)
-    )
-    by_name = {message.name: message for message in messages}
-    counts = dict.fromkeys(by_name, 0)
+    ]
+    for babbler in babblers:
+        until = min(babbler.until, end)
+        times = range(babbler.since, until, babbler.period) if babbler.period else ()
+        samplings += [(time, babbler.message, bytes(babbler.length)) for time in times]
+    samplings.sort(key=lambda s: s[0])
+    all_of_them = messages + [babbler.message for babbler in babblers]
+    counts = {message.name: 0 for message in all_of_them}
     found: list[Frame] = []
     now, free = 0, 0
     while True:
-        for moment, k, name in [s for s in samplings if s[0] <= now]:
-            message = by_name[name]
-            counts[name] += 1
+        while samplings and samplings[0][0] <= now:
+            moment, message, payload = samplings.pop(0)
+            counts[message.name] += 1
             message.replaced += message.waiting is not None
-            ready = moment + int(drawn(message, counts[name]) * message.jitter)
-            message.waiting = Frame(message, payloads[name, k], moment, ready)
-            samplings.remove((moment, k, name))
-        ready = [m for m in messages if m.waiting is not None and m.waiting.ready <= now]
-        if free <= now and ready:
-            winner = min(ready, key=lambda m: m.field)
+            ready = moment + int(drawn(message, counts[message.name]) * message.jitter)
+            message.waiting = Frame(message, payload, moment, ready)
+        for babbler in babblers:
+            if not babbler.period and babbler.since <= now:
+                babbler.message.waiting = Frame(babbler.message, bytes(babbler.length), now, now)
+            if now >= babbler.until:
+                babbler.message.waiting = None
+        backs = [(off, off.back(found, bit)) for off in offs]
+        away = {off.node for off, back in backs if off.since <= now < back}
+        able = [m for m in all_of_them if m.waiting and m.waiting.ready <= now and m.node not in away]
+        if free <= now and able:
+            winner = min(able, key=lambda m: m.field)
             frame, winner.waiting = winner.waiting, None
             assert frame is not None
-            frame.end = now + classic_length(winner, frame.payload) * bit
+            frame.start, frame.end = now, now + classic_length(winner, frame.payload) * bit
             free = frame.end + 3 * bit
             found.append(frame)
-        moments = [free, *(s[0] for s in samplings), *(m.waiting.ready for m in messages if m.waiting)]
+            continue
+        moments = [free, *(s[0] for s in samplings), *(b.since for b in babblers), *(b for _, b in backs)]
+        moments += [m.waiting.ready for m in all_of_them if m.waiting]
         later = [moment for moment in moments if moment > now]
-        if not later or min(later) >= steps * step:
+        if not later or min(later) >= end:
             return found
-        now = min(later)
+        now = int(min(later))

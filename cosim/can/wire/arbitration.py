@@ -4,7 +4,7 @@ A wrong bit is seen by the sender at once and by all others before the error fla
 both take 12 bits; the delimiter takes 8. The frame waits on, and contends anew. The sender's error counter
 (TEC) grows by 8, and falls by 1 with each frame that is carried; those of the receivers (REC) grow and fall
 by 1. Beyond 127 a node is error passive: after a frame of its own it lets 8 bits pass before the next. Beyond
-255 it is bus-off: it sends nothing for 128 times 11 bits, and begins again with counters of 0.
+255 it is bus-off (`off`), and begins again with counters of 0.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from __future__ import annotations
 from ..timing.draws import drawn
 from ..timing.lengths import classic_bits, fd_bits
 from . import tables as T
+from .babble import ended
+from .off import is_off, recover, strike, switch_off
 from .tables import Wire
 
 _ERROR = 2  # what is drawn for
@@ -19,7 +21,6 @@ _ERROR_FRAME = 20  # bits of the flags of all nodes and the delimiter
 _INTERFRAME = 3
 _TAIL = 9  # bits behind those that may have the data bit rate
 _SUSPENDED = 8
-_RECOVERY = 128 * 11
 _PASSIVE, _OFF = 127, 255
 _NEVER = 0x7FFFFFFFFFFFFFFF
 
@@ -35,8 +36,12 @@ def contend(w: Wire, bus: int, end: int) -> int:
         i, now = first_of(w, bus, now)
         if i < 0 or now >= end:
             break
+        if (b[bus, T.STRIKES] and strike(w, bus, now)) or ended(w, i, now):
+            now = b[bus, T.FREE_AT]
+            continue
         for byte in range(w.messages[i, T.LENGTH]):
             w.frame[byte] = w.waiting[i, byte]
+        b[bus, T.BEGUN] = now
         good = carry(w, bus, i, now)
         now = b[bus, T.FREE_AT]
         if good:
@@ -77,7 +82,7 @@ def carry(w: Wire, bus: int, i: int, now: int) -> int:
     wrong = -1
     if b[bus, T.NOISY]:
         wrong = wrong_bit(w, bus, i, nominal + fast)
-        count_errors(w, bus, m[i, T.NODE], wrong >= 0)
+        count_errors(w, bus, m[i, T.NODE], wrong >= 0, now)
     if wrong < 0:
         b[bus, T.FREE_AT] = now + nominal * b[bus, T.BIT] + fast * b[bus, T.DATA_BIT]
     else:
@@ -89,6 +94,8 @@ def carry(w: Wire, bus: int, i: int, now: int) -> int:
         )
     b[bus, T.FREE_AT] += _INTERFRAME * b[bus, T.BIT]
     m[i, T.BUSY] += b[bus, T.FREE_AT] - now
+    if b[bus, T.OFF_NODES]:
+        recover(w, bus, now)
     if w.nodes[m[i, T.NODE], T.ERROR_COUNT] > _PASSIVE:
         suspend(w, bus, m[i, T.NODE])
     return 1 if wrong < 0 else 0
@@ -122,10 +129,10 @@ def number_of(w: Wire, i: int) -> int:
     return number
 
 
-def count_errors(w: Wire, bus: int, sender: int, wrong: int) -> None:
-    """Count a frame in the error counters of all nodes of a bus."""
+def count_errors(w: Wire, bus: int, sender: int, wrong: int, now: int) -> None:
+    """Count a frame that starts now in the error counters of all nodes that are on a bus."""
     for node in range(len(w.nodes)):
-        if w.nodes[node, T.BUS_OF] == bus:
+        if w.nodes[node, T.BUS_OF] == bus and not is_off(w, node, now):
             column = T.ERROR_COUNT if node == sender else T.RECEIVE_COUNT
             step = 8 if node == sender else 1
             count = w.nodes[node, column] + step if wrong else max(0, w.nodes[node, column] - 1)
@@ -134,9 +141,8 @@ def count_errors(w: Wire, bus: int, sender: int, wrong: int) -> None:
 
 def suspend(w: Wire, bus: int, node: int) -> None:
     """Let a node that is error passive or bus-off wait after its frame."""
-    pause = _SUSPENDED
+    free = w.buses[bus, T.FREE_AT]
     if w.nodes[node, T.ERROR_COUNT] > _OFF:
-        w.nodes[node, T.BUS_OFFS] += 1
-        w.nodes[node, T.ERROR_COUNT] = w.nodes[node, T.RECEIVE_COUNT] = 0
-        pause = _RECOVERY
-    w.nodes[node, T.READY_AT] = w.buses[bus, T.FREE_AT] + pause * w.buses[bus, T.BIT]
+        switch_off(w, bus, node, free, free)
+    else:
+        w.nodes[node, T.READY_AT] = free + _SUSPENDED * w.buses[bus, T.BIT]

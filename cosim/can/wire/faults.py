@@ -17,8 +17,13 @@ _FAULT = 3  # what is drawn for
 
 def hit(w: Wire, kind: int, i: int, now: int) -> int:
     """Return the first fault of a kind that hits the frame of message i sampled at a time; -1: none does."""
+    return hit_from(w, 0, kind, i, now)
+
+
+def hit_from(w: Wire, start: int, kind: int, i: int, now: int) -> int:
+    """Return the first fault, from row `start` on, of a kind that hits a frame as `hit` does."""
     m, f = w.messages, w.faults
-    for row in range(w.state[T.FAULTS]):
+    for row in range(start, w.state[T.FAULTS]):
         if f[row, T.FAULT_KIND] != kind or not f[row, T.SINCE_TIME] <= now < f[row, T.UNTIL_TIME]:
             continue
         by_key = f[row, T.FAULT_BUS] == m[i, T.BUS] and f[row, T.FAULT_KEY] == m[i, T.KEY]
@@ -54,8 +59,10 @@ def spoil(w: Wire, i: int, now: int) -> None:
         for byte in range(w.messages[i, T.LENGTH]):
             w.kept[i, byte] = w.frame[byte]
     wrong = hit(w, T.CORRUPT, i, now)
-    if wrong >= 0 and w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:
-        w.frame[w.faults[wrong, T.BYTE]] ^= w.faults[wrong, T.MASK]
+    while wrong >= 0:  # each has a byte of its own
+        if w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:
+            w.frame[w.faults[wrong, T.BYTE]] ^= w.faults[wrong, T.MASK]
+        wrong = hit_from(w, wrong + 1, T.CORRUPT, i, now)
 
 
 def wipe(w: Wire, i: int) -> None:

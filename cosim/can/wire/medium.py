@@ -7,8 +7,10 @@ from typing import Any
 from ..timing.draws import drawn
 from . import tables as T
 from .arbitration import contend, number_of
+from .babble import begin, go_on
 from .faults import hit, spoil
 from .log import log
+from .off import is_off, note_hit, strike, unheard
 from .protect import accepted, protect, watch
 from .tables import Wire
 from .values import pack, sample, unpack
@@ -18,7 +20,8 @@ _JITTER = 1  # what is drawn for
 
 def send(w: Wire, i: int, k: int) -> int:
     """Sample and pack message i in step k, and send the frame; return DONE or RAISED."""
-    m, now = w.messages, k * w.state[T.STEP_TIME]
+    m, b, now = w.messages, w.buses, k * w.state[T.STEP_TIME]
+    bus = m[i, T.BUS]
     if hit(w, T.SILENCE, i, now) >= 0:
         m[i, T.SILENCED] += 1
         return T.DONE
@@ -31,16 +34,34 @@ def send(w: Wire, i: int, k: int) -> int:
         protect(w, i)
     m[i, T.SENT] += 1
     m[i, T.INSTANCE] += 1
-    if w.buses[m[i, T.BUS], T.TIMED]:
+    if b[bus, T.STRIKES]:
+        strike(w, bus, now)
+    off = is_off(w, m[i, T.NODE], now)
+    if off:
+        m[i, T.HELD] += 1
+        note_hit(w, m[i, T.NODE])
+    if b[bus, T.TIMED]:
         queue(w, i, now)
+        return T.DONE
+    if off:
         return T.DONE
     if log(w, i, k, now) != T.DONE:
         return T.RAISED
     m[i, T.CARRIED] += 1
     if m[i, T.RING] < 0:
-        return deliver(w, i, k, now)
-    push(w, m[i, T.RING], i, now + w.buses[m[i, T.BUS], T.DELAY], now)
-    return T.DONE
+        return deliver(w, i, k, now, now)
+    push(w, m[i, T.RING], i, arrival_of(w, i, now, now), now)
+    return T.DONE if b[bus, T.DELAY] else arrive(w, m[i, T.RING], k)
+
+
+def arrival_of(w: Wire, i: int, end: int, sampled: int) -> int:
+    """Return when the frame of message i that ended at a time reaches its receivers."""
+    time: int = end + w.buses[w.messages[i, T.BUS], T.DELAY]
+    late = hit(w, T.LATE, i, sampled) if w.state[T.FAULTS] else -1
+    if late >= 0:
+        w.messages[i, T.DELAYED] += 1
+        time += w.faults[late, T.AMOUNT]
+    return time
 
 
 def queue(w: Wire, i: int, now: int) -> None:
@@ -74,17 +95,24 @@ def replace_pages(w: Wire, i: int) -> None:
 
 def run_bus(w: Wire, bus: int, k: int) -> int:
     """Let the frames that wait have the bus, as many as start before the next step; return DONE or RAISED."""
-    end = (k + 1) * w.state[T.STEP_TIME]
+    m, end = w.messages, (k + 1) * w.state[T.STEP_TIME]
+    if w.buses[bus, T.TO_BABBLE]:
+        begin(w, bus, end)
     while w.buses[bus, T.PENDING] > 0:
         i = contend(w, bus, end)
         if i < 0:
             break
         finish = w.buses[bus, T.FREE_AT] - 3 * w.buses[bus, T.BIT]  # without the interframe space
-        note(w.messages, i, T.LATENCY_LEAST, finish - w.messages[i, T.SAMPLED], w.messages[i, T.CARRIED])
-        w.messages[i, T.CARRIED] += 1
+        note(m, i, T.LATENCY_LEAST, finish - m[i, T.SAMPLED], m[i, T.CARRIED])
+        m[i, T.CARRIED] += 1
         if log(w, i, k, finish) != T.DONE:
             return T.RAISED
-        push(w, w.messages[i, T.RING], i, finish + w.buses[bus, T.DELAY], w.messages[i, T.SAMPLED])
+        if m[i, T.BABBLES]:
+            go_on(w, i)
+        else:
+            push(w, m[i, T.RING], i, arrival_of(w, i, finish, m[i, T.SAMPLED]), m[i, T.SAMPLED])
+    if w.buses[bus, T.STRIKES]:
+        strike(w, bus, end - 1)
     return T.DONE
 
 
@@ -100,15 +128,21 @@ def arrive(w: Wire, ring: int, k: int) -> int:
         i = w.flights[row, T.MESSAGE_OF]
         for byte in range(w.messages[i, T.LENGTH]):
             w.frame[byte] = w.flights[row, T.PAYLOAD + byte]
-        if deliver(w, i, k, w.flights[row, T.SAMPLE_TIME]) != T.DONE:
+        if deliver(w, i, k, w.flights[row, T.SAMPLE_TIME], w.flights[row, T.ARRIVAL]) != T.DONE:
             return T.RAISED
     return T.DONE
 
 
 def push(w: Wire, ring: int, i: int, arrival: int, sampled: int) -> None:
-    """Let the frame at hand, of message i, be under way until its arrival."""
-    r = w.rings
-    row = r[ring, T.START_ROW] + (r[ring, T.HEAD] + r[ring, T.COUNT]) % r[ring, T.ROWS]
+    """Let the frame at hand, of message i, be under way until its arrival, after all that are not later."""
+    r, behind = w.rings, w.rings[ring, T.COUNT]
+    row = flight_of(w, ring, behind)
+    while behind > 0 and w.flights[flight_of(w, ring, behind - 1), T.ARRIVAL] > arrival:
+        before = flight_of(w, ring, behind - 1)
+        for column in range(T.FLIGHT):
+            w.flights[row, column] = w.flights[before, column]
+        row = before
+        behind -= 1
     r[ring, T.COUNT] += 1
     w.flights[row, T.MESSAGE_OF], w.flights[row, T.ARRIVAL] = i, arrival
     w.flights[row, T.SAMPLE_TIME] = sampled
@@ -116,13 +150,26 @@ def push(w: Wire, ring: int, i: int, arrival: int, sampled: int) -> None:
         w.flights[row, T.PAYLOAD + byte] = w.frame[byte]
 
 
-def deliver(w: Wire, i: int, k: int, sampled: int) -> int:
-    """Give the frame at hand, of message i, to its receivers in step k; return DONE or RAISED."""
+def flight_of(w: Wire, ring: int, n: int) -> int:
+    """Return the row of flights of the n-th frame that is under way in a ring."""
+    r = w.rings
+    row: int = r[ring, T.START_ROW] + (r[ring, T.HEAD] + n) % r[ring, T.ROWS]
+    return row
+
+
+def deliver(w: Wire, i: int, k: int, sampled: int, time: int) -> int:
+    """Give the frame at hand, of message i, which arrives at a time, to its receivers.
+
+    Return DONE or RAISED.
+    """
     m = w.messages
     note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
     m[i, T.ARRIVED] += 1
     if hit(w, T.LOSE, i, sampled) >= 0:
         m[i, T.LOST] += 1
+        return T.DONE
+    w.state[T.ARRIVING] = time
+    if m[i, T.OWNED] and unheard(w, i):
         return T.DONE
     return unpack(w, i, k) if accepted(w, i) else T.DONE
 
@@ -149,6 +196,7 @@ def act(w: Wire, what: int, i: int, k: int) -> int:
     if what == T.ARRIVE:
         return arrive(w, i, k)
     if what == T.WATCH:
+        w.state[T.ARRIVING] = k * w.state[T.STEP_TIME]
         watch(w, i)
         return T.DONE
     return run_bus(w, i, k)

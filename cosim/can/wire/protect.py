@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..protection.counters import judged, nothing_new, taken
 from ..protection.profiles import P1C, P5, checksum, modulus
 from . import tables as T
+from .off import is_deaf
 from .payload import low_bits, put
 from .tables import Wire
 
@@ -82,11 +83,11 @@ def watch(w: Wire, i: int) -> None:
 
 
 def show(w: Wire, i: int, status: int) -> None:
-    """Count a status of message i, and write it to the inputs that get it."""
+    """Count a status of message i, and write it to the inputs that get it: no new data to one off the bus."""
     w.verdicts[i, status] += 1
     first = w.messages[i, T.FIRST_STATUS]
     for s in range(first, first + w.messages[i, T.STATUSES]):
-        w.memory[w.statuses[s]] = float(status)
+        w.memory[w.statuses[2 * s]] = 1.0 if is_deaf(w, w.statuses[2 * s + 1]) else float(status)
 
 
 def fall_back(w: Wire, i: int) -> None:

@@ -17,7 +17,7 @@ class Wire(NamedTuple):
 
     `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64, as
     `fallback`, which has a number for each row of sinks; `odds`, the probability of each fault;
-    `ids`, 16 data IDs of each message; `statuses`;
+    `ids`, 16 data IDs of each message; `statuses`, in pairs of an input's slot and its OWNER;
     `frame`, the bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double`
     (float64) with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
     """
@@ -79,9 +79,12 @@ step at present (`protection.counters`); the number of frames that were not take
 """Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
 it, and how often that was; 1 if a frame came, and was taken, since `watch` looked; STATUSES slots of inputs
 from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
-(KEPT, LOST, SILENCED) = range(53, 56)
-"""1 once `kept` has the last payload that was sent; frames that a fault took from receivers, or silenced."""
-MESSAGE = 56
+(KEPT, LOST, SILENCED, DELAYED, HELD, UNHEARD) = range(53, 59)
+"""1 once `kept` has the last payload that was sent; frames that a fault took from receivers, silenced, or
+made late; those that were sampled while their node was off the bus, and that arrived while a receiver was."""
+(BABBLES, OWNED) = range(59, 61)
+"""1 + the row of the fault whose frames they are, 0 for a message; 1 where a receiver has an OWNER."""
+MESSAGE = 61
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
 
@@ -102,11 +105,12 @@ raw value; the offset of decoding, -0.0 where there is none."""
 FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE, EXACT = range(6)
 """Kinds of a signal: by format or rounding; EXACT: integers that no double holds, which Python computes."""
 
-SLOT = 0
-SINK = 1
+SLOT, OWNER = range(2)
+SINK = 2
 FACTOR, ADDEND = range(2)
 MAP = 2
-"""Columns of sinks, the receiver's slot, and of maps, from the bus' unit to the receiver's."""
+"""Columns of sinks, the receiver's slot and the row of nodes of its node (-1: none that could be off the
+bus), and of maps, from the bus' unit to the receiver's."""
 
 BYTES = 64
 """Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
@@ -123,33 +127,41 @@ FLIGHT = PAYLOAD + BYTES
 """Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
 
 (FREE_AT, PENDING, DELAY, TIMED, FIRST_MESSAGE, MESSAGES, BIT, DATA_BIT, SEED, NAME, NOISY) = range(11)
-BUS_WIDTH = 11
+(BEGUN, STRIKES, OFF_NODES, TO_BABBLE) = range(11, 15)
+BUS_WIDTH = 15
 """Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
 end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on, in the order in which
-they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong.
+they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong;
+the start of the last frame; faults to come that take a node off the bus, nodes that are, and faults to come
+that babble.
 Row i of `chances`, float64, has the probability that n bits on bus i are not all right in column n."""
 
 (READY_AT, ERROR_COUNT, RECEIVE_COUNT, BUS_OF, BUS_OFFS) = range(5)
-NODE_WIDTH = 5
+(OFF_SINCE, OFF_UNTIL, OFF_BY, RECOVERY, HEARD_AT) = range(5, 10)
+NODE_WIDTH = 10
 """Columns of nodes: the time from which on it may send; the counters of errors as sender (TEC) and as
-receiver (REC); its bus; and how often it was bus-off."""
+receiver (REC); its bus; and how often it was bus-off. It was so the last time from OFF_SINCE to before
+OFF_UNTIL, by the fault of row OFF_BY - 1 (0: by its errors); while it is, RECOVERY times 11 recessive bits
+are left to be heard, which count from HEARD_AT on."""
 
 (LOG_STEP, LOG_TIME, LOG_MESSAGE, LOG_PAYLOAD) = range(4)
 LOG_WIDTH = LOG_PAYLOAD + 8
 """Columns of the log: the step in which the frame was sent, the time of its end, the message, and the
 payload, eight bytes in each word."""
 
-STEP_TIME, LOG_ROWS, FAULTS = range(3)
-STATE = 3
-"""Places in state: the time of a step; rows of the log in use; the number of faults."""
+STEP_TIME, LOG_ROWS, FAULTS, ARRIVING = range(4)
+STATE = 4
+"""Places in state: the time of a step; rows of the log in use; the number of faults; the time at which the
+frame at hand arrives."""
 
 (FAULT_KIND, FAULT_BUS, FAULT_KEY, FAULT_NODE, SINCE_TIME, UNTIL_TIME, LEFT, EACH, MET, HITS) = range(10)
-(FAULT_SEED, BYTE, MASK, COUNTER_TOO) = range(10, 14)
-FAULT_WIDTH = 14
+(FAULT_SEED, BYTE, MASK, COUNTER_TOO, AMOUNT) = range(10, 15)
+FAULT_WIDTH = 15
 """Columns of faults: bus and key of the message, or the node; its time; frames that it may still hit (-1:
 all) and each how many-th; those that it met, and hit; its seed; what it does to a byte; 1 if the counter is
-frozen."""
-LOSE, SILENCE, CORRUPT, FREEZE = range(4)
+frozen; how much later frames arrive, or the time between two that babble (0: back to back). Of BUS_OFF and
+BABBLE, MET is 1 once they have begun."""
+LOSE, SILENCE, CORRUPT, FREEZE, LATE, BUS_OFF, BABBLE = range(7)
 
 # ---- what Python is asked for, and what comes back
 

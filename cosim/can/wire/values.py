@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from . import tables as T
+from .off import is_deaf
 from .payload import high_bits, low_bits, put, whole, words
 from .tables import Wire
 
@@ -112,7 +113,9 @@ def raw_number(w: Wire, kind: int, low: int, high: int, bits: int, signed: int) 
 
 
 def receive(w: Wire, j: int, value: float) -> None:
-    """Write a value of signal j, in the bus' unit, to its receivers."""
+    """Write a value of signal j, in the bus' unit, to its receivers that are on the bus."""
     first = w.signals[j, T.FIRST_SINK]
     for s in range(first, first + w.signals[j, T.SINKS]):
+        if is_deaf(w, w.sinks[s, T.OWNER]):
+            continue
         w.memory[w.sinks[s, T.SLOT]] = w.maps[s, T.FACTOR] * value + w.maps[s, T.ADDEND]

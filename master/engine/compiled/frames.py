@@ -21,16 +21,17 @@ from numpy.typing import NDArray
 
 from ....cosim.can.protection import counters, profiles
 from ....cosim.can.timing import draws, lengths
-from ....cosim.can.wire import arbitration, faults, log, medium, payload, protect, tables, values
+from ....cosim.can.wire import arbitration, babble, faults, log, medium, off, payload, protect, tables, values
 from ....cosim.can.wire.tables import Wire
 from ...machine import access
 from ...machine.access import call_3
-from ..wire_tables import Arrays
+from ..fault_tables import Arrays
 from . import wire_types
 from .wire_types import BY_ANNOTATION, WORDS, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
-    draws, lengths, profiles, counters, payload, values, log, arbitration, protect, faults, medium,
+    draws, lengths, profiles, counters, payload, off, values, log, babble, arbitration, protect, faults,
+    medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
 SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access, wire_types)

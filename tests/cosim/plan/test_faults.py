@@ -8,6 +8,7 @@ import pytest
 from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.plan.faults import FOREVER
+from evcosim.master.prepare import prepare
 from evcosim.master.simulation import Simulation
 from support.timed import timed
 
@@ -104,7 +105,7 @@ def test_without_a_duration_it_lasts_to_the_end():
         ('node = "can0.EMD"\nmessage = "can0.EMD_Status"', "a 'message' or a 'node', and not both"),
         ("", "a 'message' or a 'node', and not both"),
         ('message = "can0.EMD_Status"\nprobability = 1.5', "probability"),
-        ('message = "can0.EMD_Status"\nbyte = 1', "'byte' says which one 'corrupt' acts on"),
+        ('message = "can0.EMD_Status"\nbyte = 1', 'byte: unknown key with action = "lose"'),
     ],
 )
 def test_what_a_fault_cannot_hit_is_refused(tmp_path, fault, reason):
@@ -125,3 +126,166 @@ def test_values_that_are_not_quantized_have_no_faults(tmp_path):
             'action = "lose"\ntime = 0.0\nmessage = "can0.VCU_Request"\n',
             bus=BusVariation(resolution="ideal"),
         )
+
+
+# ---- delay, bus_off and babble
+
+
+def both(tmp_path, fault: str, system="scooter", **options):
+    """A run in both engines, which are equal, also in what was counted."""
+    runs = [ran(tmp_path, fault, engine, system, **options) for engine in ("python", "compiled")]
+    assert runs[0][1] == runs[1][1]
+    for name, column in runs[0][0].items():
+        assert np.array_equal(column, runs[1][0][name], equal_nan=True), name
+    return runs[1]
+
+
+@pytest.mark.parametrize("by", [0.01, 0.03])
+def test_late_frames_are_those_of_a_bus_with_that_delay(tmp_path, by):
+    fault = f'action = "delay"\ntime = 0.0\nby = {by}\nnode = "can0.'
+    late, messages = both(tmp_path, f'{fault}EMD"\n[[fault]]\n{fault}VCU"')
+    expected, _ = ran(tmp_path, "", delay=by)
+    for name, column in expected.items():
+        assert np.array_equal(column, late[name]), name
+    assert messages["EMD_Status"]["delayed"] == 100
+
+
+@pytest.mark.parametrize("system", ["scooter", "timed"])
+def test_a_late_frame_comes_after_newer_ones(tmp_path, system):
+    """The frame sampled at 0.3 s alone is 25 ms late: it takes the place of the one that came before it."""
+    of = timed("scooter") if system == "timed" else system
+    before, _ = ran(tmp_path, "", system=of)
+    found, messages = both(
+        tmp_path, 'action = "delay"\ntime = 0.3\nduration = 0.01\nby = 0.025\nmessage = "can0.EMD_Status"', of
+    )
+    lag = 1 if system == "timed" else 0
+    expected = before[SPEED].copy()
+    expected[30 + lag] = before[SPEED][29 + lag]
+    expected[33 : 33 + lag] = before[SPEED][30 + lag]
+    assert np.array_equal(found[SPEED][:33], expected[:33])
+    assert messages["EMD_Status"]["delayed"] == 1
+
+
+@pytest.mark.parametrize("system", ["scooter", "timed"])
+def test_a_node_off_the_bus_sends_and_receives_nothing(tmp_path, system):
+    of = timed("scooter") if system == "timed" else system
+    found, messages = both(tmp_path, 'action = "bus_off"\ntime = 0.3\nduration = 0.2\nnode = "can0.EMD"', of)
+    throttle = "vehicle.throttle"
+    last = 30 if system == "timed" else 29
+    assert (found[SPEED][last : 50 + 1] == found[SPEED][last]).all()
+    assert (found[throttle][last:50] == found[throttle][last]).all()
+    assert found[SPEED][-1] != found[SPEED][last]
+    assert messages["EMD_Status"]["held"] == 21  # 20, and one in the 128 x 11 bits of 2 us behind them
+    assert messages["VCU_Request"]["unheard"] == 21
+
+
+def test_a_node_that_stays_off(tmp_path):
+    found, messages = both(tmp_path, 'action = "bus_off"\ntime = 0.3\nnode = "can0.EMD"')
+    assert (found[SPEED][29:] == found[SPEED][29]).all()
+    assert messages["EMD_Status"]["held"] == 70
+
+
+def test_a_babbling_node_starves_all_others_and_fills_the_bus(tmp_path):
+    fault = 'action = "babble"\ntime = 0.3\nduration = 0.2\nbus = "can0"'
+    found, messages = both(tmp_path, fault, timed("scooter"))
+    assert (found[SPEED][31:51] == found[SPEED][31]).all()
+    assert found[SPEED][-1] != found[SPEED][31]
+    own = messages["fault_1_0x0"]
+    assert own["load"] == pytest.approx(0.2, abs=0.001)
+    assert messages["EMD_Status"]["replaced"] == 20
+
+
+def test_faults_are_in_the_manifest_with_the_frames_that_they_hit(tmp_path):
+    text = """action = "lose"
+time = 0.5
+duration = 0.1
+message = "can0.EMD_Status"
+[[fault]]
+action = "corrupt"
+time = 0.2
+byte = 0
+mask = 1
+message = "can0.EMD_Status"
+count = 3
+[[fault]]
+action = "corrupt"
+time = 0.2
+byte = 1
+message = "can0.EMD_Status"
+every = 10
+"""
+    (tmp_path / "faults.toml").write_text(SCENARIO + text)
+    with Simulation("scooter", tmp_path / "faults.toml", isolation="none") as run:
+        run.step(100)
+        found = run.manifest()["faults"]
+    assert [(each["action"], each["on"], each["frames"]) for each in found] == [
+        ("lose", "can0.EMD_Status", 10),
+        ("corrupt", "can0.EMD_Status", 3),
+        ("corrupt", "can0.EMD_Status", 8),  # two faults at once, each with a byte of its own
+    ]
+    assert found[1]["mask"] == 1
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [
+        ('action = "babble"\nbus = "can0"', 'fault 1.action: bus can0 has timing = "instant"'),
+        ('action = "babble"\nbus = "can1"', "fault 1.bus: nothing is sent on 'can1' (did you mean 'can0'?)"),
+        ('action = "bus_off"\nnode = "can0.EMS"', "fault 1.node: nothing is sent by 'can0.EMS'"),
+        (
+            'action = "bus_off"\nnode = "can0.EMD"\n'
+            '[[fault]]\ntime = 9.0\naction = "bus_off"\nnode = "can0.EMD"',
+            "fault 2: it overlaps fault 1, bus_off of can0.EMD",
+        ),
+        (
+            'action = "delay"\nby = 1.0\nnode = "can0.EMD"\n'
+            '[[fault]]\ntime = 9.0\naction = "delay"\nby = 2.0\nmessage = "can0.EMD_Status"',
+            "fault 2: it overlaps fault 1, delay of can0.EMD",
+        ),
+    ],
+)
+def test_what_delay_bus_off_and_babble_cannot_do_is_refused(tmp_path, fault, reason):
+    with pytest.raises(ConfigError) as error:
+        ran(tmp_path, f"time = 0.0\n{fault}\n")
+    assert reason in str(error.value)
+
+
+def test_an_identifier_that_is_sent_cannot_babble(tmp_path):
+    with pytest.raises(
+        ConfigError, match=r"fault 1.id: 0x148 is the identifier of can0.EMD_Status, which is"
+    ):
+        ran(tmp_path, 'time = 0.0\naction = "babble"\nbus = "can0"\nid = 328', system=timed("scooter"))
+
+
+def test_a_fault_that_never_acts_and_an_ideal_run_say_so(tmp_path):
+    fault = 'action = "lose"\nmessage = "can0.EMD_Status"\ntime = '
+    (tmp_path / "faults.toml").write_text(f"{SCENARIO}{fault}99.0\n[[fault]]\n{fault}-2.0\nduration = 1.0")
+    said = " ".join(prepare("scooter", tmp_path / "faults.toml").plan.unreached)
+    assert "fault 1, lose of can0.EMD_Status at t = 99 s, never acts: the stop time" in said
+    assert "fault 2, lose of can0.EMD_Status at t = -2 s, never acts: it ends before the start" in said
+    with Simulation("scooter", tmp_path / "faults.toml", isolation="none", ideal=True) as run:
+        assert any("without buses: its 2 faults on buses are left out" in text for text in run.warnings)
+        assert run.manifest()["faults"] == []
+
+
+HOSTILE = [1e308, -1e308, 5e-324, 1e12, -1e12, 0, -1, 1, 1e-10, 3600.0, 2**63, 2**62, -(2**63) - 1]
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        'action = "delay"\ntime = 0.02\nduration = 0.05\nby = 0.02\nmessage = "can0.EMD_Status"\nevery = 2\n',
+        'action = "bus_off"\ntime = 0.02\nduration = 0.05\nnode = "can0.EMD"\n',
+        'action = "babble"\ntime = 0.02\nduration = 0.05\nbus = "can0"\nid = 3\nlength = 4\nperiod = 0.001\n',
+    ],
+)
+def test_hostile_numbers_are_used_or_refused(tmp_path, fault):
+    keys = [line.split(" = ") for line in fault.splitlines() if '"' not in line]
+    system = timed("scooter")
+    for key, given in keys:
+        for value in HOSTILE:
+            text = fault.replace(f"{key} = {given}", f"{key} = {value}")
+            try:
+                ran(tmp_path, text, "python", system, steps=12)
+            except ConfigError as error:
+                assert f"fault 1: {key} = " in str(error) or f"fault 1.{key}" in str(error)

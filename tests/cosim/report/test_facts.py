@@ -85,7 +85,11 @@ def test_the_command_and_the_files():
 
 def test_events_in_words():
     events = [{"time": 1.0, "action": "override", "variable": "a.b", "value": True}, {"time": "x"}]
-    assert facts.events_of({"events": events}) == [(1.0, "override a.b = true")]
+    faults = [{"time": 2.0, "action": "lose", "on": "can0.M", "frames": 50}, {"time": 3.0}]
+    assert facts.events_of({"events": events, "faults": faults}) == [
+        (1.0, "override a.b = true"),
+        (2.0, "lose can0.M (50 frames)"),
+    ]
 
 
 @pytest.mark.parametrize(

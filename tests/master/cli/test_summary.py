@@ -41,6 +41,18 @@ def test_run_reports_saturation(evcosim, system, tmp_path):
     assert about == {"count": 79, "first_time": pytest.approx(0.21)}
 
 
+def test_a_run_says_what_its_faults_hit(evcosim, tmp_path):
+    fault = '[[fault]]\naction = "lose"\nmessage = "can0.EMD_Status"\ntime = '
+    (tmp_path / "lost.toml").write_text(f"{fault}0.5\nduration = 0.2\n{fault}99.0\n")
+    answer = evcosim("run", "scooter", "--scenario", tmp_path / "lost.toml", "--stop-time", "1", "--no-plot")
+    assert "lose can0.EMD_Status at 0.5 s for 0.2 s: 20 frames\n" in answer.out
+    assert "lose can0.EMD_Status at 99 s: no frame\n" in answer.out
+    data = evcosim(
+        "run", "scooter", "--scenario", tmp_path / "lost.toml", "--stop-time", "1", "--no-plot", "--json"
+    )
+    assert [fault["frames"] for fault in data.json["faults"]] == [20, 0]
+
+
 def test_a_run_says_what_is_isolated_where_results_are_and_what_to_type_next(evcosim, tmp_path):
     shown = evcosim("run", "scooter", "--stop-time", "1", "--no-plot").out
     assert "isolated  none\n" in shown

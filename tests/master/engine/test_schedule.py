@@ -15,6 +15,7 @@ def message(after=None, every=1, first=0, delay=0, width=2, **more):
         "framing": None,
         "timed": False,
         "watched": False,
+        "latest": 0,
         "settings": SimpleNamespace(delay=0.015),
     } | more
     return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals, **values)
@@ -69,6 +70,15 @@ def test_a_message_is_watched_once_a_cycle_behind_what_brings_it():
     actions = schedule(plan(messages=[timed], timed=("a",)))
     assert words(actions).startswith("arrive0 watch0 send0 take0")
     assert actions[1] == Action("watch", 0, 5, 2 + 5 + 2)  # a cycle and the bus' delay after the first one
+
+
+def test_frames_that_a_fault_makes_late_arrive_at_any_step_before_newer_ones():
+    here = message(every=5, first=2, watched=True, framing=1, latest=10**9)
+    delayed = message(every=5, first=2, delay=3, framing=1, latest=10**9)
+    actions = schedule(plan(messages=[here, delayed]))
+    assert words(actions).startswith("deliver0 send0 watch0 deliver1 send1 take0")
+    assert actions[0] == Action("deliver", 0, 1, 2)
+    assert actions[3] == Action("deliver", 1, 1, 5)
 
 
 def test_gauss_seidel_sends_first_then_takes_each_unit_with_its_discrete_messages():

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,14 +17,17 @@ from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.framing import framing_of
 from evcosim.cosim.can.timing.draws import drawn
 from evcosim.cosim.can.wire import tables as T
-from evcosim.cosim.plan.plan import MessagePlan
+from evcosim.cosim.plan.faults import babblers, framed, planned
+from evcosim.cosim.plan.plan import FaultPlan, MessagePlan
+from evcosim.cosim.system.fault_spec import Babble, BusOff, Delay, Fault
 from evcosim.cosim.system.system import system_names
 from evcosim.cosim.units.measure import Affine
+from evcosim.master.engine.fault_tables import hits_of
 from evcosim.master.engine.frame_path import FramePath
 from evcosim.master.engine.schedule import Action
 from evcosim.master.engine.sender import Sender
 from evcosim.master.simulation import Simulation
-from support.bus_oracle import Sent, carried
+from support.bus_oracle import Babbler, Frame, Off, Sent, carried
 from support.timed import timed
 
 STEPS, STEP = 30, 1e-3
@@ -53,23 +58,56 @@ def buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], BusSet
     return messages, times, use
 
 
-def path_of(messages, times, use) -> tuple[FramePath, np.ndarray]:
+def path_of(messages, times, use, faults) -> tuple[FramePath, np.ndarray, Sequence[FaultPlan]]:
     """The frame path: message i is sampled from slot i and received in the slot behind all of those."""
     memory = np.zeros(2 * len(messages))
-    senders = []
+    plans = []
     for i, (message, (every, first)) in enumerate(zip(messages, times, strict=True)):
         routes = (SignalRoute(message.signals["S"], i, Affine(), ((len(messages) + i, Affine()),)),)
-        plan = MessagePlan("can0", message, use, routes, {"S": "a.y"}, every, first, None,
-                           framing=framing_of(message, use))  # fmt: skip # one call
-        senders.append(Sender(plan, MessageChannel(message, routes, use), memoryview(memory), None))
-    return FramePath(senders, memory, STEP, logs=True), memory
+        plans.append(MessagePlan("can0", message, use, routes, {"S": "a.y"}, every, first, None,
+                                 framing=framing_of(message, use)))  # fmt: skip # one call
+    found = planned(faults, plans, 0.0, "test.toml")
+    plans = [*framed(plans, found), *babblers(found, plans)]
+    senders = [
+        Sender(plan, MessageChannel(plan.message, plan.routes, use), memoryview(memory), None)
+        for plan in plans
+    ]
+    return FramePath(senders, memory, STEP, logs=True, faults=found), memory, found
 
 
-@settings(deadline=None, max_examples=60)
-@given(buses(), st.integers(0, 2**32))
+def faults_of(draw: st.DrawFn, messages: list[Message]) -> list[Fault]:
+    """Late frames of the first message, the node A off the bus, and an identifier that nobody else has."""
+    times = {"time": draw(st.integers(0, 20)) / 1e3 + draw(st.sampled_from([0.0, 3.3e-4]))}
+    times["duration"] = draw(st.integers(1, 12)) / 1e3 - draw(st.sampled_from([0.0, 4.7e-4]))
+    found: list[Fault] = []
+    if draw(st.booleans()):
+        late = draw(st.sampled_from([3e-4, 2e-3, 5.1e-3]))
+        found.append(Delay(action="delay", message="can0.M0", by=late, **times))
+    if draw(st.booleans()):
+        found.append(BusOff(action="bus_off", node="can0.A", **times))
+    if draw(st.booleans()):
+        taken = {m.frame_id for m in messages if not m.extended}
+        number = next(i for i in range(draw(st.sampled_from([0, 0x400])), 0x7FF) if i not in taken)
+        period = draw(st.sampled_from([None, 1e-4, 7.3e-4, 2e-3]))
+        where = draw(st.sampled_from([{"bus": "can0"}, {"node": "can0.A"}]))
+        length = draw(st.integers(0, 8))
+        found.append(Babble(action="babble", id=number, period=period, length=length, **where, **times))
+    return found
+
+
+@st.composite
+def faulty_buses(draw: st.DrawFn) -> tuple[Any, ...]:
+    """A bus of `buses`, whose messages are of the nodes A and B in turn, and faults on it."""
+    messages, times, use = draw(buses())
+    messages = [dataclasses.replace(m, senders=("AB"[i % 2],)) for i, m in enumerate(messages)]
+    return messages, times, use, faults_of(draw, messages)
+
+
+@settings(deadline=None, max_examples=80)
+@given(faulty_buses(), st.integers(0, 2**32))
 def test_who_is_carried_when_and_what_is_seen(case, seed):
-    messages, times, use = case
-    path, memory = path_of(messages, times, use)
+    messages, times, use, faults = case
+    path, memory, plans = path_of(messages, times, use, faults)
     values = np.random.default_rng(seed).integers(0, 2**48, (STEPS, len(messages)))
     values %= [1 << 8 * m.length for m in messages]
     received = np.zeros((STEPS, len(messages)))
@@ -82,7 +120,7 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
                 path.act(*path.operation(Action("send", i)), k)
         path.act(*path.operation(Action("contend", 0)), k)
     sent = [
-        Sent(m.name, m.frame_id, m.extended, every, first, round(use.jitter * 1e12))
+        Sent(m.name, m.frame_id, m.extended, every, first, round(use.jitter * 1e12), m.senders[0])
         for m, (every, first) in zip(messages, times, strict=True)
     ]
     payloads = {
@@ -90,22 +128,60 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
         for i, m in enumerate(messages)
         for k in range(STEPS)
     }
+    offs, babbling, late = of_the_oracle(plans)
     name = int(path.arrays["buses"][0, T.NAME])
     expected = carried(
         sent, payloads, STEPS, 10**9, round(1e12 / use.bitrate),
-        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1),
+        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1), offs, babbling,
     )  # fmt: skip # one call
     log = path.log_of("can0").frames
     assert [(end, m.name, data) for _, end, m, data in log.frames()] == [
         (frame.end, frame.message.name, frame.payload) for frame in expected
     ]
-    counts = {row[T.ID]: row for row in path.arrays["messages"].tolist()}
-    assert [counts[s.identifier][T.REPLACED] for s in sent] == [s.replaced for s in sent]
-    for k, (i, m) in itertools.product(range(STEPS), enumerate(messages)):
-        seen = [
-            f for f in expected if f.message.name == m.name and f.end + round(use.delay * 1e12) <= k * 10**9
-        ]
-        assert received[k, i] == (int.from_bytes(seen[-1].payload, "little") if seen else 0.0)
+    rows = {(row[T.ID], row[T.EXTENDED]): row for row in path.arrays["messages"].tolist()}
+    assert [rows[s.identifier, s.extended][T.REPLACED] for s in sent] == [s.replaced for s in sent]
+
+    def arrival(frame: Frame) -> int:
+        hit = frame.message.name == "M0" and late and late.since <= frame.sampled < late.until
+        return frame.end + round(use.delay * 1e12) + (round(late.fault.by * 1e12) if hit else 0)
+
+    for i, m in enumerate(messages):
+        frames = sorted((f for f in expected if f.message.name == m.name), key=lambda f: (arrival(f), f.end))
+        for k in range(STEPS):
+            seen = [f for f in frames if arrival(f) <= k * 10**9]
+            assert received[k, i] == (int.from_bytes(seen[-1].payload, "little") if seen else 0.0)
+    counted = hits_of(path.arrays, plans)
+    for n, plan in enumerate(plans):
+        match plan.fault:
+            case Babble():
+                assert counted[n] == sum(f.message.name == plan.message for f in expected)
+            case Delay():
+                assert counted[n] == sum(
+                    f.message.name == "M0" and plan.since <= f.sampled < plan.until for f in expected
+                )
+            case BusOff():
+                bit = round(1e12 / use.bitrate)
+                back = offs[0].back([f for f in expected if f.start < offs[0].back(expected, bit)], bit)
+                away = [k for k in range(STEPS) if plan.since <= k * 10**9 < back]
+                due = sum((k - first) % every == 0 and k >= first for k in away for m, (every, first) in
+                          zip(messages, times, strict=True) if m.senders[0] == "A")  # fmt: skip # one call
+                assert counted[n] == due
+
+
+def of_the_oracle(plans: Sequence[FaultPlan]) -> tuple[list[Off], list[Babbler], FaultPlan | None]:
+    """The faults in the words of the oracle; those that make frames late as they are."""
+    offs, babblers, late = [], [], None
+    for plan in plans:
+        match plan.fault:
+            case BusOff():
+                offs.append(Off(plan.node, plan.since, plan.until))
+            case Babble() as fault:
+                message = Sent(plan.message, fault.id, fault.extended, 1, 0, 0, plan.node or "nobody else")
+                period = round((fault.period or 0.0) * 1e12)
+                babblers.append(Babbler(message, fault.length, plan.since, plan.until, period))
+            case Delay():
+                late = plan
+    return offs, babblers, late
 
 
 def ran(tmp_path, engine, system, **options):
