@@ -49,7 +49,7 @@ class BusTimes:
             times = [f"{1e3 * latency[key]:.3f}" if latency else "-" for key in ("min", "mean", "max")]
             bound = "none" if message.response is None else f"{1e3 * message.response:.3f}"
             share = f"{message.least:.1%} to {message.most:.1%}"
-            head = (message.name, identifier, f"{1e3 * message.cycle:g}", str(message.length))
+            head = (message.name, identifier, message.every, str(message.length))
             found.append((*head, share, *times, bound))
         return found
 

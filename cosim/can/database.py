@@ -32,6 +32,8 @@ class Signal:
     is no value. A frame holds a multiplexed signal where the raw value of its `multiplexer` is in one of the
     `multiplexer_ranges`, both ends included; "" and () for a signal of all frames.
 
+    `send_type` is the text of the attribute GenSigSendType, `inactive_raw` the raw value at which a message
+    that is sent if it is active is not (None: `start_raw`).
     `problem` is why the signal cannot be used, "" for nothing; `note` what its user should know; `line` is
     where it stands in the file, 0 where that has no lines.
     """
@@ -55,6 +57,8 @@ class Signal:
     is_multiplexer: bool = False
     comment: str = ""
     receivers: tuple[str, ...] = ()
+    send_type: str = ""
+    inactive_raw: float | int | None = None
     problem: str = ""
     note: str = dataclasses.field(default="", compare=False)
     line: int = dataclasses.field(default=0, compare=False)
@@ -96,8 +100,9 @@ class Message:
 
     `length` is in bytes, `cycle_time` (None: not sent cyclically) and `start_delay` are in s. `file` is
     where the message stands, for error messages. `j1939` is True for a parameter group: more than 8 bytes
-    are several frames then, and no CAN FD. `send_type` is the text of the attribute GenMsgSendType, and
-    `attributes` are the texts of all that the file gives the message itself.
+    are several frames then, and no CAN FD. `send_type` is the text of the attribute GenMsgSendType,
+    `min_interval` and `fast_cycle` [s] the times of GenMsgDelayTime and GenMsgCycleTimeFast, and `attributes`
+    are the texts of all that the file gives the message itself.
 
     `problem` and `line` are as those of a signal; `unread` are the names of signals that could not be read,
     each with the reason.
@@ -116,6 +121,8 @@ class Message:
     j1939: bool = False
     comment: str = ""
     send_type: str = ""
+    min_interval: float = 0.0
+    fast_cycle: float | None = None
     attributes: dict[str, str] = dataclasses.field(default_factory=dict)
     unread: dict[str, str] = dataclasses.field(default_factory=dict)
     problem: str = ""

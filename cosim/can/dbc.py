@@ -88,6 +88,8 @@ class _Reader:
             j1939=j1939,
             comment=self.entries.comments.get((dbc_id, ""), ""),
             send_type=self._choice((dbc_id, ""), "GenMsgSendType", []),
+            min_interval=self._seconds("GenMsgDelayTime") or 0.0,
+            fast_cycle=self._seconds("GenMsgCycleTimeFast") or None,
             attributes={
                 name: value.value for name, value in self.entries.attributes.get((dbc_id, ""), {}).items()
             },
@@ -122,6 +124,8 @@ class _Reader:
             is_multiplexer=s.marker.endswith("M"),
             comment=self.entries.comments.get(key, ""),
             receivers=s.receivers,
+            send_type=self._choice(key, "GenSigSendType", []),
+            inactive_raw=self._number(key, "GenSigInactiveValue", default=False),
             line=s.line,
             problem=self.entries.broken.get(key, "") or problem,
         )

@@ -13,6 +13,8 @@ SLOWEST = 3600.0
 """The longest cycle time and start delay [s] that a system file gives a message."""
 
 
+SendType = Literal["cyclic", "on_change", "cyclic_and_on_change", "if_active", "on_write"]
+
 _DataId = Annotated[int, Field(ge=0, le=0xFFFF)]
 
 
@@ -52,6 +54,15 @@ class MessageSettings(BaseModel):
 
     jitter: float | None = Field(default=None, ge=0.0, le=SLOWEST)
     """Longest time in s from the sampling to the queue, with `timing = "frame"`; without it the bus' own."""
+
+    send_type: SendType | None = None
+    """When it is sent: each cycle (cyclic), when its bits have changed since the last look (on_change), both
+    (cyclic_and_on_change), each cycle while a signal is not at its inactive value (if_active), with each step
+    of its sender (on_write); without it that of the database, but cyclic with a `cycle_time` here."""
+
+    min_interval: float | None = Field(default=None, gt=0.0, le=SLOWEST)
+    """Least time in s from one frame to the next where it is not cyclic, a multiple of the communication
+    step; without it that of the database."""
 
     start_delay: float | None = Field(default=None, ge=0.0, le=SLOWEST)
     """Time of the first transmission after the start in s; without it that of the database, else 0."""

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
+from ..can.message_settings import SendType
 from ..can.timing.arbitration import arbitration_key
 from ..can.timing.lengths import INTERFRAME, least_bits, most_bits
 from ..can.timing.response_times import Sent, response_times
@@ -21,6 +22,8 @@ class MessageLoad:
     """A message of a bus: `cycle` [s], payload `length` [bytes], and what its frames take.
 
     `least` and `most` are the shares of the time that frames without stuff bits and the longest ones take,
+    By `send_type` it may be sent less often: `cycle` then is the least time between two frames, and with
+    `bounded` false no minimum interval says that, but the communication step.
     `longest` [s] the time of the longest one with the interframe space, `response` [s] the longest time from
     sampling to the end of the frame under any phases of the others; None: it has no bound.
     """
@@ -34,6 +37,15 @@ class MessageLoad:
     most: float
     longest: float
     response: float | None
+    send_type: SendType = "cyclic"
+    bounded: bool = True
+
+    @property
+    def every(self) -> str:
+        """The cycle in ms as text; of a message that may be sent less often, with its send type."""
+        if self.send_type == "cyclic":
+            return f"{1e3 * self.cycle:g}"
+        return f"{self.send_type}, {'' if self.bounded else 'no min_interval: '}>= {1e3 * self.cycle:g}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +112,9 @@ def _load(bus: str, groups: Sequence[Sequence[MessagePlan]], step: float) -> Bus
     bit = round(_SECOND / settings.bitrate)
     sent, about = [], {}
     for plans in groups:
-        message, cycle = plans[0].message, plans[0].every // len(plans) * picoseconds(step)
+        message, one = plans[0].message, plans[0]
+        apart = max(one.every // len(plans), one.sending.interval)
+        cycle, regular = apart * picoseconds(step), _regular(one, len(plans)) * picoseconds(step)
         fast = round(_SECOND / (settings.data_bitrate or settings.bitrate))
         kind = (
             message.extended,
@@ -115,16 +129,25 @@ def _load(bus: str, groups: Sequence[Sequence[MessagePlan]], step: float) -> Bus
         key = arbitration_key(message.frame_id, message.extended)
         jitter = picoseconds(settings.jitter_of(message.name))
         sent.append(Sent(message.name, key, most, cycle, jitter))
-        about[message.name] = message, cycle, least, most
+        about[message.name] = one, cycle, least / regular if regular else 0.0, most
     responses = response_times(sent, bit, INTERFRAME * bit)
     rows = []
     for each in sorted(sent, key=lambda s: s.key):
-        message, cycle, least, most = about[each.name]
+        one, cycle, share, most = about[each.name]
+        message = one.message
         response = responses[each.name]
         rows.append(
             MessageLoad(
-                each.name, message.frame_id, message.extended, message.length, cycle / _SECOND, least / cycle,
+                each.name, message.frame_id, message.extended, message.length, cycle / _SECOND, share,
                 most / cycle, most / _SECOND, None if response is None else response / _SECOND,
+                one.sending.kind, one.sending.kind == "cyclic" or one.sending.interval > 0,
             )
         )  # fmt: skip # fields of a row
     return BusLoad(bus, settings.bitrate, tuple(rows))
+
+
+def _regular(plan: MessagePlan, pages: int) -> int:
+    """Return the cycle in steps in which a frame of a message is sent in any case; 0: there is none."""
+    if plan.sending.kind == "cyclic":
+        return plan.every // pages
+    return plan.cycle if plan.sending.regular else 0

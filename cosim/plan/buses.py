@@ -101,30 +101,5 @@ def foreign_senders(
     return list(dict.fromkeys(warnings))
 
 
-_CYCLIC = {
-    "",
-    "cyclic",
-    "cyclicx",
-    "periodic",
-    "fixedperiodic",
-    "nomsgsendtype",
-    "notused",
-    "vector_leerstring",
-}
-"""Send types of databases, in small letters, of messages that are sent at each cycle, or that say nothing."""
-
-
-def other_send_types(messages: Iterable[MessagePlan]) -> list[str]:
-    """Return a warning for each message that the database has not sent at each cycle, as these are."""
-    return list(
-        dict.fromkeys(
-            f"{plan.message.file}: {plan.bus}.{plan.message.name} has the send type "
-            f"{plan.message.send_type}, which is not simulated: it is sent at each cycle"
-            for plan in messages
-            if plan.message.send_type.casefold() not in _CYCLIC
-        )
-    )
-
-
 def _and(names: Iterable[str]) -> str:
     return " and ".join(names)

@@ -8,11 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
-from ..can.framing import check_jitter, framing_of
+from ..can.framing import Framing, check_jitter, framing_of
 from ..can.limits import notes_on
 from ..can.pages import pages
 from ..can.resolution import with_resolution
-from ..can.send_steps import send_steps
 from ..clock import Clock
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
@@ -22,8 +21,9 @@ from ..system.values import as_double, of_type
 from ..texts import Texts
 from ..units.definition import names_difference
 from ..units.measure import Affine
-from .buses import check_one_sender, foreign_senders, open_buses, other_send_types
+from .buses import check_one_sender, foreign_senders, open_buses
 from .plan import InputPlan, Link, MessagePlan
+from .sendings import Turns, other_send_types, send_times, staged
 from .slots import Slots
 from .steps import steps_in
 from .type_rules import check_boolean, check_no_text, check_types
@@ -86,7 +86,7 @@ class _Connector:
     interfaces: Mapping[str, UnitInterface]
     slots: Slots
     network: Network
-    every: Mapping[str, int]
+    turns: Turns
     ideal: bool
     databases: dict[str, Database] = dataclasses.field(default_factory=dict)
     senders: dict[tuple[str, str], dict[str, str]] = dataclasses.field(default_factory=dict)
@@ -97,17 +97,17 @@ def connect(
     system: System,
     interfaces: Mapping[str, UnitInterface],
     slots: Slots,
-    every: Mapping[str, int],
+    turns: Turns,
     clock: Clock,
     algorithm: Algorithm,
     ideal: bool,
 ) -> Network:
-    """Return the resolved connections of the participating units; `every` is each unit's period in steps.
+    """Return the resolved connections of the participating units; `turns` are the units' periods and offsets.
 
     A connection of a unit that was left out is dropped; with `ideal` a bus signal becomes a direct
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
     """
-    work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), every, ideal)
+    work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), turns, ideal)
     work.databases.update(open_buses(system, work.network.warnings))
     for connection in system.file.connect:
         _check_names(connection, system)
@@ -115,7 +115,9 @@ def connect(
     order = list(interfaces)
     for (bus, message), routes in work.signal_routes.items():
         work.network.messages += _message(work, bus, message, routes, clock.step, algorithm, order)
-    work.network.warnings += other_send_types(work.network.messages)
+    work.network.warnings += other_send_types(
+        (m.bus, m.message, m.settings, bool(m.page)) for m in work.network.messages
+    )
     work.network.warnings += foreign_senders(work.network.messages, system, work.databases)
     return work.network
 
@@ -216,7 +218,9 @@ def _direct(
     check_types(source, sender, sink, receiver, place)
     slot = work.slots.valid[sink]
     work.network.drive(".".join(sink), InputPlan(slot, None, ".".join(source)), place)
-    work.network.routes[sink[0]].append(Route(work.slots.source(*source, work.every[source[0]]), slot, map_))
+    work.network.routes[sink[0]].append(
+        Route(work.slots.source(*source, work.turns[source[0]][0]), slot, map_)
+    )
     work.network.links.append(Link(source, sink, map_))
 
 
@@ -316,16 +320,12 @@ def _message(
     """
     settings = work.system.file.buses[bus]
     message = as_sent(work.databases[bus].require(name), settings)
-    every, first = send_steps(message, step_size, str(work.system.path), bus)
-    delay = 0
-    if settings.timing == "instant":
-        delay = steps_in(settings.delay, step_size, f"{work.system.path}: buses.{bus}.delay")
-    where = f"{work.system.path}: buses.{bus}"
+    path, where = str(work.system.path), f"{work.system.path}: buses.{bus}"
+    delay = steps_in(settings.delay, step_size, f"{where}.delay") if settings.timing == "instant" else 0
     framing = framing_of(message, settings, [route.signal.name for route in routes], where)
     if framing is not None:
         own = settings.of_message(name)
         framing = dataclasses.replace(framing, status=_status_inputs(work, own.status, message, where))
-    check_jitter(message, settings, every * settings.cycle * step_size, f"{work.system.path}: buses.{bus}")
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -335,12 +335,17 @@ def _message(
             if work.interfaces[unit].variables[variable].sampled
         ]
         after = max(sampled, default=None)
-    turns = pages(message, [route.signal.name for route in routes], str(work.system.path))
+    turns = pages(message, [route.signal.name for route in routes], path)
+    units = (sender.split(".")[0] for sender in senders.values())
+    times = send_times(message, settings, units, work.turns, step_size, path, bus, len(turns))
+    if times.sending.kind != "cyclic":
+        framing = framing or Framing()
+    check_jitter(message, settings, times.apart * step_size, where)
     for i, page in enumerate(turns):
         arrivals: list[tuple[int, int]] = []
         of_page = [route for route in routes if route.signal.name in page.signals]
         if delay and framing is None:
-            of_page = [_staged(work.slots, route, arrivals) for route in of_page]
+            of_page = [staged(work.slots, route, arrivals) for route in of_page]
         sent = page.of(message)
         yield MessagePlan(
             bus=bus,
@@ -350,13 +355,14 @@ def _message(
             settings=settings,
             routes=tuple(of_page),
             senders={route.signal.name: senders[route.signal.name] for route in of_page},
-            every=every * settings.cycle * len(turns),
-            first=first + i * every * settings.cycle,
+            every=times.every * len(turns),
+            first=times.first + i * times.every,
             after=after,
             delay=delay,
             arrivals=tuple(arrivals),
             framing=framing,
             page=page.selected,
+            sending=times.sending,
         )
 
 
@@ -373,13 +379,6 @@ def _status_inputs(work: _Connector, names: Sequence[str], message: Message, pla
             work.network.drive(full, InputPlan(work.slots.valid[unit, name], None, ""), place)
             found.append(work.network.add_mailbox(unit, name, work.slots, f"the status of {message.name}"))
     return tuple(found)
-
-
-def _staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
-    """Return the route into slots of its own; add the pairs of these and the mailboxes to `arrivals`."""
-    sinks = [(slots.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
-    arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
-    return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))
 
 
 def _variable(work: _Connector, name: tuple[str, str]) -> VariableInfo:

@@ -22,6 +22,7 @@ from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.database import Message
 from ..can.framing import Framing
+from ..can.send_types import Sending
 from ..clock import Clock
 from ..results.results import ResultVariable
 from ..system.fault_spec import Fault
@@ -75,6 +76,7 @@ class MessagePlan:
 
     A multiplexed message has a plan for each page that is sent; `page` are the raw values of its
     multiplexers by name. In `latest` [ps] as many of its frames are sent as faults make late at once.
+    By its `sending` it may be looked at only at these steps, and sent where there is something to send.
     """
 
     bus: str
@@ -90,12 +92,19 @@ class MessagePlan:
     framing: Framing | None = None
     page: Mapping[str, int] = dataclasses.field(default_factory=dict)
     latest: int = 0
+    sending: Sending = Sending()  # noqa: RUF009 - Sending is frozen, so a shared default is safe
 
     @property
     def watched(self) -> bool:
         """True where somebody looks, once a cycle, whether a frame came."""
         own = self.settings.of_message(self.message.name)
-        return self.framing is not None and self.framing.watched(own)
+        return self.framing is not None and self.sending.regular and self.framing.watched(own)
+
+    @property
+    def cycle(self) -> int:
+        """The steps from one frame to the next, where one comes regularly."""
+        apart = -(-self.sending.interval // self.every) * self.every
+        return self.sending.cycle or max(self.every, apart)
 
     @property
     def timed(self) -> bool:

@@ -70,8 +70,8 @@ def resolve(
     slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect})
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
-    every, first = _turns(system, entries, clock)
-    network = connect(system, interfaces, slots, every, clock, algorithm, options.get("ideal", False))
+    turns = _turns(system, entries, clock)
+    network = connect(system, interfaces, slots, turns, clock, algorithm, options.get("ideal", False))
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     _mailboxes_of_the_rest(interfaces, network, slots)
     named, started = by_kind(options, interfaces, network)
@@ -91,13 +91,13 @@ def resolve(
                 interface=interfaces[name],
                 parameters=parameters[name],
                 start=starts[name],
-                every=every[name],
+                every=turns[name][0],
                 substeps=entry.substeps,
                 groups=tuple(slots.groups[name]),
                 routes=tuple(network.routes[name]),
                 texts=texts,
                 free=_free(name, interfaces[name], network, scenario),
-                first=first[name],
+                first=turns[name][1],
             )
             for name, entry in entries.items()
         ),
@@ -111,7 +111,7 @@ def resolve(
         initial=_initial(interfaces, starts, network, drives, experiment.start_time, texts),
         memory_size=slots.size,
         warnings=(*network.warnings, *_loads(system, network, clock), *out_of_time(scenario, drives, clock)),
-        unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, every, first, clock)),
+        unreached=tuple(after_stop(scenario, drives, network.messages, network.inputs, turns, clock)),
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),
         texts=texts,
@@ -210,31 +210,30 @@ def _clock(experiment: Experiment, columns: int, place: str) -> Clock:
     return Clock.counted(start, step, steps, experiment.stop_time)
 
 
-def _turns(
-    system: System, entries: Mapping[str, UnitEntry], clock: Clock
-) -> tuple[dict[str, int], dict[str, int]]:
-    """Return the periods of the units, and the steps of their first turns, in communication steps.
+def _turns(system: System, entries: Mapping[str, UnitEntry], clock: Clock) -> dict[str, tuple[int, int]]:
+    """Return the period and the offset of each unit in communication steps.
 
     Raises ConfigError for one that is no multiple of the step, and for an offset that is not less than the
     period, or leaves no turn before the stop time.
     """
-    every, first = {}, {}
+    found = {}
     for unit, entry in entries.items():
         period, offset = entry.period or clock.step, entry.offset or 0.0
-        every[unit] = steps_in(period, clock.step, f"{system.keys_of(unit)}period", least=1)
-        place, most = f"{system.keys_of(unit)}offset", clock.length(every[unit] - 1)
-        if offset >= clock.length(every[unit]):
+        every = steps_in(period, clock.step, f"{system.keys_of(unit)}period", least=1)
+        place, most = f"{system.keys_of(unit)}offset", clock.length(every - 1)
+        if offset >= clock.length(every):
             raise ConfigError(
                 f"{place} = {offset} s is not less than the period of the unit, {period} s; the nearest is "
                 f"{most} s{'' if most else ', or the unit needs a longer `period`'}"
             )
-        first[unit] = steps_in(offset, clock.step, place, most=every[unit] - 1)
-        if first[unit] >= clock.steps:
+        first = steps_in(offset, clock.step, place, most=every - 1)
+        if first >= clock.steps:
             raise ConfigError(
-                f"{place} = {offset} s: the unit starts at {clock.at(first[unit])} s, not before the stop "
+                f"{place} = {offset} s: the unit starts at {clock.at(first)} s, not before the stop "
                 f"time {clock.stop} s; stop later"
             )
-    return every, first
+        found[unit] = every, first
+    return found
 
 
 def _drives(

@@ -55,22 +55,21 @@ def after_stop(
     drives: Sequence[Drive],
     messages: Sequence[MessagePlan],
     inputs: Mapping[str, InputPlan],
-    every: Mapping[str, int],
-    first: Mapping[str, int],
+    turns: Mapping[str, tuple[int, int]],
     clock: Clock,
 ) -> list[str]:
     """Return a sentence for each event, stimulus and message that comes too late for any effect.
 
-    `drives` are those of the scenario's stimuli, in their order; `every` and `first` are the units'
-    periods and offsets in communication steps: one takes its inputs at its offset, and then each period.
+    `drives` are those of the scenario's stimuli, in their order; `turns` are the units' periods
+    and offsets in communication steps: one takes its inputs at its offset, and then each period.
     """
     stop = f"the stop time {_seconds(clock.stop)}"
     events = []
     for place, event in _events(scenario):
         unit = event.variable.partition(".")[0]
-        if (turn := _turn(clock.step_at(event.time), every[unit], first[unit])) >= clock.steps:
+        if (turn := _turn(clock.step_at(event.time), *turns[unit])) >= clock.steps:
             at = point(turn, clock.start, clock.step)
-            late = "" if every[unit] == 1 else f"{unit} has its next turn at {_seconds(at)}, and "
+            late = "" if turns[unit][0] == 1 else f"{unit} has its next turn at {_seconds(at)}, and "
             events.append(f"{place} never acts: {late}{stop} comes before it has an effect")
     return [
         *_first(events),

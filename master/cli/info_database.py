@@ -11,6 +11,8 @@ from ...cosim.can.bus_settings import BusSettings
 from ...cosim.can.database import Database, Message, Signal
 from ...cosim.can.formats import load_database
 from ...cosim.can.limits import limits_note
+from ...cosim.can.message_settings import MessageSettings
+from ...cosim.can.send_types import send_type_of
 from ...cosim.can.timing.lengths import INTERFRAME, least_bits, most_bits
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
@@ -65,6 +67,8 @@ def _message(written: Message, bitrate: int | None, data_bitrate: int | None) ->
         "cycle_time": message.cycle_time,
         "start_delay": message.start_delay,
         "send_type": message.send_type,
+        "sent": send_type_of(message, MessageSettings())[0],
+        "min_interval": message.min_interval,
         "senders": list(message.senders),
         "load": _load(message, bitrate, data_bitrate),
         "comment": message.comment,
@@ -193,6 +197,9 @@ def _row(m: dict[str, Any]) -> tuple[str, ...]:
     kind = "CAN FD" if m["fd"] else "J1939" if m["j1939"] else "extended" if m["extended"] else ""
     size = f"{m['length']}" if m["length"] == m["frame_length"] else f"{m['length']} in {m['frame_length']}"
     cycle = "" if m["cycle_time"] is None else f"{m['cycle_time']:g}"
+    if m["sent"] != "cyclic":
+        least = f", >= {m['min_interval']:g}" if m["min_interval"] else ""
+        cycle = f"{m['sent']} {cycle}".rstrip() + least
     load = "" if m["load"] is None else f"{100 * m['load'][1]:.2f}"
     return (m["name"], f"0x{m['id']:X}", size, kind, cycle, ", ".join(m["senders"]), count, load)
 

@@ -101,7 +101,9 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
         "bus": plan.bus,
         "name": message.name,
         "id": message.frame_id,
-        "cycle_time": whole.clock.length(plan.every),
+        "cycle_time": whole.clock.length(plan.sending.cycle or plan.every),
+        "send_type": plan.sending.kind,
+        "min_interval": whole.clock.length(plan.sending.interval),
         "delay": whole.clock.length(plan.delay),
         "page": dict(plan.page),
         "signals": [
@@ -176,13 +178,22 @@ def _bus_row(bus: dict[str, Any]) -> tuple[str, ...]:
     return (bus["bus"], str(bus["bitrate"]), str(len(times)), load, longest)
 
 
+def _every(message: dict[str, Any]) -> str:
+    """Return the cycle, or the send type with cycle and minimum interval, in s."""
+    if message["send_type"] == "cyclic":
+        return f"{message['cycle_time']:g}"
+    cycle = "" if message["send_type"] in ("on_change", "on_write") else f" {message['cycle_time']:g}"
+    least = f", >= {message['min_interval']:g}" if message["min_interval"] else ""
+    return f"{message['send_type']}{cycle}{least}"
+
+
 def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for i, signal in enumerate(message["signals"]):
         delay = f"{message['delay']:g}" if message["delay"] else ""
         page = ", ".join(f"{name} {raw}" for name, raw in message["page"].items())
         name = f"{message['bus']}.{message['name']}{f' ({page})' if page else ''}"
-        head = (name, f"0x{message['id']:X}", f"{message['cycle_time']:g}", delay)
+        head = (name, f"0x{message['id']:X}", _every(message), delay)
         unit = f" {signal['unit']}" if signal["unit"] else ""
         ends = [
             ("-inf", "inf")[j] if signal[key] is None else number(signal[key])

@@ -20,13 +20,15 @@ BUS_LOAD = record(
                     "identifier": whole("Its identifier."),
                     "extended": flag("Whether that has 29 bits."),
                     "length": whole("Bytes in the database."),
-                    "cycle": number("Time from one to the next [s]."),
+                    "cycle": number("Least time from one to the next [s]."),
                     "least": number("Part of the time of frames without stuff bits."),
                     "most": number("Part of the time of the longest frames."),
                     "longest": number("Time of the longest frame with the space after it [s]."),
                     "response": or_null(
                         number("Longest time from sampling to the end of the frame [s]; null: no bound.")
                     ),
+                    "send_type": text('"cyclic" or how else it is sent.'),
+                    "bounded": flag("False where no minimum interval bounds how often it is sent."),
                 },
             ),
         ),

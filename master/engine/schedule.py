@@ -142,7 +142,7 @@ def _messages(plan: Plan, after: int | None) -> list[Action]:
 def _message(plan: Plan, index: int) -> list[Action]:
     message = plan.messages[index]
     send = Action("send", index, message.every, message.first)
-    watch = [Action("watch", index, message.every, message.first + message.delay)] if message.watched else []
+    watch = [Action("watch", index, message.cycle, message.first + message.delay)] if message.watched else []
     if message.timed:
         return [send]
     if not message.delay:
@@ -160,7 +160,7 @@ def _timed_watches(plan: Plan) -> list[Action]:
     for i, message in enumerate(plan.messages):
         if message.timed and message.watched:
             late = math.ceil(message.settings.delay / plan.clock.step)
-            found.append(Action("watch", i, message.every, message.first + message.every + late))
+            found.append(Action("watch", i, message.cycle, message.first + message.cycle + late))
     return found
 
 

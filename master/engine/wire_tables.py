@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from ...cosim.can.channel import SignalRoute
 from ...cosim.can.database import Message, Signal
 from ...cosim.can.logs.frames import encoder
+from ...cosim.can.message_settings import SendType
 from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
+from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
@@ -92,7 +94,26 @@ def _message_row(plan: MessagePlan) -> dict[int, Any]:
         T.LENGTH: message.length, T.EVERY: plan.every, T.FIRST: plan.first,
         T.SWITCHED: message.fd and plan.settings.data_bitrate is not None,
         T.JITTER: picoseconds(plan.settings.jitter_of(message.name)),
+        T.SEND_TYPE: _send_type(plan.sending.kind), T.INTERVAL: plan.sending.interval,
+        T.CYCLE: plan.sending.cycle,
     }  # fmt: skip # a row
+
+
+def _send_type(kind: SendType) -> int:
+    """Return the code of a send type."""
+    match kind:
+        case "cyclic":
+            return T.CYCLIC
+        case "on_change":
+            return T.ON_CHANGE
+        case "cyclic_and_on_change":
+            return T.MIXED
+        case "if_active":
+            return T.IF_ACTIVE
+        case "on_write":
+            return T.ON_WRITE
+        case _:
+            assert_never(kind)
 
 
 def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
@@ -214,11 +235,23 @@ def _add_signals(made: Arrays, senders: Sequence[Sender], receiving: Mapping[int
 
 def _signal_row(route: SignalRoute, operation: SignalOperation, first_sink: int) -> dict[int, int]:
     start, little = place_of(operation.signal)
+    low, high = words(_inactive(operation.signal))
     return {
         T.SOURCE: route.source, T.KIND: _kind(operation), T.SATURATES: operation.raw_below is not None,
         T.FIRST_SINK: first_sink, T.SINKS: len(route.sinks), T.BITS: operation.signal.length,
         T.START: start, T.LITTLE: little, T.SIGNED: operation.signal.signed,
+        T.IDLE_LOW: low, T.IDLE_HIGH: high,
     }  # fmt: skip # a row
+
+
+def _inactive(signal: Signal) -> int:
+    """Return the bits of the raw value at which a signal is not active."""
+    raw = signal.start_raw if signal.inactive_raw is None else signal.inactive_raw
+    if not signal.is_float:
+        return int(raw)
+    with np.errstate(over="ignore"):  # beyond the greatest it is infinite, which no value that is sent is
+        value = np.array(raw, dtype=np.float32 if signal.length == 32 else np.float64)
+    return int(value.view(np.int32 if signal.length == 32 else np.int64))
 
 
 def _real_row(route: SignalRoute, operation: SignalOperation) -> dict[int, float]:

@@ -23,6 +23,8 @@ class Sent:
     node: str = ""
     waiting: Frame | None = None
     replaced: int = 0
+    kind: str = "cyclic"
+    interval: int = 0
 
     @property
     def field(self) -> str:
@@ -81,6 +83,40 @@ class Off:
         raise AssertionError("the last stretch has no end")
 
 
+def requested(message: Sent, values: Sequence[int], idle: int) -> list[int]:
+    """Return the steps at which a message is sent whose payload, as a number, is that of `values` in each.
+
+    Written as a list of requests that wait for the end of the interval after the frame before.
+    """
+    cyclic = {k for k in range(message.first, len(values)) if (k - message.first) % message.cycle == 0}
+    looks = range(message.first, len(values))
+    changes = {k for k in looks if k == message.first or values[k] != values[k - 1]}
+    if message.kind == "cyclic":
+        return sorted(cyclic)
+    if message.kind == "on_change":
+        requests = changes
+    elif message.kind == "cyclic_and_on_change":
+        requests = cyclic | changes
+    elif message.kind == "on_write":
+        requests = set(looks)
+    else:
+        requests, since = set(), None
+        for k in looks:
+            if values[k] == idle:
+                requests |= {k} if since is not None else set()
+                since = None
+            else:
+                since = k if since is None else since
+                requests |= {k} if (k - since) % message.cycle == 0 else set()
+    sent: list[int] = []
+    for k in looks:
+        if any(r <= k and (not sent or r > sent[-1]) for r in requests) and (
+            not sent or k - sent[-1] >= message.interval
+        ):
+            sent.append(k)
+    return sent
+
+
 def stuffed_length(bits: str) -> int:
     """Return the number of bits of a text with a stuff bit after each five equal ones."""
     out = ""
@@ -117,16 +153,18 @@ def carried(
     drawn: Callable[[Sent, int], float],
     offs: Sequence[Off] = (),
     babblers: Sequence[Babbler] = (),
+    sent_at: Mapping[str, Sequence[int]] | None = None,
 ) -> list[Frame]:
     """Return the frames in the order in which the bus carried them, of those that start before the end.
 
-    `payloads` are by message and step; `drawn` gives the share of the jitter of a message's n-th frame.
+    `payloads` are by message and step; `drawn` gives the share of the jitter of a message's n-th frame;
+    `sent_at` are the steps of each message where it is not sent at each cycle.
     """
     end = steps * step
     samplings = [
         (k * step, message, payloads[message.name, k])
         for message in messages
-        for k in range(message.first, steps, message.cycle)
+        for k in (sent_at or {}).get(message.name, range(message.first, steps, message.cycle))
     ]
     for babbler in babblers:
         until = min(babbler.until, end)

@@ -59,6 +59,11 @@ timing = "frame"
 cycle_time = 0.01
 jitter = 0.001
 timeout = 3
+[buses.can0.messages.VCU_Request]
+send_type = "cyclic_and_on_change"
+cycle_time = 0.02
+min_interval = 0.01
+start_delay = 0.0
 [buses.can0.messages.EMD_Status.e2e]
 profile = "2"
 data_id = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]

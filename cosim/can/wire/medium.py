@@ -12,6 +12,7 @@ from .faults import hit, spoil
 from .log import log
 from .off import is_off, note_hit, strike, unheard
 from .protect import accepted, protect, watch
+from .requests import wanted
 from .tables import Wire
 from .values import pack, sample, unpack
 
@@ -19,13 +20,18 @@ _JITTER = 1  # what is drawn for
 
 
 def send(w: Wire, i: int, k: int) -> int:
-    """Sample and pack message i in step k, and send the frame; return DONE or RAISED."""
+    """Sample and pack message i in step k, and send the frame if it is due; return DONE or RAISED."""
     m, b, now = w.messages, w.buses, k * w.state[T.STEP_TIME]
-    bus = m[i, T.BUS]
+    bus, spontaneous = m[i, T.BUS], m[i, T.SEND_TYPE] != T.CYCLIC
+    if spontaneous:
+        if sample(w, i, k) != T.DONE:
+            return T.RAISED
+        if not wanted(w, i, k):
+            return T.DONE
     if hit(w, T.SILENCE, i, now) >= 0:
         m[i, T.SILENCED] += 1
         return T.DONE
-    if sample(w, i, k) != T.DONE:
+    if not spontaneous and sample(w, i, k) != T.DONE:
         return T.RAISED
     pack(w, i)
     if w.state[T.FAULTS]:

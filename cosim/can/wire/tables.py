@@ -84,7 +84,12 @@ from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
 made late; those that were sampled while their node was off the bus, and that arrived while a receiver was."""
 (BABBLES, OWNED) = range(59, 61)
 """1 + the row of the fault whose frames they are, 0 for a message; 1 where a receiver has an OWNER."""
-MESSAGE = 61
+(SEND_TYPE, INTERVAL, CYCLE, ASKED, NEXT_STEP, PHASE, ACTIVE, LOOKED) = range(61, 69)
+"""Its send type, the least steps between two frames, its cycle in steps; 1 while a frame is wanted, the first
+step at which it may be sent, the step at which it became active, 1 while it is, and once its values were
+looked at."""
+MESSAGE = 69
+CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
 
@@ -97,7 +102,9 @@ VERDICTS = 0x41
 of sinks from FIRST_SINK on; the layout: START is the least significant bit where LITTLE, else the place of
 the most significant one counted from the first bit of the frame; the raw value at hand; the number of values
 out of range, and the step of the first."""
-SIGNAL = 13
+(BEFORE_LOW, BEFORE_HIGH, IDLE_LOW, IDLE_HIGH) = range(13, 17)
+"""The raw value at the last look, and the one at which the signal is not active."""
+SIGNAL = 17
 (IN_SCALE, IN_ADD, LEAST, GREATEST, SCALE, OFFSET, OUT_ADD, BELOW, ABOVE) = range(9)
 REAL = 9
 """Columns of reals, one row a signal: the map to the bus' unit; the range of values; scale and offset of the

@@ -21,7 +21,19 @@ from numpy.typing import NDArray
 
 from ....cosim.can.protection import counters, profiles
 from ....cosim.can.timing import draws, lengths
-from ....cosim.can.wire import arbitration, babble, faults, log, medium, off, payload, protect, tables, values
+from ....cosim.can.wire import (
+    arbitration,
+    babble,
+    faults,
+    log,
+    medium,
+    off,
+    payload,
+    protect,
+    requests,
+    tables,
+    values,
+)
 from ....cosim.can.wire.tables import Wire
 from ...machine import access
 from ...machine.access import call_3
@@ -31,7 +43,7 @@ from .wire_types import BY_ANNOTATION, WORDS, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
     draws, lengths, profiles, counters, payload, off, values, log, babble, arbitration, protect, faults,
-    medium,
+    requests, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
 SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access, wire_types)

@@ -8,8 +8,9 @@ import pytest
 
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.database import Message
+from evcosim.cosim.can.send_types import Sending
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.plan.bus_load import bus_loads, check_load
+from evcosim.cosim.plan.bus_load import MessageLoad, bus_loads, check_load
 from evcosim.cosim.plan.plan import MessagePlan
 
 
@@ -49,6 +50,31 @@ def test_a_data_bit_rate_shortens_frames_of_can_fd() -> None:
         for settings in (slow, fast)
     ]
     assert times[1] < 0.4 * times[0]
+
+
+def test_a_message_that_is_not_cyclic_has_its_minimum_interval_as_period() -> None:
+    settings = BusSettings(bitrate=500_000)
+
+    def of(sending: Sending, every: int = 1) -> MessageLoad:
+        plan = dataclasses.replace(sent("M", 1, every, settings), sending=sending)
+        return bus_loads([plan], 0.01)["can0"].messages[0]
+
+    cyclic, spontaneous = of(Sending(), 5), of(Sending("on_change", 0, 5))
+    assert (spontaneous.cycle, spontaneous.most, spontaneous.response) == (
+        cyclic.cycle, cyclic.most, cyclic.response,
+    )  # fmt: skip # a row
+    assert spontaneous.least == 0.0  # it need not be sent at all
+    assert spontaneous.every == "on_change, >= 50"
+    without = of(Sending("on_change"))
+    assert (without.bounded, without.every, without.cycle) == (
+        False,
+        "on_change, no min_interval: >= 10",
+        0.01,
+    )
+    mixed = of(Sending("cyclic_and_on_change", 10, 5))
+    assert (mixed.least, mixed.most) == pytest.approx((cyclic.least / 2, cyclic.most))
+    assert of(Sending("on_write"), 5).least == cyclic.least
+    assert cyclic.every == "50"
 
 
 def test_jitter_is_part_of_the_bound() -> None:

@@ -100,18 +100,3 @@ def test_parts_of_one_node_send_a_message_together(tmp_path):
             ConfigError, match=r"M.T is sent by unit 'b', and M.S by 'a': .* nodes = \[\"A\"\]"
         ):
             made(**nodes)
-
-
-@pytest.mark.parametrize(
-    ("index", "said"),
-    [(None, ""), (0, ""), (3, ""), (1, "OnChange"), (2, "CyclicIfActive")],
-)
-def test_a_send_type_that_is_not_simulated_is_said(tmp_path, index, said):
-    own = "" if index is None else f'BA_ "GenMsgSendType" BO_ 1 {index};\n'
-    kinds = '"Cyclic","OnChange","CyclicIfActive","NoMsgSendType"'
-    tail = f'BA_DEF_ BO_ "GenMsgSendType" ENUM {kinds};\nBA_DEF_DEF_ "GenMsgSendType" "Cyclic";\n{own}'
-    bus = {"dbc": str(write(tmp_path, S, tail=tail)), "cycle_time": 0.01}
-    connect = [{"from": "a.y", "via": "c.M.S"}]
-    made = plan_of([MockUnit("a", [real("y", "output")])], {"connect": connect, "buses": {"c": bus}})
-    found = [w.split("has the send type ")[1] for w in made.warnings if "send type" in w]
-    assert found == ([f"{said}, which is not simulated: it is sent at each cycle"] if said else [])

@@ -69,6 +69,7 @@ BROKEN = [
     ("system", HEAD + "[[figure.panels]]\nsignals = ['a.b']\nlimits = [1]\n", "figure.panels 1.limits 2: this value is needed"),
     ("system", HEAD + "[[metrics]]\nname = 'signal'\n", "metrics 1.signal: this key is needed"),
     ("system", HEAD + "[[metrics]]\nname = 'm'\nsignal = 'a.b'\nper.signall = 'a.c'\n", "metrics 1.per.signal: this key is needed\nmetrics 1.per.signall: unknown key (did you mean 'signal'?)"),
+    ("system", HEAD + "[buses.c]\ndbc = 'x'\n[buses.c.messages.M]\nsend_type = 'on_chnage'\n", "buses.c.messages.M.send_type: Input should be 'cyclic', 'on_change', 'cyclic_and_on_change', 'if_active' or 'on_write', not 'on_chnage' (did you mean 'on_change'?)"),
     ("scenario", "[[stimuli]]\nto = 'a.b'\nconstant = 1\n", "stimuli: unknown key (did you mean 'stimulus'?)"),
     ("scenario", "[[stimulus]]\nto = 'a.b'\n", "stimulus 1: a stimulus has exactly one of constant, table, csv, sine, ramp; this one has none"),
     ("scenario", "[[stimulus]]\nto = 'a.b'\nconstant = 1\ntable = [[0, 1]]\n", "stimulus 1: a stimulus has exactly one of constant, table, csv, sine, ramp; this one has constant and table"),

@@ -18,6 +18,7 @@ def message(after=None, every=1, first=0, delay=0, width=2, **more):
         "latest": 0,
         "settings": SimpleNamespace(delay=0.015),
     } | more
+    values.setdefault("cycle", every)
     return SimpleNamespace(after=after, every=every, first=first, delay=delay, arrivals=arrivals, **values)
 
 

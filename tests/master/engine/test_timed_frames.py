@@ -15,6 +15,7 @@ from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.framing import framing_of
+from evcosim.cosim.can.send_types import Sending
 from evcosim.cosim.can.timing.draws import drawn
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.plan.faults import babblers, framed, planned
@@ -27,7 +28,7 @@ from evcosim.master.engine.frame_path import FramePath
 from evcosim.master.engine.schedule import Action
 from evcosim.master.engine.sender import Sender
 from evcosim.master.simulation import Simulation
-from support.bus_oracle import Babbler, Frame, Off, Sent, carried
+from support.bus_oracle import Babbler, Frame, Off, Sent, carried, requested
 from support.timed import timed
 
 STEPS, STEP = 30, 1e-3
@@ -58,14 +59,14 @@ def buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], BusSet
     return messages, times, use
 
 
-def path_of(messages, times, use, faults) -> tuple[FramePath, np.ndarray, Sequence[FaultPlan]]:
+def path_of(messages, times, use, faults, sendings) -> tuple[FramePath, np.ndarray, Sequence[FaultPlan]]:
     """The frame path: message i is sampled from slot i and received in the slot behind all of those."""
     memory = np.zeros(2 * len(messages))
     plans = []
-    for i, (message, (every, first)) in enumerate(zip(messages, times, strict=True)):
+    for i, (message, (every, first), sending) in enumerate(zip(messages, times, sendings, strict=False)):
         routes = (SignalRoute(message.signals["S"], i, Affine(), ((len(messages) + i, Affine()),)),)
         plans.append(MessagePlan("can0", message, use, routes, {"S": "a.y"}, every, first, None,
-                                 framing=framing_of(message, use)))  # fmt: skip # one call
+                                 framing=framing_of(message, use), sending=sending))  # fmt: skip # one call
     found = planned(faults, plans, 0.0, "test.toml")
     plans = [*framed(plans, found), *babblers(found, plans)]
     senders = [
@@ -103,12 +104,28 @@ def faulty_buses(draw: st.DrawFn) -> tuple[Any, ...]:
     return messages, times, use, faults_of(draw, messages)
 
 
-@settings(deadline=None, max_examples=80)
-@given(faulty_buses(), st.integers(0, 2**32))
-def test_who_is_carried_when_and_what_is_seen(case, seed):
+SENDINGS = st.builds(
+    Sending,
+    kind=st.sampled_from(["cyclic", "on_change", "cyclic_and_on_change", "if_active", "on_write"]),
+    cycle=st.integers(1, 6),
+    interval=st.integers(0, 5),
+)
+
+
+@settings(deadline=None, max_examples=100)
+@given(faulty_buses(), st.lists(SENDINGS, min_size=6, max_size=6), st.integers(0, 2**32))
+def test_who_is_carried_when_and_what_is_seen(case, sendings, seed):
     messages, times, use, faults = case
-    path, memory, plans = path_of(messages, times, use, faults)
-    values = np.random.default_rng(seed).integers(0, 2**48, (STEPS, len(messages)))
+    times = [
+        (every, first) if sending.kind == "cyclic" else (1, first)
+        for (every, first), sending in zip(times, sendings, strict=False)
+    ]
+    path, memory, plans = path_of(messages, times, use, faults, sendings)
+    random = np.random.default_rng(seed)
+    values = random.integers(0, 2**48, (STEPS, len(messages)))
+    values[random.random(values.shape) < 0.3] = 0  # the start value, at which a message is not active
+    for k in range(1, STEPS):  # values that stay for some steps
+        values[k] = np.where(random.random(len(messages)) < 0.6, values[k - 1], values[k])
     values %= [1 << 8 * m.length for m in messages]
     received = np.zeros((STEPS, len(messages)))
     for k in range(STEPS):
@@ -120,9 +137,11 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
                 path.act(*path.operation(Action("send", i)), k)
         path.act(*path.operation(Action("contend", 0)), k)
     sent = [
-        Sent(m.name, m.frame_id, m.extended, every, first, round(use.jitter * 1e12), m.senders[0])
-        for m, (every, first) in zip(messages, times, strict=True)
-    ]
+        Sent(m.name, m.frame_id, m.extended, every if one.kind == "cyclic" else one.cycle, first,
+             round(use.jitter * 1e12), m.senders[0], kind=one.kind, interval=one.interval)
+        for m, (every, first), one in zip(messages, times, sendings, strict=False)
+    ]  # fmt: skip # one call
+    sent_at = {s.name: requested(s, values[:, i].tolist(), 0) for i, s in enumerate(sent)}
     payloads = {
         (m.name, k): int(values[k, i]).to_bytes(m.length, "little")
         for i, m in enumerate(messages)
@@ -132,7 +151,7 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
     name = int(path.arrays["buses"][0, T.NAME])
     expected = carried(
         sent, payloads, STEPS, 10**9, round(1e12 / use.bitrate),
-        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1), offs, babbling,
+        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1), offs, babbling, sent_at,
     )  # fmt: skip # one call
     log = path.log_of("can0").frames
     assert [(end, m.name, data) for _, end, m, data in log.frames()] == [
@@ -163,8 +182,8 @@ def test_who_is_carried_when_and_what_is_seen(case, seed):
                 bit = round(1e12 / use.bitrate)
                 back = offs[0].back([f for f in expected if f.start < offs[0].back(expected, bit)], bit)
                 away = [k for k in range(STEPS) if plan.since <= k * 10**9 < back]
-                due = sum((k - first) % every == 0 and k >= first for k in away for m, (every, first) in
-                          zip(messages, times, strict=True) if m.senders[0] == "A")  # fmt: skip # one call
+                own = [m.name for m in messages if m.senders[0] == "A"]
+                due = sum(k in sent_at[name] for k in away for name in own)
                 assert counted[n] == due
 
 
