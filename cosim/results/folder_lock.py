@@ -15,7 +15,7 @@ from typing import Any, Self
 from ..errors import ConfigError
 from ..file_names import flaw_of_name, short_path
 from ..writing import reason, try_folder
-from .manifest import read_manifest
+from .manifest import is_cut, read_manifest
 
 MANIFEST_NAME = "run.json"
 _PATIENCE = 0.3  # s for somebody who looks whether a run lives
@@ -121,6 +121,11 @@ def manifest_of(folder: Path) -> dict[str, Any]:
         return read_manifest(folder / MANIFEST_NAME)[0]
     except ConfigError:
         return {}
+
+
+def manifest_is_cut(folder: Path) -> bool:
+    """Return True for a run.json of which a power cut, or a full disk, has left a part, or zeros."""
+    return is_cut(folder / MANIFEST_NAME)
 
 
 def lives(folder: Path) -> bool:

@@ -20,6 +20,7 @@ from ..visible import visible_json
 from ..writing import replacing
 from .variable import ResultVariable
 
+_BEGIN = b'{"evcosim"'  # of a run.json, without white space
 _TYPES = ("Real", "Integer", "Boolean", "Enumeration", "String")
 
 
@@ -100,6 +101,21 @@ def _read(path: Path) -> dict[str, Any]:
     if not isinstance(manifest, dict):
         raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")
     return manifest
+
+
+def is_cut(path: Path) -> bool:
+    """Return True for a run.json that begins as one and is no JSON: its end is missing, or is zeros."""
+    try:
+        with path.open("rb") as file:
+            begin = b"".join(file.read(4 * len(_BEGIN)).split()).rstrip(b"\0")
+        if not (begin.startswith(_BEGIN) or _BEGIN.startswith(begin)):
+            return False
+        from_json(content(path))
+    except (OSError, ConfigError):
+        return False
+    except ValueError:
+        return True
+    return False
 
 
 def from_json(text: str | bytes) -> Any:

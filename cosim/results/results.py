@@ -20,7 +20,7 @@ from ..file_names import check_name
 from ..row_store import Array, Grid, MemoryTable, Table, check_times
 from ..writing import replacing
 from . import frames
-from .folder_lock import MANIFEST_NAME, status
+from .folder_lock import MANIFEST_NAME, manifest_is_cut, status
 from .formats.format import Format
 from .formats.suffixes import CSV, format_of, reader_of
 from .manifest import check_whole, read_manifest, write_manifest
@@ -371,7 +371,8 @@ class Results:
 def _of_rows(path: Path) -> Results:
     """Read the rows that a run, which may have been killed, has saved up to now."""
     saved = read_rows(path)
-    said, _ = read_manifest(path.with_name(MANIFEST_NAME))
+    cut = manifest_is_cut(path.parent)  # the rows say what they are
+    said: dict[str, Any] = {"status": "running"} if cut else read_manifest(path.with_name(MANIFEST_NAME))[0]
     if isinstance(said.get(ROWS), int) and len(saved.time) >= said.pop(ROWS):  # of the end of the run
         manifest = said
     else:

@@ -28,6 +28,7 @@ from .variable import ResultVariable
 
 ROWS_NAME = "results.rows"
 _FORMAT = "evcosim rows 1"
+_BEGIN = f'{{"format": "{_FORMAT}", '.encode()
 _LONGEST = 1 << 28  # bytes of the line
 
 
@@ -56,6 +57,25 @@ def head(clock: Clock, variables: Sequence[ResultVariable], manifest: Mapping[st
     }
     line = manifest_text(about, indent=None)
     return line + b" " * (-(len(line) + 1) % 8) + b"\n"
+
+
+def has_no_row(path: Path) -> bool:
+    """Return True for a file of rows whose first line is not whole: the process ended while it wrote that.
+
+    A power cut may leave zeros in place of what was written.
+    """
+    try:
+        if path.is_symlink() or not path.is_file():
+            return False
+        with path.open("rb") as file:
+            return _is_cut_head(file.readline(_LONGEST))
+    except OSError:
+        return False
+
+
+def _is_cut_head(line: bytes) -> bool:
+    text = line.rstrip(b"\0")
+    return not line.endswith(b"\n") and (text.startswith(_BEGIN) or _BEGIN.startswith(text))
 
 
 def complete(path: Path, begin: bytes, width: int, rows: Callable[[int], Iterable[Array]]) -> int:
@@ -110,12 +130,14 @@ class SavedRows:
 def read(path: Path) -> SavedRows:
     """Read what there is of a file of rows; half a row at its end counts for nothing.
 
-    Raises ConfigError naming a file that cannot be read or does not begin as one.
+    Raises ConfigError naming a file that cannot be read, does not begin as one, or was left without a row.
     """
     require_file(path)
     try:
         with path.open("rb") as file:
             line = file.readline(_LONGEST)
+        if _is_cut_head(line):
+            raise ConfigError(f"{path}: no row was saved in it: the run ended before that; run it again")
         about = from_json(line) if line.endswith(b"\n") else None
         if not isinstance(about, dict) or about.get("format") != _FORMAT:
             raise ConfigError(f"{path}: does not begin as a file of rows ({_FORMAT})")

@@ -17,16 +17,18 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..csv_numbers import CsvFile
 from ..csv_text import cut_row
-from ..errors import ConfigError, RunError
+from ..errors import ConfigError, RunError, counted
 from ..file_names import check_name
 from ..leftovers import keep_folder, temporary
 from ..writing import reason, remove_drafts
-from .folder_lock import MANIFEST_NAME, FolderLock, manifest_of
+from .folder_lock import MANIFEST_NAME, FolderLock, manifest_is_cut, manifest_of
 from .manifest import manifest_text, overwrite_manifest, read_manifest, write_manifest
 from .results import CSV_NAME, ROWS, Results
-from .rows_file import ROWS_NAME
+from .rows_file import ROWS_NAME, has_no_row
 from .rows_file import read as read_rows
 from .text_rows import TEXT_ROWS_NAME
 from .text_table import texts_path
@@ -35,6 +37,7 @@ from .variable import ResultVariable
 FIGURES = ("figure.png", "figure.svg")
 REPORT = "report.html"
 CAN_LOGS = ("can.log", "can.asc", "can.blf", "can.mf4", "can.pcapng")
+_LOOKED_AT = 65536  # rows at the end
 _SPARE = 4096  # bytes of run.json for how the run ended, which a full disk has no room for
 _SETTINGS = ("system", "scenario", "settings", "experiment", "ideal", "order", "units", "buses")
 FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, REPORT, *CAN_LOGS)
@@ -175,13 +178,16 @@ class RunFolder(FolderLock):
 
     @property
     def was_killed(self) -> bool:
-        """True where run.json says that a run is going on: this process has the lock, so that it is gone."""
-        return manifest_of(self.path).get("status") == "running"
+        """True where run.json says that a run is going on: this process has the lock, so that it is gone.
+
+        So it is where only a part of run.json is left.
+        """
+        return manifest_of(self.path).get("status") == "running" or manifest_is_cut(self.path)
 
     @property
     def has_rows(self) -> bool:
         """True where rows are there, as results or as they were saved."""
-        return self.rows.exists() or (self.path / CSV_NAME).exists()
+        return (self.rows.exists() and not has_no_row(self.rows)) or (self.path / CSV_NAME).exists()
 
     def recover(self) -> Results | None:
         """Make results.csv of the rows of a killed run, and return the results; None: there are no such rows.
@@ -189,23 +195,40 @@ class RunFolder(FolderLock):
         A results.csv that was cut off within its last row goes without that, and of one that lacks rows those
         are kept that are left. Raises ConfigError where a file cannot be read or written.
         """
+        killed = self.was_killed
+        if has_no_row(self.rows):
+            self.discard_rows()
+        cut = self.has_rows and manifest_is_cut(self.path)
+        if cut:
+            self._put_manifest_aside()
         if not self.rows.exists() and self._drop_missing_rows():
             results = Results.read(self.path)
             results.manifest["status"] = "cut off"
             self.finish(results)
             return results
-        if not self.rows.exists() and not (self.was_killed and self.has_rows):
+        if not self.rows.exists() and not (killed and self.has_rows):
             return None
-        if not self.was_killed and (self.path / CSV_NAME).exists():  # it was killed after its last word
+        if not killed and (self.path / CSV_NAME).exists():  # it was killed after its last word
             self.discard_rows()
             return None
         results = Results.read(self.path)
         results.manifest.pop(UNWRITTEN, None)
-        if self.was_killed:
+        if cut:
+            results.manifest.setdefault("evcosim", "")  # of an unknown version
+        if killed:
             results.manifest["status"] = "killed"
+            _note_zeros(results)
         self.finish(results)
         remove_drafts(self.path)
         return results
+
+    def _put_manifest_aside(self) -> None:
+        """Give what is left of run.json another name: the rows say what they are."""
+        path = self.path / MANIFEST_NAME
+        try:
+            path.replace(path.with_name(f"{MANIFEST_NAME}.cut"))
+        except OSError as error:
+            raise ConfigError(f"{path}: cannot be renamed: {reason(path, error)}") from error
 
     def _drop_missing_rows(self) -> bool:
         """Let run.json know of no more rows than results.csv has; return True if it did."""
@@ -246,7 +269,9 @@ class RunFolder(FolderLock):
 
     def is_of_another(self, manifest: Mapping[str, Any]) -> bool:
         """Return True where the rows of a run of other files, FMUs or settings are there."""
-        return self.has_rows and not same_settings(manifest, manifest_of(self.path))
+        other = manifest_of(self.path)
+        told = any(key in other for key in _SETTINGS)  # nobody knows of results alone what they are of
+        return self.has_rows and not (told and same_settings(manifest, other))
 
     def check(self, manifest: Mapping[str, Any]) -> None:
         """Raise ConfigError where a run would replace files of somebody's own, or results of another run."""
@@ -263,6 +288,19 @@ class RunFolder(FolderLock):
             f"output folder {self.path}: {', '.join(foreign)} would be replaced, but no {MANIFEST_NAME} says "
             "that a run wrote it"
         )
+
+
+def _note_zeros(results: Results) -> None:
+    """Warn of rows of zeros alone at the end of a killed run's, behind others: the disk may lack them."""
+    for _, values in results.pieces(results.names, max(0, len(results) - _LOOKED_AT), rows=_LOOKED_AT):
+        zeros = len(values) - int(np.flatnonzero(values.any(axis=1)).max(initial=-1)) - 1
+        if not 0 < zeros < len(values):
+            continue
+        if isinstance(warnings := results.manifest.setdefault("warnings", []), list):
+            warnings.append(
+                f"the last {counted(zeros, 'row')} hold zeros alone: after a power cut that may be what the "
+                "disk had not written yet"
+            )
 
 
 def recover(folder: Path) -> Results | None:
@@ -284,7 +322,7 @@ def recover(folder: Path) -> Results | None:
 def foreign_files(folder: Path) -> list[str]:
     """Return the names of files that a run would replace in a folder, and that no run wrote."""
     taken = [name for name in FILES if os.path.lexists(folder / name)]
-    return [] if "evcosim" in manifest_of(folder) else taken
+    return [] if "evcosim" in manifest_of(folder) or manifest_is_cut(folder) else taken
 
 
 def same_settings(manifest: Mapping[str, Any], other: Mapping[str, Any]) -> bool:

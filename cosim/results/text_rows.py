@@ -44,7 +44,7 @@ class TextRows:
 
     def go_on(self, count: int) -> None:
         """Go on with a file that has so many rows, and maybe half of another one. Raises OSError."""
-        self._count, self._size = count, self._path.read_bytes().rindex(b"\n") + 1
+        self._count, self._size = count, self._path.read_bytes().rfind(b"\n") + 1
 
     def save(self) -> None:
         """Append the rows that were noted since the last time. Raises OSError where the disk refuses."""

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from evcosim.cosim.clock import Clock
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.results.results import Results
-from evcosim.cosim.results.rows_file import file_of_run, head, read
+from evcosim.cosim.results.rows_file import file_of_run, has_no_row, head, read
 from evcosim.cosim.results.variable import ResultVariable
 
 VARIABLES = [ResultVariable("a.x", "m/s"), ResultVariable("b.n", type="Integer", variability="discrete")]
@@ -39,11 +39,27 @@ def test_rows_begin_at_a_multiple_of_eight_bytes() -> None:
 
 
 @pytest.mark.parametrize("kept", [0, 1, 40, len(HEAD) - 1])
-def test_half_a_head_is_refused_by_name(tmp_path: Path, kept: int) -> None:
+def test_half_a_head_is_of_a_run_that_saved_no_row(tmp_path: Path, kept: int) -> None:
     path = tmp_path / "results.rows"
     path.write_bytes(HEAD[:kept])
-    with pytest.raises(ConfigError, match=r"results.rows: does not begin as a file of rows"):
-        read(path)
+    for zeros in (0, 1, 4096):  # which a power cut leaves
+        path.write_bytes(HEAD[:kept] + zeros * b"\0")
+        with pytest.raises(ConfigError, match=r"results.rows: no row was saved in it: the run ended before"):
+            read(path)
+        assert has_no_row(path)
+
+
+@pytest.mark.parametrize(
+    "text", [HEAD, HEAD + b"x", b"mine", b"\n", b"{}", b'{"format": "evcosim rows 2"', b"\0\n"]
+)
+def test_other_files_are_none_that_a_run_left_without_a_row(tmp_path: Path, text: bytes) -> None:
+    path = tmp_path / "results.rows"
+    path.write_bytes(text)
+    assert not has_no_row(path)
+    link = tmp_path / "link.rows"
+    (tmp_path / "empty").touch()
+    link.symlink_to("empty")
+    assert not has_no_row(link) and not has_no_row(tmp_path) and not has_no_row(tmp_path / "none")
 
 
 @pytest.mark.parametrize(

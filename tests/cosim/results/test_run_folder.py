@@ -85,6 +85,77 @@ def test_a_run_that_was_killed_at_once_has_nothing(tmp_path: Path) -> None:
         recover(tmp_path / "none")
 
 
+BEGIN = head(CLOCK, VARIABLES, ABOUT)
+
+
+@pytest.mark.parametrize(
+    "left", [b"", BEGIN[:1], BEGIN[:100], BEGIN[:-1], 512 * b"\0", BEGIN[:60] + 512 * b"\0"]
+)
+def test_half_a_first_line_is_of_a_run_that_saved_no_row(tmp_path: Path, left: bytes) -> None:
+    begun(tmp_path)
+    (tmp_path / "results.rows").write_bytes(left)
+    with pytest.raises(ConfigError, match=r"results.rows: no row was saved in it: the run ended before that"):
+        Results.read(tmp_path)
+    with RunFolder(tmp_path) as run:  # the next run
+        assert not run.has_rows and not run.foreign_files()
+        assert not run.is_of_another({**ABOUT, "system": "other"})
+    with pytest.raises(ConfigError, match="the run was killed before it had saved any rows; run it again"):
+        recover(tmp_path)
+    with RunFolder(tmp_path) as run:
+        assert run.recover() is None
+        run.begin(ABOUT, VARIABLES)
+    assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
+
+
+@pytest.mark.parametrize("kept", [0, 1, 5, 12, 40, -30])
+@pytest.mark.parametrize("zeros", [0, 100])
+def test_half_a_run_json_stands_in_no_ones_way(tmp_path: Path, kept: int, zeros: int) -> None:
+    begun(tmp_path, rows=3)
+    manifest = tmp_path / "run.json"
+    text = manifest.read_bytes().rstrip()
+    manifest.write_bytes(text[:kept] + zeros * b"\0")
+    read = Results.read(tmp_path)
+    assert (len(read), read.manifest["status"], read.manifest["system"]) == (3, "killed", "toy")
+    found = recover(tmp_path)
+    assert found is not None and len(found) == 3
+    after = Results.read(tmp_path)
+    assert (after.manifest["status"], after.variables, len(after)) == ("killed", tuple(VARIABLES), 3)
+    # results.csv alone beside it: nobody knows what it is of, so that no run replaces it
+    manifest.write_bytes(text[:kept] + zeros * b"\0")
+    with RunFolder(tmp_path) as run:
+        assert not run.foreign_files() and run.is_of_another(ABOUT)
+    found = recover(tmp_path)
+    assert found is not None and found.manifest["status"] == "killed"
+    assert Results.read(tmp_path).data.tolist() == [[0.0], [1.0], [2.0]]
+    with RunFolder(tmp_path) as run:
+        assert not run.foreign_files() and run.is_of_another(ABOUT)
+    # and without any rows the next run just runs
+    for path in tmp_path.iterdir():
+        path.unlink()
+    manifest.write_bytes(text[:kept] + zeros * b"\0")
+    with RunFolder(tmp_path) as run:
+        assert not run.foreign_files() and run.recover() is None
+        run.begin(ABOUT, VARIABLES)
+    assert status(tmp_path) == "running"
+
+
+@pytest.mark.parametrize(("values", "zeros"), [([1, 0, 2, 0, 0], 2), ([1, 0, 2], 0), ([0, 0, 0], 0), ([], 0)])
+def test_zeros_at_the_end_of_a_killed_run_are_told(tmp_path: Path, values: list[int], zeros: int) -> None:
+    begun(tmp_path)
+    (tmp_path / "results.rows").write_bytes(BEGIN + np.array(values, dtype=float).tobytes())
+    found = recover(tmp_path)
+    assert found is not None and len(found) == len(values)
+    told = [w for w in found.manifest.get("warnings", ()) if "hold zeros alone" in w]
+    assert [w.split()[2] for w in told] == [str(zeros)] * bool(zeros)
+
+
+def test_a_run_json_of_somebodys_own_is_no_half_one(tmp_path: Path) -> None:
+    for text in ("mine", "{}", "[", '{"name": 1', "{ }"):
+        (tmp_path / "run.json").write_text(text)
+        with RunFolder(tmp_path) as run:
+            assert run.foreign_files() == ["run.json"]
+
+
 def test_a_run_that_was_killed_between_its_files_is_whole(tmp_path: Path) -> None:
     begun(tmp_path, rows=1)  # the rows that were saved are fewer than the results that were written
     Results([0.0, 0.1], [[1.0], [2.0]], VARIABLES).to_csv(tmp_path / "results.csv")
