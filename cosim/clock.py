@@ -18,12 +18,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # what reads a system file alone, as `evcosim list` does, needs no numpy
+    import numpy as np
+    from numpy.typing import NDArray
 
-Times = NDArray[np.float64]
-"""Times [s], shape (n,)."""
+    Times = NDArray[np.float64]
+    """Times [s], shape (n,)."""
 
 _FINEST = 10**9  # parts of a second
 LATEST = 1e12
@@ -83,6 +85,8 @@ class Clock:
 
     def times(self, first: int, stop: int) -> Times:
         """Return t_k [s] for k from `first` to before `stop`, shape (max(0, stop - first),)."""
+        import numpy as np
+
         found = (self.first + np.arange(first, stop, dtype=np.float64) * self.advance) / self.divisor
         if first <= self.steps < stop:
             found[self.steps - first] = self.stop
@@ -99,6 +103,8 @@ class Clock:
 
     def on_points(self, times: Times) -> Times:
         """Return times [s], shape (n,), with those that miss a communication point by rounding put there."""
+        import numpy as np
+
         with np.errstate(over="ignore", invalid="ignore"):
             k = np.rint((times - self.start) / self.step)
             within = (k >= 0.0) & (k <= self.steps)

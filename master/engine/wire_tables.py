@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any, assert_never
@@ -12,12 +13,11 @@ from numpy.typing import NDArray
 
 from ...cosim.can.channel import SignalRoute
 from ...cosim.can.database import Message, Signal
-from ...cosim.can.logs.frames import encoder
 from ...cosim.can.message_settings import SendType
 from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
-from ...cosim.can.wire.payload import words
+from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
@@ -157,11 +157,22 @@ def views(arrays: Arrays, helper: Any) -> Wire:
 
 def _base(plan: MessagePlan) -> bytes:
     """Return the payload with the start values of signals that nothing fills, and 0 in all others."""
-    start = {signal.name: signal.start_raw for signal in plan.message.signals.values()}
-    filled = [route.signal for route in plan.routes]
+    filled = {route.signal.name for route in plan.routes}
     if plan.framing is not None and plan.framing.protection is not None:
-        filled += plan.framing.protection.signals
-    return encoder(plan.message)(start | {signal.name: 0 for signal in filled})
+        filled |= {signal.name for signal in plan.framing.protection.signals}
+    frame = bytearray(plan.message.length)
+    for name, signal in plan.message.signals.items():
+        if name not in filled:
+            start, little = place_of(signal)
+            put(frame, little, start, signal.length, *words(start_bits(signal)))
+    return bytes(frame)
+
+
+def start_bits(signal: Signal) -> int:
+    """Return the raw value that a signal starts with as a number that has its bits; negative too."""
+    if not signal.is_float:
+        return int(signal.start_raw)
+    return int.from_bytes(struct.pack("<f" if signal.length == 32 else "<d", signal.start_raw), "little")
 
 
 def _add_fallback(made: Arrays, plans: Sequence[MessagePlan], initial: Mapping[int, float]) -> None:

@@ -8,6 +8,7 @@ from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.framing import Framing
+from evcosim.cosim.can.logs.frames import encoder
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.can.wire.tables import Wire
 from evcosim.cosim.plan.plan import MessagePlan
@@ -42,6 +43,27 @@ def test_rows_of_a_message_and_its_signals():
     assert made["rings"][0, T.ROWS] == 3
     assert made["state"][T.STEP_TIME] == 10**10
     assert made["base"][0, :4].tolist() == [0, 0, 255, 0]  # a signal that nothing feeds has its start value
+
+
+STARTS = {
+    "Flag": Signal("Flag", 0, 1, start_raw=1),
+    "Signed": Signal("Signed", 1, 11, signed=True, start_raw=-700),
+    "Motorola": Signal("Motorola", 23, 40, little_endian=False, start_raw=0x12_3456_789A),
+    "Negative": Signal("Negative", 56, 64, signed=True, start_raw=-(2**63) + 5),
+    "Large": Signal("Large", 127, 64, little_endian=False, start_raw=2**64 - 2),
+    "Single": Signal("Single", 184, 32, is_float=True, start_raw=-0.1),
+    "Double": Signal("Double", 223, 64, little_endian=False, is_float=True, start_raw=1e-320),
+}
+
+
+def test_start_values_are_the_bits_that_cantools_writes():
+    message = Message("test.dbc", "M", 0x20, length=48, fd=True, signals=STARTS)
+    plan = MessagePlan("can0", message, BusSettings(), (), {}, 1, 1, None, framing=Framing())
+    one = Sender(plan, MessageChannel(message, ()), memoryview(np.zeros(9)), None)
+    made = wire_arrays([one], np.zeros(9), 0.01, logs=False)
+    expected = encoder(message)({name: signal.start_raw for name, signal in STARTS.items()})
+    assert bytes(made["base"][0, :48].tolist()) == expected
+    assert sum(map(bool, expected)) > 20
 
 
 def test_every_table_has_a_place_and_is_shared_with_its_view():
