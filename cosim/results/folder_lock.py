@@ -14,10 +14,13 @@ from typing import Any, Self
 
 from ..errors import ConfigError
 from ..file_names import flaw_of_name, short_path
+from ..leftovers import temporary_files
 from ..writing import reason, try_folder
 from .manifest import is_cut, read_manifest
 
 MANIFEST_NAME = "run.json"
+KEPT_IN = "kept_in"
+"""The key of run.json for the folder that has the results in its place."""
 _PATIENCE = 0.3  # s for somebody who looks whether a run lives
 
 
@@ -137,6 +140,29 @@ def lives(folder: Path) -> bool:
 
 
 def status(folder: Path, manifest: Mapping[str, Any]) -> str | None:
-    """Return how the run in a folder ended: "killed" where its manifest says that it runs and it does not."""
+    """Return how the run in a folder ended, where its manifest says that it runs and it does not: "killed".
+
+    "cut off" where the process has left its results elsewhere, and could not say so: its disk took no more.
+    """
     said = manifest.get("status")
-    return "killed" if said == "running" and not lives(folder) else said
+    if said != "running" or lives(folder):
+        return said
+    return "cut off" if kept_elsewhere(folder) else "killed"
+
+
+def kept_elsewhere(folder: Path) -> Path | None:
+    """Return where the run in a folder has left its results that its disk did not take; None: nowhere known.
+
+    run.json says it, or the results among the temporary files of this user name the same process.
+    """
+    about = manifest_of(folder)
+    if isinstance(said := about.get(KEPT_IN), str):
+        return Path(said)
+    if not isinstance(process := about.get("process"), dict) or about.get("status") != "running":
+        return None
+    with contextlib.suppress(OSError):
+        for kept in Path(temporary_files()).glob("evcosim-results-*"):
+            ours = not hasattr(os, "getuid") or kept.stat().st_uid == os.getuid()
+            if ours and manifest_of(kept).get("process") == process:
+                return kept
+    return None

@@ -16,11 +16,11 @@ from ..errors import ConfigError, RunError
 from ..leftovers import keep_folder, temporary
 from ..row_store import Array
 from ..shortage import of_temporary_files
-from .folder_lock import MANIFEST_NAME
+from .folder_lock import KEPT_IN, MANIFEST_NAME
 from .manifest import write_manifest
 from .results import CSV_NAME, ROWS, Results
 from .rows_file import ROWS_NAME, complete
-from .run_folder import KEPT_IN, UNWRITTEN, RunFolder
+from .run_folder import UNWRITTEN, RunFolder
 from .text_rows import TEXT_ROWS_NAME, complete_texts
 
 _PIECE = 4096  # rows that are written at a time
@@ -37,7 +37,7 @@ def finish(folder: RunFolder, results: Results) -> None:
         if not folder.is_there:
             _come_back(folder, results)
     except ConfigError as error:
-        raise RunError(f"{error}\n{_elsewhere(folder.head, results, 0)[1]}") from error
+        raise RunError(f"{error}\n{_elsewhere(folder, results, 0)[1]}") from error
     try:
         folder.finish(results)
     except ConfigError as error:
@@ -70,7 +70,7 @@ def _rescued(folder: RunFolder, results: Results, said: str) -> list[str]:
         return [rows, *([refused] if refused else [])]
     if results.manifest.get("status") in _GOOD:
         results.manifest |= {"status": "failed", "error": said}
-    place, sentence = _elsewhere(folder.head, results, count)
+    place, sentence = _elsewhere(folder, results, count)
     sentences = [sentence]
     if count:
         until = f"up to t = {results.times(count - 1, count)[0]:.6g} s"
@@ -113,18 +113,20 @@ def _ending(results: Results) -> dict[str, Any]:
     return {key: results.manifest[key] for key in keys if key in results.manifest}
 
 
-def _elsewhere(head: bytes, results: Results, count: int) -> tuple[Path | None, str]:
+def _elsewhere(folder: RunFolder, results: Results, count: int) -> tuple[Path | None, str]:
     """Keep results where temporary files are, as rows if there are more than `count` that fit.
 
-    Return the folder (None: there is none) and a sentence about it.
+    Their run.json names the process as that of the run's `folder` does, which may not take another word.
+    Return the folder of the results (None: there is none) and a sentence about it.
     """
+    results.manifest["process"] = folder.process
     try:
         with temporary() as place:
             try:
                 results.write(place)
             except ConfigError as error:
                 said = f"nor can they be kept elsewhere: {error}"
-                rows = _complete_rows(place, head, results)
+                rows = _complete_rows(place, folder.head, results)
                 if rows <= count:
                     return None, said
                 with contextlib.suppress(ConfigError):  # the rows read without it

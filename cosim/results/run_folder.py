@@ -25,7 +25,7 @@ from ..errors import ConfigError, RunError, counted
 from ..file_names import check_name
 from ..leftovers import keep_folder, temporary
 from ..writing import reason, remove_drafts
-from .folder_lock import MANIFEST_NAME, FolderLock, manifest_is_cut, manifest_of
+from .folder_lock import KEPT_IN, MANIFEST_NAME, FolderLock, manifest_is_cut, manifest_of
 from .manifest import manifest_text, overwrite_manifest, read_manifest, write_manifest
 from .results import CSV_NAME, ROWS, Results
 from .rows_file import ROWS_NAME, has_no_row
@@ -44,8 +44,6 @@ FILES = (CSV_NAME, texts_path(Path(CSV_NAME)).name, MANIFEST_NAME, *FIGURES, REP
 """The files of a run that has ended."""
 UNWRITTEN = "unwritten"
 """The key of run.json for the reason why there is no results.csv."""
-KEPT_IN = "kept_in"
-"""The key of run.json for the folder that has the results in its place."""
 
 
 class RunFolder(FolderLock):
@@ -58,6 +56,8 @@ class RunFolder(FolderLock):
     """Saves all these rows in another folder. Raises OSError or ConfigError."""
     head: bytes = b""
     """The begin of the file of the rows, once the run has begun."""
+    process: Mapping[str, Any] = {}
+    """The process that has the folder, as run.json names it, once the run has begun."""
     remark: str = ""
     """A sentence about what befell the folder while the run went on; "": nothing."""
 
@@ -158,8 +158,8 @@ class RunFolder(FolderLock):
             raise ConfigError(f"output folder {self.path}: cannot be written: {said}") from error
         remove_drafts(self.path)
         now = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-        process = {"id": os.getpid(), "host": socket.gethostname(), "since": now}
-        about = {**manifest, "status": "running", "process": process}
+        self.process = {"id": os.getpid(), "host": socket.gethostname(), "since": now}
+        about = {**manifest, "status": "running", "process": self.process}
         write_manifest(self.path / MANIFEST_NAME, about, variables, spare=_SPARE)
 
     def finish(self, results: Results) -> None:

@@ -27,12 +27,17 @@ def recover(
 
     `evcosim plot` and `compare` read such a folder as it is, and the next run into it recovers it.
     """
-    from ...cosim.results.folder_lock import manifest_of
-    from ...cosim.results.run_folder import KEPT_IN
+    from ...cosim.errors import ConfigError
+    from ...cosim.results.folder_lock import kept_elsewhere
     from ...cosim.results.run_folder import recover as recovered
 
-    elsewhere = manifest_of(folder).get(KEPT_IN)
-    found = recovered(folder)
+    elsewhere = kept_elsewhere(folder)
+    try:
+        found = recovered(folder)
+    except ConfigError as error:
+        if elsewhere is None:
+            raise
+        raise ConfigError(*error.lines, f"the results of the run were kept in {elsewhere}") from error
     if found is None:
         print(f"{folder}: no run was killed here and no row is cut off, there is nothing to recover")
     else:

@@ -6,6 +6,7 @@ import json
 import os
 import resource
 import shutil
+import subprocess
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,9 @@ import numpy as np
 import pytest
 
 from evcosim.cosim.clock import Clock
-from evcosim.cosim.errors import RunError
+from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.results import rescue
+from evcosim.cosim.results.folder_lock import kept_elsewhere
 from evcosim.cosim.results.results import Results
 from evcosim.cosim.results.rows_file import head
 from evcosim.cosim.results.run_folder import RunFolder, recover
@@ -266,3 +268,31 @@ def test_in_place_a_manifest_is_never_cut(tmp_path: Path) -> None:
         assert run.note({"error": "e" * 1000}) == ""
         assert about(disk)["error"] == "e" * 1000
         assert len((disk / "run.json").read_bytes()) == len(before)
+
+
+@pytest.mark.parametrize("saved", [0, 300])
+def test_a_disk_that_is_read_only_in_the_end_hides_neither_the_end_nor_the_results(
+    saved: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    with small_disk(tmp_path / "disk", 256) as disk:
+        folder = disk / "out"
+        run = begun(folder, saved)
+        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
+        said = refusal(run, results_of(saved=saved))
+        (kept,) = (tmp_path / "temporary").iterdir()
+        assert "Read-only file system" in said
+        assert f"the results up to t = {CLOCK.at(COUNT - 1):.6g} s are kept in {kept}" in said
+        assert about(folder)["status"] == "running", "nobody can change it"
+        assert kept_elsewhere(folder) == kept
+        with pytest.raises(ConfigError, match="Read-only file system"):
+            recover(folder)
+        if saved:
+            assert (Results.read(folder).manifest["status"], len(Results.read(folder))) == ("cut off", saved)
+        assert np.array_equal(Results.read(kept).data, VALUES)
+        # another run's results are nobody's here
+        manifest = json.loads((kept / "run.json").read_text())
+        manifest["process"]["id"] += 1
+        (kept / "run.json").write_text(json.dumps(manifest))
+        assert kept_elsewhere(folder) is None
