@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import stat
 from pathlib import Path
@@ -52,7 +53,9 @@ def content(path: Path, about: str = "") -> bytes:
 
 
 def text_of(data: bytes) -> str:
-    """Return the text of a file in UTF-8 or, where it is no UTF-8, in cp1252, the usual encoding."""
+    """Return the text of a file in UTF-16 that says so, in UTF-8 or, where it is neither, in cp1252."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", errors="replace")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -35,7 +35,7 @@ _FORMATS = [
 
 
 def load_dbc(path: str | Path) -> Database:
-    """Return the messages of a DBC file in UTF-8 or, where it is no UTF-8, in cp1252, the usual encoding.
+    """Return the messages of a DBC file, in cp1252, the usual encoding, or in Unicode (`reading.text_of`).
 
     Raises ConfigError when the file cannot be read, or is no DBC.
     """
@@ -45,7 +45,7 @@ def load_dbc(path: str | Path) -> Database:
         line, said = found.notes[0] if found.notes else (1, "not valid in a DBC file: ''")
         raise ConfigError(f"{path}: line {line}: {said}")
     messages = [_Reader(path, found, entry).message() for entry in found.messages]
-    return database_of(path, messages, found.notes, found.nodes)
+    return database_of(path, messages, found.notes, map(found.node, found.nodes))
 
 
 @dataclasses.dataclass
@@ -76,13 +76,13 @@ class _Reader:
         senders = [entry.sender, *self.entries.senders.get(dbc_id, [])]
         return Message(
             file=str(self.path),
-            name=str(self._own((dbc_id, ""), "SystemMessageLongSymbol") or entry.name),
+            name=self._own((dbc_id, ""), "SystemMessageLongSymbol") or entry.name,
             frame_id=frame_id,
             extended=extended,
             length=entry.length,
             cycle_time=self._seconds("GenMsgCycleTime") or None,
             start_delay=self._seconds("GenMsgStartDelayTime") or 0.0,
-            senders=tuple(dict.fromkeys(sender for sender in senders if sender)),
+            senders=tuple(dict.fromkeys(self.entries.node(sender) for sender in senders if sender)),
             signals=signals,
             fd=frame_format.endswith("CAN_FD"),
             j1939=j1939,
@@ -105,9 +105,9 @@ class _Reader:
         scale, offset = _finite(s.scale), _finite(s.offset)
         if not is_float and float(scale).is_integer() and float(offset).is_integer():
             scale, offset = int(scale), int(offset)
-        unlimited = s.minimum == s.maximum == "0"
+        unlimited = number(s.minimum) == number(s.maximum) == 0  # also as 0.0
         signal = Signal(
-            name=str(self._own(key, "SystemSignalLongSymbol") or s.name),
+            name=self._name(s.name),
             start=whole(s.start) or 0,
             length=whole(s.length) or 0,
             little_endian=s.order != "0",
@@ -119,11 +119,11 @@ class _Reader:
             maximum=None if unlimited else _finite(s.maximum),
             unit=s.unit,
             choices=self.entries.choices.get(key, {}),
-            multiplexer=multiplexer,
+            multiplexer=self._name(multiplexer),
             multiplexer_ranges=ranges,
             is_multiplexer=s.marker.endswith("M"),
             comment=self.entries.comments.get(key, ""),
-            receivers=s.receivers,
+            receivers=tuple(map(self.entries.node, s.receivers)),
             send_type=self._choice(key, "GenSigSendType", []),
             inactive_raw=self._number(key, "GenSigInactiveValue", default=False),
             line=s.line,
@@ -133,6 +133,10 @@ class _Reader:
         if not is_float and float(start).is_integer():
             start = int(start)
         return dataclasses.replace(signal, start_raw=start, not_available=self._code(key, signal))
+
+    def _name(self, short: str) -> str:
+        """Return the name of a signal: its long one, where an attribute has that."""
+        return self._own((self.entry.dbc_id, short), "SystemSignalLongSymbol") or short
 
     def _selection(self, s: SignalEntry) -> tuple[str, tuple[tuple[int, int], ...], str]:
         """Return the multiplexer of a signal and its raw values, "" and () for all frames; and a problem."""

@@ -99,6 +99,7 @@ class Entries:
     """All entries of a file that evcosim uses; `notes` are sentences with the line that each is about."""
 
     nodes: list[str] = dataclasses.field(default_factory=list)
+    long_nodes: dict[str, str] = dataclasses.field(default_factory=dict)
     messages: list[MessageEntry] = dataclasses.field(default_factory=list)
     definitions: dict[str, Definition] = dataclasses.field(default_factory=dict)
     defaults: dict[str, Attribute] = dataclasses.field(default_factory=dict)
@@ -113,6 +114,10 @@ class Entries:
     notes: list[tuple[int, str]] = dataclasses.field(default_factory=list)
     valid: int = 0
     """The number of statements that were read and say that this is a DBC file."""
+
+    def node(self, name: str) -> str:
+        """Return the name of a node: its long one, where an attribute has that."""
+        return self.long_nodes.get(name) or name
 
     def attribute(self, key: Key, name: str) -> Attribute | None:
         """Return the attribute of a message or a signal itself; None where it has none."""
@@ -262,6 +267,8 @@ def _attribute(made: Entries, statement: Statement, match: re.Match[str], known:
     if name not in made.definitions:
         made.notes.append((statement.line, f"the attribute \"{name}\" is not defined: '{statement.shown}'"))
     if match["other"]:
+        if name == "SystemNodeLongSymbol":
+            made.long_nodes[match["other"]] = value.value
         return
     number = match["message"] or match["of"]
     if number is None:

@@ -10,7 +10,7 @@ from .plan import InputPlan, MessagePlan
 
 def node_of(message: MessagePlan) -> str:
     """Return the node that sends a message; where the database names none, its unit."""
-    named = [sender for sender in message.message.senders if sender != "Vector__XXX"]
+    named = message.message.senders
     return named[0] if named else next(iter(message.senders.values()), "").partition(".")[0]
 
 

@@ -82,7 +82,7 @@ class TestReading:
             not_available=-2048, comment="Oil", receivers=("B",),
         )  # fmt: skip # one line a group
 
-    @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252"])
+    @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16"])
     def test_both_encodings_of_a_degree_sign(self, tmp_path: Path, encoding: str) -> None:
         path = write(tmp_path, 'S : 0|8@1+ (1,-40) [0|0] "°C" B', encoding=encoding)
         assert load_dbc(path).messages["M"].signals["S"].unit == "°C"
@@ -267,3 +267,46 @@ class TestFlaws:
         database = load_dbc(path)
         assert list(database.messages) == ["M"] and database.warnings == ()
         assert database.messages["M"].comment == comment.replace('\\"', '"')
+
+
+LONG = """VERSION ""
+BU_: A B
+BO_ 1 M: 8 A
+ SG_ Sel M : 0|4@1+ (1,0) [0|15] "" B
+ SG_ Sub m1M : 4|4@1+ (1,0) [0|15] "" B
+ SG_ Deep m1 : 8|8@1+ (1,0) [0|0] "" B
+SG_MUL_VAL_ 1 Sub Sel 1-1;
+SG_MUL_VAL_ 1 Deep Sub 1-3, 5-5;
+BO_ 2 N: 8 A
+ SG_ Sel M : 0|4@1+ (1,0) [0|15] "" B
+ SG_ Value m1 : 8|8@1+ (1,0) [0|0] "" B
+BA_DEF_ SG_ "SystemSignalLongSymbol" STRING ;
+BA_DEF_ BU_ "SystemNodeLongSymbol" STRING ;
+BA_ "SystemSignalLongSymbol" SG_ 1 Sel "ALongSelector";
+BA_ "SystemSignalLongSymbol" SG_ 1 Sub "AnotherLongSelector";
+BA_ "SystemSignalLongSymbol" SG_ 2 Sel "TheLongestSelector";
+BA_ "SystemNodeLongSymbol" BU_ A "ANodeWithALongName";
+"""
+
+
+def test_long_names_are_those_of_multiplexers_and_nodes_too(tmp_path: Path) -> None:
+    path = tmp_path / "long.dbc"
+    path.write_text(LONG)
+    database = load_dbc(path)
+    assert (database.warnings, database.nodes) == ((), ("ANodeWithALongName", "B"))
+    found = {}
+    for message in database.messages.values():
+        assert message.senders == ("ANodeWithALongName",)
+        found |= {name: message.require(name).multiplexer for name in message.signals}
+    assert found == {
+        "ALongSelector": "", "AnotherLongSelector": "ALongSelector", "Deep": "AnotherLongSelector",
+        "TheLongestSelector": "", "Value": "TheLongestSelector",
+    }  # fmt: skip # pairs
+
+
+@pytest.mark.parametrize(("low", "high"), [("0", "0"), ("0.0", "0.0"), ("0", "0.0"), ("-0", "0E0")])
+def test_a_range_from_0_to_0_is_none_however_it_is_written(tmp_path: Path, low: str, high: str) -> None:
+    path = tmp_path / "range.dbc"
+    path.write_text(f'{HEAD}\nBO_ 1 M: 8 A\n SG_ S : 0|8@1+ (0.5,0) [{low}|{high}] "" B\n')
+    signal = load_dbc(path).messages["M"].signals["S"]
+    assert (signal.minimum, signal.maximum) == (None, None)
