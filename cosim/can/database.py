@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from ..errors import ConfigError, nearest
+from .timing.arbitration import arbitration_key
 from .timing.lengths import FD_LENGTHS, fd_length
 
 LONGEST = 1785
@@ -132,6 +133,11 @@ class Message:
     def multiplexed(self) -> bool:
         """True when a signal selects which other signals a frame holds."""
         return any(s.is_multiplexer for s in self.signals.values())
+
+    @property
+    def priority(self) -> int:
+        """The number by which its frames win the arbitration: the least of those that start at once."""
+        return arbitration_key(self.frame_id, self.extended)
 
     @property
     def frame_length(self) -> int:

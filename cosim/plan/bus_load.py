@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..can.message_settings import SendType
-from ..can.timing.arbitration import arbitration_key
-from ..can.timing.lengths import INTERFRAME, least_bits, most_bits
+from ..can.timing.lengths import INTERFRAME, bit_time, frame_times
 from ..can.timing.response_times import Sent, response_times
 from ..clock import picoseconds
 from ..errors import ConfigError
@@ -109,27 +108,17 @@ def check_load(load: BusLoad, timing: str, place: str) -> str:
 
 def _load(bus: str, groups: Sequence[Sequence[MessagePlan]], step: float) -> BusLoad:
     settings = groups[0][0].settings
-    bit = round(_SECOND / settings.bitrate)
     sent, about = [], {}
     for plans in groups:
         message, one = plans[0].message, plans[0]
         apart = max(one.every // len(plans), one.sending.interval)
         cycle, regular = apart * picoseconds(step), _regular(one, len(plans)) * picoseconds(step)
-        fast = round(_SECOND / (settings.data_bitrate or settings.bitrate))
-        kind = (
-            message.extended,
-            message.frame_length,
-            message.fd,
-            message.fd and settings.data_bitrate is not None,
-        )
-        least, most = (
-            (nominal + INTERFRAME) * bit + data * fast
-            for nominal, data in (least_bits(*kind), most_bits(*kind))
-        )
-        key = arbitration_key(message.frame_id, message.extended)
+        kind = message.extended, message.frame_length, message.fd
+        least, most = frame_times(*kind, settings.bitrate, settings.data_bitrate)
         jitter = picoseconds(settings.jitter_of(message.name))
-        sent.append(Sent(message.name, key, most, cycle, jitter))
+        sent.append(Sent(message.name, message.priority, most, cycle, jitter))
         about[message.name] = one, cycle, least / regular if regular else 0.0, most
+    bit = bit_time(settings.bitrate)
     responses = response_times(sent, bit, INTERFRAME * bit)
     rows = []
     for each in sorted(sent, key=lambda s: s.key):

@@ -13,7 +13,7 @@ from ...cosim.can.formats import load_database
 from ...cosim.can.limits import limits_note
 from ...cosim.can.message_settings import MessageSettings
 from ...cosim.can.send_types import send_type_of
-from ...cosim.can.timing.lengths import INTERFRAME, least_bits, most_bits
+from ...cosim.can.timing.lengths import frame_times
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import UnknownUnitError
@@ -81,13 +81,8 @@ def _load(message: Message, bitrate: int | None, data_bitrate: int | None) -> li
     """Return the least and the greatest part of the time that the bus is busy; None where it is not known."""
     if bitrate is None or not message.cycle_time or message.problem or message.length > 64:
         return None
-    switches = message.fd and data_bitrate is not None
-    found = []
-    for bits in (least_bits, most_bits):
-        nominal, fast = bits(message.extended, message.length, message.fd, switches)
-        seconds = (nominal + INTERFRAME) / bitrate + fast / (data_bitrate or bitrate)
-        found.append(seconds / message.cycle_time)
-    return found
+    kind = message.extended, message.frame_length, message.fd
+    return [time * 1e-12 / message.cycle_time for time in frame_times(*kind, bitrate, data_bitrate)]
 
 
 def _signal(message: Message, signal: Signal) -> dict[str, Any]:

@@ -8,7 +8,6 @@ from typing import Any, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.can.timing.arbitration import arbitration_key
 from ...cosim.can.wire import tables as T
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
@@ -40,7 +39,7 @@ def add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[Faul
     Those that take nodes off a bus stand in the order of their times.
     """
     buses, nodes = list(dict.fromkeys(plan.bus for plan in plans)), nodes_of(plans)
-    keys = {(plan.bus, plan.message.name): _key(plan) for plan in plans}
+    keys = {(plan.bus, plan.message.name): plan.message.priority for plan in plans}
     made["faults"] = np.zeros((max(1, len(faults)), T.FAULT_WIDTH), dtype=np.int64)
     made["odds"] = np.ones(max(1, len(faults)))
     made["state"][T.FAULTS] = len(faults)
@@ -103,10 +102,6 @@ def _columns(fault: Fault) -> dict[int, Any]:
 def _frames(fault: FrameFault) -> dict[int, Any]:
     left = -1 if fault.count is None else fault.count
     return {T.LEFT: left, T.EACH: fault.every, T.FAULT_SEED: fault.seed}
-
-
-def _key(plan: MessagePlan) -> int:
-    return arbitration_key(plan.message.frame_id, plan.message.extended)
 
 
 def owner_of(slot: int, nodes: Sequence[tuple[str, str]], receiving: Mapping[int, tuple[str, str]]) -> int:

@@ -22,7 +22,7 @@ from ...cosim.plan.plan import FaultPlan, Plan
 from .fault_tables import nodes_of
 from .schedule import Action
 from .sender import Sender
-from .wire_tables import key_of, ring_of_bus, views, wire_arrays
+from .wire_tables import ring_of_bus, views, wire_arrays
 
 
 class FramePath:
@@ -45,7 +45,7 @@ class FramePath:
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
-        framed.sort(key=lambda i: (buses.index(senders[i].plan.bus), key_of(senders[i].plan.message)))
+        framed.sort(key=lambda i: (buses.index(senders[i].plan.bus), senders[i].plan.message.priority))
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cosim.can.channel import SignalRoute
-from ...cosim.can.database import Message, Signal
+from ...cosim.can.database import Signal
 from ...cosim.can.message_settings import SendType
 from ...cosim.can.quantization import SignalOperation, decode
-from ...cosim.can.timing.arbitration import arbitration_key
+from ...cosim.can.timing.lengths import bit_time
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
@@ -67,7 +67,7 @@ def wire_arrays(
     _add_protection(made, plans, receiving or {})
     _add_buses(made, plans, step)
     _add_rings(made, plans)
-    same = [(plan.bus, key_of(plan.message)) for plan in plans]
+    same = [(plan.bus, plan.message.priority) for plan in plans]
     for i, plan in enumerate(plans):
         pages = {T.PAGE: i - same.index(same[i]), T.PAGES: same.count(same[i])}
         _fill(made["messages"], i, _message_row(plan) | pages | {T.LOGGED: logs})
@@ -75,11 +75,6 @@ def wire_arrays(
     made["waiting"][:] = made["base"]  # what babbles has no other payload
     add_faults(made, plans, faults)
     return made
-
-
-def key_of(message: Message) -> int:
-    """Return a number that of two messages is lower for the one that wins the bus."""
-    return arbitration_key(message.frame_id, message.extended)
 
 
 def ring_of_bus(made: Arrays, bus: int) -> int:
@@ -90,7 +85,7 @@ def ring_of_bus(made: Arrays, bus: int) -> int:
 def _message_row(plan: MessagePlan) -> dict[int, Any]:
     message = plan.message
     return {
-        T.KEY: key_of(message), T.ID: message.frame_id, T.EXTENDED: message.extended, T.FD: message.fd,
+        T.KEY: message.priority, T.ID: message.frame_id, T.EXTENDED: message.extended, T.FD: message.fd,
         T.LENGTH: message.length, T.EVERY: plan.every, T.FIRST: plan.first,
         T.SWITCHED: message.fd and plan.settings.data_bitrate is not None,
         T.JITTER: picoseconds(plan.settings.jitter_of(message.name)),
@@ -134,16 +129,12 @@ def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
         _fill(
             made["buses"], row,
             {T.DELAY: delay, T.TIMED: timed, T.FIRST_MESSAGE: own[0], T.MESSAGES: len(own),
-             T.BIT: _bit(settings.bitrate), T.DATA_BIT: _bit(settings.data_bitrate or settings.bitrate),
+             T.BIT: bit_time(settings.bitrate),
+             T.DATA_BIT: bit_time(settings.data_bitrate or settings.bitrate),
              T.SEED: settings.seed, T.NAME: zlib.crc32(bus.encode()), T.NOISY: settings.bit_error_rate > 0.0},
         )  # fmt: skip # a row
         right = math.log1p(-settings.bit_error_rate)
         made["chances"][row] = [-math.expm1(bits * right) for bits in range(_MOST_BITS)]
-
-
-def _bit(rate: int) -> int:
-    """Return the time of a bit [ps] at a rate [bit/s]."""
-    return round(10**12 / rate)
 
 
 def _node(plan: MessagePlan) -> tuple[str, str]:
@@ -278,15 +269,18 @@ def _real_row(route: SignalRoute, operation: SignalOperation) -> dict[int, float
 
 
 def _kind(operation: SignalOperation) -> int:
-    """Return the code of the steps from a value to the raw value."""
+    """Return the code of the steps from a value to the raw value; EXACT: Python does them."""
+    return T.EXACT if operation.kind == "exact" else rounding_code(operation)
+
+
+def rounding_code(operation: SignalOperation) -> int:
+    """Return the code of how a raw value is rounded, also of one that no double holds."""
     match operation.kind:
         case "float32":
             return T.FLOAT32
         case "float64":
             return T.FLOAT64
-        case "exact":
-            return T.EXACT
-        case "integer":
+        case "integer" | "exact":
             pass
         case _:
             assert_never(operation.kind)

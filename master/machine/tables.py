@@ -93,10 +93,10 @@ SPAN = 3
 FROM, MODE, SATURATES, TO, RECEIVERS, TIMES, FIRST_TIME = range(7)
 IN_SCALE, IN_ADD, LEAST, GREATEST, RESOLUTION, OFFSET, OUT_ADD, BELOW, ABOVE = range(7, 16)
 SIGNAL = 16
-"""Columns of SIGNALS: the sender's slot; the rounding; 1 if a value out of range becomes the raw value BELOW
-or ABOVE; RECEIVERS rows of SINKS from TO on; the number of values out of range, and the step of the first;
-the map to the bus' unit; the range of values; scale and offset of the raw value; the offset of decoding."""
-FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE = range(5)
+"""Columns of SIGNALS: the sender's slot; the rounding, by the codes of `can.wire.tables`; 1 if a value out
+of range becomes the raw value BELOW or ABOVE; RECEIVERS rows of SINKS from TO on; the number of values out of
+range, and the step of the first; the map to the bus' unit; the range of values; scale and offset of the raw
+value; the offset of decoding."""
 
 PLACE, ROWS, WIDTH, ARRIVAL = range(4)
 WAIT = 4

@@ -16,7 +16,6 @@ from typing import Any
 
 from ...clock import Clock, picoseconds
 from ..database import Message, Signal
-from ..timing.arbitration import arbitration_key
 from ..transmissions import FrameLog, RawLog
 
 
@@ -76,22 +75,18 @@ def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
 _Payload = tuple[float, int, int, Message, bytes]
 
 
-def _key(message: Message) -> int:
-    return arbitration_key(message.frame_id, message.extended)
-
-
 def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
     """Yield time [s], arbitration key, channel, message and payload of the frames of a log."""
     for instant, group in itertools.groupby(log.frames(), key=lambda frame: frame[:2]):
         step, since = instant
         time = clock.at(step) + (since - step * picoseconds(clock.step)) * 1e-12
-        for _, _, message, data in sorted(group, key=lambda frame: _key(frame[2])):
-            yield time, _key(message), channel, message, data
+        for _, _, message, data in sorted(group, key=lambda frame: frame[2].priority):
+            yield time, message.priority, channel, message, data
 
 
 def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
     """Yield time [s], arbitration key, channel, message and payload of each transmission of one message."""
-    message, order = log.message, _key(log.message)
+    message, order = log.message, log.message.priority
     encode = encoder(message)
     start = {s.name: s.start_raw for s in message.signals.values()}
     before, data = None, b""

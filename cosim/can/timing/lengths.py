@@ -14,7 +14,7 @@ the bits of an FD frame from ESI to the CRC delimiter take the data bit rate. In
 the sample point of their bit; where the two rates have the same sample point, as they should, the sum is the
 same.
 
-All functions but the last three are written for numba too: integers, and a `payload` of bytes, of which the
+All functions but the last five are written for numba too: integers, and a `payload` of bytes, of which the
 frame's are those from place `at` on.
 """
 
@@ -142,3 +142,27 @@ def most_bits(extended: bool, length: int, fd: bool = False, switch: bool = Fals
         return nominal + stuff, 0
     in_head = (head - 1) // 4
     return nominal + in_head, fast + stuff - in_head
+
+
+def bit_time(rate: int) -> int:
+    """Return the time of a bit [ps] at a rate [bit/s]."""
+    return round(10**12 / rate)
+
+
+def frame_times(
+    extended: bool, length: int, fd: bool, bitrate: int, data_bitrate: int | None
+) -> tuple[int, int]:
+    """Return the least and the longest time [ps] of a frame of `length` bytes with the interframe space.
+
+    Rates are in bit/s; with a `data_bitrate` frames of CAN FD switch to it.
+    """
+    switch = fd and data_bitrate is not None
+    bit, data_bit = bit_time(bitrate), bit_time(data_bitrate or bitrate)
+    least, most = (
+        (nominal + INTERFRAME) * bit + fast * data_bit
+        for nominal, fast in (
+            least_bits(extended, length, fd, switch),
+            most_bits(extended, length, fd, switch),
+        )
+    )
+    return least, most

@@ -10,7 +10,7 @@ by 1. Beyond 127 a node is error passive: after a frame of its own it lets 8 bit
 from __future__ import annotations
 
 from ..timing.draws import drawn
-from ..timing.lengths import classic_bits, fd_bits
+from ..timing.lengths import INTERFRAME, classic_bits, fd_bits
 from . import tables as T
 from .babble import ended
 from .off import is_off, recover, strike, switch_off
@@ -18,7 +18,6 @@ from .tables import Wire
 
 _ERROR = 2  # what is drawn for
 _ERROR_FRAME = 20  # bits of the flags of all nodes and the delimiter
-_INTERFRAME = 3
 _TAIL = 9  # bits behind those that may have the data bit rate
 _SUSPENDED = 8
 _PASSIVE, _OFF = 127, 255
@@ -92,7 +91,7 @@ def carry(w: Wire, bus: int, i: int, now: int) -> int:
         b[bus, T.FREE_AT] = (
             now + (wrong + 1 - quick + _ERROR_FRAME) * b[bus, T.BIT] + quick * b[bus, T.DATA_BIT]
         )
-    b[bus, T.FREE_AT] += _INTERFRAME * b[bus, T.BIT]
+    b[bus, T.FREE_AT] += INTERFRAME * b[bus, T.BIT]
     m[i, T.BUSY] += b[bus, T.FREE_AT] - now
     if b[bus, T.OFF_NODES]:
         recover(w, bus, now)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..timing.draws import drawn
+from ..timing.lengths import INTERFRAME
 from . import tables as T
 from .arbitration import contend, number_of
 from .babble import begin, go_on
@@ -108,7 +109,7 @@ def run_bus(w: Wire, bus: int, k: int) -> int:
         i = contend(w, bus, end)
         if i < 0:
             break
-        finish = w.buses[bus, T.FREE_AT] - 3 * w.buses[bus, T.BIT]  # without the interframe space
+        finish = w.buses[bus, T.FREE_AT] - INTERFRAME * w.buses[bus, T.BIT]
         note(m, i, T.LATENCY_LEAST, finish - m[i, T.SAMPLED], m[i, T.CARRIED])
         m[i, T.CARRIED] += 1
         if log(w, i, k, finish) != T.DONE:

@@ -23,15 +23,16 @@ import llvmlite.binding
 import numba
 
 from ....cosim import leftovers
+from ....cosim.can.wire import tables as wire_tables
 from ...builtin import cache_folder, keep, kept
 from ...fmi import types
 from ...machine import access, calling, flat, handing, serving, slots, tables
 from ..progress import announce
 from . import frames, kernel
 
-SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types)
+SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types, wire_tables)
 """The modules of this project that the machine code is made of: `kernel` and those that it imports."""
-_SERVING: tuple[ModuleType, ...] = (serving, flat, *SOURCES[1:])
+_SERVING: tuple[ModuleType, ...] = (serving, flat, calling, handing, access, tables, slots, types)
 _WIRE = "wire"
 _KERNEL = "int64(int64)"
 _made: dict[bool | str, Any] = {}

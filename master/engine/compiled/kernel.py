@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....cosim.can.wire import tables as T
 from ...machine import tables as L
 from ...machine.access import call_2, call_4, number, put_number, put_word, word
 from ...machine.calling import call, clock, inlined, step
@@ -40,14 +41,14 @@ def check(m, first, count):
 @inlined
 def rounded(q, mode):
     """Round a raw value in range by the signal's mode; that of a float signal only to its format."""
-    if mode == L.NEAREST or mode == L.TRUNCATE:
+    if mode == T.NEAREST or mode == T.TRUNCATE:
         # the greatest double below 0.5, since 0.5 itself would round 0.49999999999999994 up
-        half = 0.49999999999999994 if mode == L.NEAREST else 0.0
+        half = 0.49999999999999994 if mode == T.NEAREST else 0.0
         return np.floor(q + half) if q >= 0.0 else 0.0 - np.floor(half - q)
-    if mode == L.HALF_EVEN:
+    if mode == T.HALF_EVEN:
         # doubles from 2**52 on are whole, so the sum is rounded to a whole number, a half to the even one
         return q + 6755399441055744.0 - 6755399441055744.0
-    if mode == L.FLOAT32:
+    if mode == T.FLOAT32:
         return np.float64(np.float32(q))
     return q
 

@@ -8,7 +8,7 @@ from ....cosim.plan.turns import TurnTimes
 from ....cosim.units.measure import Affine
 from ...machine import tables as L
 from ...machine.rows import Cells
-from .codes import raw_mode
+from ..wire_tables import rounding_code
 
 
 def times_row(times: TurnTimes) -> Cells:
@@ -30,7 +30,7 @@ def signal_row(route: SignalRoute, operation: SignalOperation, first_sink: int) 
     """Return the columns of SIGNALS that say how a signal is sent; its receivers begin at `first_sink`."""
     row: dict[int, int | float] = {
         L.FROM: route.source,
-        L.MODE: raw_mode(operation),
+        L.MODE: rounding_code(operation),
         L.SATURATES: int(operation.raw_below is not None),
         L.TO: first_sink,
         L.RECEIVERS: len(route.sinks),

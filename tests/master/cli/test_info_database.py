@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from evcosim.cosim.can.dbc import load_dbc
 from evcosim.cosim.errors import ConfigError
+from evcosim.master.cli import info_database
 from evcosim.master.cli.info_database import described
 from evcosim.master.cli.json_info import INFO_DATABASE
 from support.databases import EV, HEAD
@@ -55,6 +57,17 @@ def test_the_load_is_that_of_all_cyclic_frames(car):
     assert fast["load"] == pytest.approx([least, most]) == about["load"]
     assert big["load"] is None  # it has no cycle time
     assert described(car, "Fast", 250_000)["load"] == pytest.approx([2 * least, 2 * most])
+
+
+def test_the_load_of_a_frame_of_can_fd_is_that_of_its_length(tmp_path):
+    """9 bytes are sent as 12."""
+    loads = []
+    for length in (9, 12):
+        path = tmp_path / f"{length}.dbc"
+        path.write_text(f'VERSION ""\nBU_: A\nBO_ 1 M: {length} A\n SG_ S : 0|8@1+ (1,0) [0|0] "" A\n')
+        message = dataclasses.replace(load_dbc(path).messages["M"], cycle_time=0.01, fd=True)
+        loads.append(info_database._load(message, 500_000, 2_000_000))
+    assert loads[0] == loads[1]
 
 
 def test_the_load_of_the_project_s_own_database():

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 
-from evcosim.cosim.can.bus_settings import BusSettings
+from evcosim.cosim.can.bus_settings import BusSettings, Rounding
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.framing import Framing
 from evcosim.cosim.can.logs.frames import encoder
+from evcosim.cosim.can.quantization import operation
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.can.wire.tables import Wire
 from evcosim.cosim.plan.plan import MessagePlan
 from evcosim.cosim.units.measure import Affine
 from evcosim.master.engine.sender import Sender
-from evcosim.master.engine.wire_tables import place_of, views, wire_arrays
+from evcosim.master.engine.wire_tables import place_of, rounding_code, views, wire_arrays
+from support.channels import FREE
 
 FED, LEFT = Signal("Fed", 7, 16, little_endian=False, start_raw=9), Signal("Left", 16, 8, start_raw=255)
 
@@ -80,3 +84,14 @@ def test_places_count_from_the_first_bit_that_is_sent():
     assert place_of(LEFT) == (16, 1)
     assert place_of(Signal("S", 0, 3, little_endian=False)) == (7, 0)
     assert place_of(Signal("S", 15, 3, little_endian=False)) == (8, 0)
+
+
+def test_ways_of_rounding_and_floats_differ() -> None:
+    whole = {rounding_code(operation(FREE, BusSettings(rounding=r))) for r in get_args(Rounding)}
+    floats = {
+        rounding_code(operation(Signal("F", 0, n, is_float=True), BusSettings(rounding=r)))
+        for n in (32, 64)
+        for r in get_args(Rounding)
+    }
+    assert (len(whole), len(floats)) == (len(get_args(Rounding)), 2)
+    assert not whole & floats

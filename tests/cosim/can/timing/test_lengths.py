@@ -130,3 +130,11 @@ def test_machine_code_counts_the_same() -> None:
             assert sum(machine["fd_bits"](*arguments, int(frame.switch))) == counted(frame)
         else:
             assert machine["classic_bits"](*arguments) == counted(frame)
+
+
+def test_times_of_frames_hold_interframe_space_and_both_rates():
+    bits, fast = lengths.most_bits(False, 12, True, True)
+    least, most = lengths.frame_times(False, 12, True, 500_000, 2_000_000)
+    assert most == (bits + 3) * 2_000_000 + fast * 500_000
+    assert least < most < lengths.frame_times(False, 12, True, 500_000, None)[1]
+    assert lengths.frame_times(True, 8, False, 500_000, 2_000_000) == (131 * 2_000_000, 160 * 2_000_000)

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from evcosim.cosim.can.wire import tables as T
 from evcosim.master.engine.compiled import kernel
 from evcosim.master.machine import tables as L
 
@@ -20,11 +21,11 @@ VALUES = [sign * value for value in (0.0, 1.0, 0.3, 0.7, *HALVES, *RANDOM) for s
 @pytest.mark.parametrize(
     ("mode", "expected"),
     [
-        (L.NEAREST, lambda q: math.copysign(math.floor(Fraction(abs(q)) + Fraction(1, 2)), q)),
-        (L.HALF_EVEN, round),
-        (L.TRUNCATE, math.trunc),
-        (L.FLOAT32, lambda q: float(np.float32(q))),
-        (L.FLOAT64, lambda q: q),
+        (T.NEAREST, lambda q: math.copysign(math.floor(Fraction(abs(q)) + Fraction(1, 2)), q)),
+        (T.HALF_EVEN, round),
+        (T.TRUNCATE, math.trunc),
+        (T.FLOAT32, lambda q: float(np.float32(q))),
+        (T.FLOAT64, lambda q: q),
     ],
     ids=["nearest", "half even", "truncate", "float32", "float64"],
 )
