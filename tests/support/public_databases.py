@@ -38,6 +38,7 @@ from support.mocks import MockUnit, plan_of, real
 
 TABLE = Path(__file__).with_suffix(".csv")
 _ROUNDS = 3
+_CYCLE = 1.0  # s: slow enough for all messages of a car, sent by one unit on one bus
 _FAR = 1e300
 _NAME_OR_NUMBER = re.compile(r"'[^']*'|\b0x[0-9a-f]+\b|-?\b\d[\d.e+-]*|\[[^\]]*\]")
 
@@ -154,14 +155,13 @@ def _run(path: Path, names: _Names, codec: Any, found: Outcome) -> None:
         {"from": f"a.y{i}", "to": [f"b.u{i}"], "via": f"c.{m.name}.{s.name}"}
         for i, (m, s) in enumerate(names)
     ]
-    bus = {"dbc": str(path), "cycle_time": 0.01, "rounding": "half_even"}
-    cycles = {
-        m.name: {"cycle_time": 0.01, "start_delay": 0.0} for m, _ in names
-    }  # the file's may be no multiple
+    bus = {"dbc": str(path), "cycle_time": _CYCLE, "rounding": "half_even"}
+    # the file's own may be no multiples of the step
+    cycles = {m.name: {"cycle_time": _CYCLE, "start_delay": 0.0} for m, _ in names}
     system = {
         "connect": connect,
         "buses": {"c": bus | {"messages": cycles}},
-        "experiment": {"stop_time": 100.0},
+        "experiment": {"step_size": _CYCLE, "stop_time": 10000 * _CYCLE},
         "record": ["a.y0"],
     }
     plan = plan_of([a, b], system)
