@@ -12,12 +12,20 @@ from ..errors import ConfigError
 from ..system.scaling import Scaling
 from ..units.conversion import conversion
 from ..units.definition import contradiction, defined
-from ..units.measure import Affine, DifferentQuantityError, OpenUnitError, UnitOfMeasure, UnknownUnitError
+from ..units.measure import (
+    BASE_UNITS,
+    Affine,
+    DifferentQuantityError,
+    OpenUnitError,
+    UnitOfMeasure,
+    UnknownUnitError,
+)
 from ..units.spellings import NO_UNIT
 from ..visible import visible_json
 
 _FACTOR = ", or `factor` with `convert = false` in its [[connect]]"
 
+_TEMPERATURE = tuple(int(base == "K") for base in BASE_UNITS)
 Definitions = Mapping[str, UnitOfMeasure]
 
 
@@ -66,7 +74,9 @@ def unit_map(
         return Affine()
     try:
         if source.unit == target.unit and not (source.defines and target.defines):
-            return _of_one_text(source, target, others)
+            map_ = _of_one_text(source, target, others)
+            _note_zeros(source, target, others, warnings)
+            return map_
         a, b = (defined(end.unit, end.definitions, *others) for end in (source, target))
         map_ = conversion(a, b, (source.difference, target.difference))
     except UnknownUnitError as error:
@@ -75,6 +85,7 @@ def unit_map(
         raise _refused(source, target, others, place, error) from error
     except ConfigError as error:
         raise _refused(source, target, others, place, error) from error
+    _note_zeros(source, target, others, warnings)
     for end in (source, target):
         if end.defines and (said := contradiction(end.definitions[end.unit])):
             _note(warnings, f"{end.name}: its FMU's definition is taken: {said}")
@@ -155,6 +166,25 @@ def _of_one_text(source: End, target: End, others: Iterable[Definitions]) -> Aff
     except UnknownUnitError:
         return Affine()
     return conversion(unit, unit, (source.difference, target.difference))
+
+
+def _note_zeros(source: End, target: End, others: Iterable[Definitions], warnings: list[str]) -> None:
+    """Warn of a difference of temperatures at one end and a temperature at the other, without an offset.
+
+    With one (degC) they are refused: nobody knows which number is right. In K it is the same one, unless one
+    of the two ends means something else.
+    """
+    if source.difference == target.difference:
+        return
+    try:
+        units = [defined(end.unit, end.definitions, *others) for end in (source, target)]
+    except ConfigError:  # a name that both ends have, and nobody knows
+        return
+    kinds = [end.difference or unit.difference for end, unit in zip((source, target), units, strict=True)]
+    if units[0].exponents == _TEMPERATURE and kinds[0] != kinds[1]:
+        first, second = ("a difference" if each else "an absolute temperature" for each in kinds)
+        said = f"{source} is {first} and {target} {second} (FMI: relativeQuantity)"
+        _note(warnings, f"{said}: the number is taken as it is")
 
 
 def _note_missing_unit(source: End, target: End, warnings: list[str]) -> None:

@@ -141,6 +141,28 @@ def test_the_definition_of_another_fmu_is_the_last_resort():
     assert made("km/h", "m/s", others)[0] == Affine(5 / 18)
 
 
+KELVINS = [(("K", "K"), 1.0), (("K", "mK"), 1000.0), (("kelvin", "K"), 1.0)]
+
+
+@pytest.mark.parametrize(("units", "scale"), KELVINS)
+def test_a_difference_in_kelvins_and_a_temperature_are_a_warning(units, scale):
+    for kinds in ((True, False), (False, True)):
+        ends = [End(f"{name}.t", u, difference=d) for name, u, d in zip("ab", units, kinds, strict=True)]
+        map_, warnings = made(*ends)
+        assert map_ == Affine(scale)
+        first, second = ("a difference" if each else "an absolute temperature" for each in kinds)
+        said = f"{ends[0]} is {first} and {ends[1]} {second} (FMI: relativeQuantity)"
+        assert [text for text in warnings if "relativeQuantity" in text] == [
+            f"{said}: the number is taken as it is"
+        ]
+    for same in (True, False):
+        ends = [End(f"{name}.t", u, difference=same) for name, u in zip("ab", units, strict=True)]
+        assert not [text for text in made(*ends)[1] if "relativeQuantity" in text]
+    lengths = End("a.x", "m", difference=True), End("b.x", "km")
+    assert made(*lengths)[1] == [], "no unit of length has an offset"
+    assert made(End("a.t", "delta_K"), End("b.t", "K", difference=True))[1] == []
+
+
 def test_a_difference_keeps_its_zero():
     celsius, kelvin = End("a.t", "degC", difference=True), End("b.t", "K", difference=True)
     assert made(celsius, kelvin)[0] == Affine()
