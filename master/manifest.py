@@ -59,6 +59,7 @@ def manifest(
             {"time": plan.clock.at(k), **event.model_dump(exclude={"time"})} for k, event in plan.events
         ],
         "steps": engine.k,
+        "replays": [replay.as_data() for replay in plan.replays],
         "saturations": saturations(engine),
         "outside": list(prepared.outside),
         "warnings": list(warnings),

@@ -89,7 +89,7 @@ def _copy(name: str, system: System) -> Iterator[tuple[str, str]]:
     for scenario in (load_scenario(system, each) for each in scenario_names(system)):
         if scenario.path is not None:
             files[f"scenarios/{name}/{scenario.path.name}"] = scenario.path
-            for csv in {entry.csv for entry in scenario.file.stimuli if entry.csv is not None}:
+            for csv in {entry.csv for _, entry in scenario.file.stimuli if entry.csv is not None}:
                 files[f"scenarios/{name}/{csv}"] = data_file(csv, scenario.path, "csv")
     for path, file in files.items():
         yield path, file.read_text(encoding="utf-8")

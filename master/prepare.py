@@ -125,14 +125,16 @@ def _digest(system: System, scenario: Scenario, options: Mapping[str, Any]) -> s
     """Return SHA-256 of what the files say that counts for the numbers of a run, with the files they name."""
     named: list[tuple[str, Path | None, str]] = []
     named += [(entry.dbc, system.path, "dbc") for entry in system.file.buses.values()]
-    named += [(s.csv, scenario.path, "csv") for s in scenario.file.stimuli if s.csv is not None]
+    named += [(s.csv, scenario.path, "csv") for _, s in scenario.file.stimuli if s.csv is not None]
+    named += [(log.can_log, scenario.path, "can_log") for _, log in scenario.file.can_logs]
     digest = hashlib.sha256()
     for model in (system.file, scenario.file):
         digest.update(model.model_dump_json(exclude=_NO_SETTINGS).encode())
     digest.update(repr(options.get("record")).encode() if "record" in options else b"")
     for name, beside, key in named:
         path = data_file(name, beside, key) if beside is not None else Path(name)
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
+        with path.open("rb") as file:  # a CAN log may be large
+            digest.update(hashlib.file_digest(file, "sha256").digest())
     return digest.hexdigest()
 
 

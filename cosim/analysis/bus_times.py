@@ -86,7 +86,7 @@ class BusTimes:
 def carried(log: BusLog, clock: Clock, settings: BusSettings) -> list[Carried]:
     """Return the frames of a bus on which they take time, in the order of their ends, on the run's clock."""
     found = []
-    for step, end, message, data in log.frames.frames() if log.frames is not None else ():
+    for step, end, message, data in (frame for part in log.frames if part.sent for frame in part.frames()):
         payload = data.ljust(message.frame_length, b"\0")
         arguments = (message.frame_id, int(message.extended), payload, 0, len(payload))
         if message.fd:

@@ -66,11 +66,13 @@ class FrameLog:
     """The frames of messages whose payloads were made in the run, in the order of their ends.
 
     A row of `table`, shape (frames, LOG_WIDTH), has the columns of `wire.tables`' log, each 8 bytes with an
-    int64; the third is the number of a message. Those that are not in `messages` are of other buses.
+    int64; the third is the number of a message. Those that are not in `messages` are not of this log. `sent`:
+    units of the run have sent them.
     """
 
     messages: Mapping[int, Message]
     table: Table
+    sent: bool = True
 
     def frames(self) -> Iterator[tuple[int, int, Message, bytes]]:
         """Yield of each frame the step in which it was sent, the time of its end [ps], message, payload."""

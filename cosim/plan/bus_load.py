@@ -79,10 +79,11 @@ class BusLoad:
 def bus_loads(messages: Sequence[MessagePlan], step: float) -> dict[str, BusLoad]:
     """Return the load of each bus of a plan's messages by name; `step` [s] is the communication step.
 
-    The pages of a multiplexed message count as one message, of which a frame follows each cycle.
+    The pages of a multiplexed message count as one message, of which a frame follows each cycle. Those whose
+    frames come from a log are not among them.
     """
     found: dict[str, dict[str, list[MessagePlan]]] = {}
-    for plan in messages:
+    for plan in (message for message in messages if not message.replayed):
         found.setdefault(plan.bus, {}).setdefault(plan.message.name, []).append(plan)
     return {bus: _load(bus, list(plans.values()), step) for bus, plans in found.items()}
 

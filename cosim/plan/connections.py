@@ -41,6 +41,7 @@ class Network:
     inputs: dict[str, InputPlan] = dataclasses.field(default_factory=dict)
     initial: dict[str, float] = dataclasses.field(default_factory=dict)
     warnings: list[str] = dataclasses.field(default_factory=list)
+    databases: dict[str, Database] = dataclasses.field(default_factory=dict)
 
     def drive(self, name: str, plan: InputPlan, place: str) -> None:
         """Note the driver of an input. Raises ConfigError when something drives it already."""
@@ -88,7 +89,6 @@ class _Connector:
     network: Network
     turns: Turns
     ideal: bool
-    databases: dict[str, Database] = dataclasses.field(default_factory=dict)
     senders: dict[tuple[str, str], dict[str, str]] = dataclasses.field(default_factory=dict)
     signal_routes: dict[tuple[str, str], list[SignalRoute]] = dataclasses.field(default_factory=dict)
 
@@ -108,7 +108,7 @@ def connect(
     connection. Raises ConfigError naming the system file, the connection, the rule and the values.
     """
     work = _Connector(system, interfaces, slots, Network({unit: [] for unit in interfaces}), turns, ideal)
-    work.databases.update(open_buses(system, work.network.warnings))
+    work.network.databases = open_buses(system, work.network.warnings)
     for connection in system.file.connect:
         _check_names(connection, system)
         _connect(work, connection)
@@ -118,7 +118,7 @@ def connect(
     work.network.warnings += other_send_types(
         (m.bus, m.message, m.settings, bool(m.page)) for m in work.network.messages
     )
-    work.network.warnings += foreign_senders(work.network.messages, system, work.databases)
+    work.network.warnings += foreign_senders(work.network.messages, system, work.network.databases)
     return work.network
 
 
@@ -296,10 +296,10 @@ def _coarser(
 def _find_signal(work: _Connector, via: str, place: str) -> tuple[Message, Signal]:
     """Return message and signal of "bus.message.signal". Raises ConfigError when there is none."""
     bus, message_name, signal_name = via.split(".", 2)  # some long names of signals have a dot
-    if bus not in work.databases:
-        raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.databases)}")
+    if bus not in work.network.databases:
+        raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.network.databases)}")
     settings, known = work.system.file.buses[bus], work.network.warnings
-    message = as_sent(work.databases[bus].require(message_name, place), settings)
+    message = as_sent(work.network.databases[bus].require(message_name, place), settings)
     signal = message.require(signal_name, place)
     known += [note for note in notes_on(message, signal, via, settings) if note not in known]
     return message, with_unit(signal, settings.units)
@@ -319,7 +319,7 @@ def _message(
     Under `gauss_seidel` it is sent after the last of its senders, by `order`, with a sampled output.
     """
     settings = work.system.file.buses[bus]
-    message = as_sent(work.databases[bus].require(name), settings)
+    message = as_sent(work.network.databases[bus].require(name), settings)
     path, where = str(work.system.path), f"{work.system.path}: buses.{bus}"
     delay = steps_in(settings.delay, step_size, f"{where}.delay") if settings.timing == "instant" else 0
     framing = framing_of(message, settings, [route.signal.name for route in routes], where)

@@ -79,6 +79,8 @@ def _planned(
         found = dataclasses.replace(found, message=own, since=max(0, since))
     _check_target(fault, message, messages, place)
     check_quantized(next(m.settings for m in messages if m.bus == bus), f"{place}: buses.{bus}", fault=True)
+    if isinstance(fault, Delay):
+        _check_sent(found, messages, place)
     if isinstance(fault, Corrupt):
         _check_byte(fault, found, messages, place)
     if isinstance(fault, Babble):
@@ -100,6 +102,15 @@ def _check_target(fault: Fault, message: str | None, messages: Sequence[MessageP
             f"a fault hits what is sent: {', '.join(sorted(known))}" if known else "no bus carries anything"
         )
         raise ConfigError(f"{place}.{key}: nothing is sent {by} '{target}'{nearest(target, known)}; {there}")
+
+
+def _check_sent(found: FaultPlan, messages: Sequence[MessagePlan], place: str) -> None:
+    for message in messages:
+        if message.replayed and hits(found, message):
+            raise ConfigError(
+                f"{place}.action: frames of {message.bus}.{message.message.name} come from a log, at its "
+                "times: `delay` acts on what a unit sends"
+            )
 
 
 def _check_byte(fault: Corrupt, found: FaultPlan, messages: Sequence[MessagePlan], place: str) -> None:

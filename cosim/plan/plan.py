@@ -14,6 +14,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from ..can.bus_settings import BusSettings
 from ..can.channel import SignalRoute
 from ..can.database import Message
 from ..can.framing import Framing
+from ..can.logs.replay import Replayed
 from ..can.send_types import Sending
 from ..clock import Clock
 from ..results.results import ResultVariable
@@ -77,6 +79,9 @@ class MessagePlan:
     A multiplexed message has a plan for each page that is sent; `page` are the raw values of its
     multiplexers by name. In `latest` [ps] as many of its frames are sent as faults make late at once.
     By its `sending` it may be looked at only at these steps, and sent where there is something to send.
+
+    A message that is `replayed` is sent by nobody: its frames come from a log, in a ReplayPlan, and `every`
+    and `first` say when somebody looks whether one came.
     """
 
     bus: str
@@ -93,6 +98,7 @@ class MessagePlan:
     page: Mapping[str, int] = dataclasses.field(default_factory=dict)
     latest: int = 0
     sending: Sending = Sending()  # noqa: RUF009 - Sending is frozen, so a shared default is safe
+    replayed: bool = False
 
     @property
     def watched(self) -> bool:
@@ -122,6 +128,37 @@ class FaultPlan:
     node: str
     since: int
     until: int
+
+
+@dataclasses.dataclass(frozen=True)
+class ReplayPlan:
+    """A log whose frames are replayed on a bus.
+
+    `counts` are the frames within the run by message; `before` and `after` are those before its start and not
+    before its stop time. `span` are the times [s] of the run at which the log begins and ends.
+    """
+
+    bus: str
+    path: Path
+    frames: Replayed
+    counts: Mapping[str, int]
+    span: tuple[float, float]
+    before: int
+    after: int
+
+    def as_data(self) -> dict[str, object]:
+        """Return what is replayed, for JSON."""
+        return {
+            "bus": self.bus,
+            "file": self.path.name,
+            "channel": self.frames.channel,
+            "offset": self.frames.offset * 1e-9,
+            "first": self.span[0],
+            "last": self.span[1],
+            "messages": dict(self.counts),
+            "before": self.before,
+            "after": self.after,
+        }
 
 
 @dataclasses.dataclass(frozen=True)
@@ -160,6 +197,7 @@ class Plan:
     faults: tuple[FaultPlan, ...] = ()
     babblers: tuple[MessagePlan, ...] = ()
     receiving_nodes: Mapping[int, tuple[str, str]] = dataclasses.field(default_factory=dict)
+    replays: tuple[ReplayPlan, ...] = ()
 
     @functools.cached_property
     def timed_buses(self) -> tuple[str, ...]:

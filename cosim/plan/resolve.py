@@ -30,7 +30,9 @@ from .events import scheduled
 from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
 from .plan import Drive, InputPlan, Plan
+from .received import Received
 from .recorded import Record
+from .replay import with_replays
 from .slots import Slots, allot
 from .steps import check_kept, steps_in
 from .unit_maps import End, unit_map
@@ -64,26 +66,33 @@ def resolve(
 
     Raises ConfigError naming place, rule and values, before any unit is instantiated.
     """
+    return with_faults(_resolved(system, scenario, interfaces, options), system, scenario)
+
+
+def _resolved(
+    system: System, scenario: Scenario, interfaces: Mapping[str, UnitInterface], options: RunOptions
+) -> Plan:
+    """Return the plan of a run without faults; the rest is as in `resolve`."""
     experiment, algorithm = _experiment(system, scenario, options)
-    entries = participating(system, scenario)
+    entries, ideal = participating(system, scenario), options.get("ideal", False)
     record = _record_of(system, scenario, options)
     slots, recorded = allot(interfaces, record, {c.source for c in system.file.connect})
     texts, (columns, text_columns) = Texts(), _numbers_and_texts(recorded)
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     turns = _turns(system, entries, clock)
-    network = connect(system, interfaces, slots, turns, clock, algorithm, options.get("ideal", False))
+    network = connect(system, interfaces, slots, turns, clock, algorithm, ideal)
+    replays = with_replays(system, scenario, Received(system, interfaces, network, slots, ideal), clock)
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
-    _mailboxes_of_the_rest(interfaces, network, slots)
     named, started = by_kind(options, interfaces, network)
     parameters = all_parameters(system, scenario, entries, interfaces, named)
     starts = {u: all_starts(system, scenario, u, entries[u], interfaces[u], started) for u in entries}
-    plan = Plan(
+    return Plan(
         system=system.file.name,
         scenario=scenario.name,
         experiment=experiment.model_copy(update={"stop_time": clock.stop}),
         algorithm=algorithm,
         clock=clock,
-        ideal=options.get("ideal", False),
+        ideal=ideal,
         units=tuple(
             UnitPlan(
                 name=name,
@@ -115,8 +124,8 @@ def resolve(
         text_columns=tuple(itertools.starmap(result_variable, text_columns)),
         text_slots=slots.shown(text_columns),
         texts=texts,
+        replays=tuple(replays),
     )
-    return with_faults(plan, system, scenario)
 
 
 def _loads(system: System, network: Network, clock: Clock) -> list[str]:
@@ -246,10 +255,11 @@ def _drives(
 ) -> tuple[Drive, ...]:
     """Return the stimuli of a scenario, each noted as what drives its input in `network`.
 
-    Raises ConfigError when an input is driven already, or its unit measures another quantity.
+    The inputs that nothing drives have a mailbox then. Raises ConfigError when an input is driven already,
+    or its unit measures another quantity.
     """
     drives = []
-    for number, entry in enumerate(scenario.file.stimuli, 1):
+    for number, entry in scenario.file.stimuli:
         place = f"{scenario.path}: stimulus {number}" if scenario.path else f"input {entry.to}"
         unit, name = network.input_of(entry.to, interfaces, f"{place}.to")
         variable, interface = interfaces[unit].variables[name], interfaces[unit]
@@ -280,6 +290,7 @@ def _drives(
             to_double = functools.partial(as_double, variable, texts=texts)
             signal = held_stimulus(entry, place, scenario.path, variable, map_, clock, to_double)
             drives.append(Drive(entry.to, slot, signal, Affine()))
+    _mailboxes_of_the_rest(interfaces, network, slots)
     return tuple(drives)
 
 

@@ -129,7 +129,7 @@ def _stimuli(scenario: Scenario, drives: Sequence[Drive]) -> list[tuple[str, tup
     start = f"{scenario.path}: " if scenario.path else ""
     return [
         (f"{start}stimulus {n}, the {_kind(entry)} of {entry.to},", moves_between(entry, drive.signal))
-        for n, (entry, drive) in enumerate(zip(scenario.file.stimuli, drives, strict=True), 1)
+        for (n, entry), drive in zip(scenario.file.stimuli, drives, strict=True)
     ]
 
 

@@ -16,6 +16,7 @@ from ..can.message_settings import MessageSettings
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
 from ..plan.unit_maps import End, scaled_map
+from ..system.can_log_spec import CanLogEntry
 from ..system.figure_spec import FigureSpec
 from ..system.metric_spec import MetricSpec
 from ..system.problems import spelled
@@ -181,7 +182,7 @@ def without_absent(system: System, scenario: Scenario) -> tuple[System, Scenario
     )
     driven = driven.model_copy(
         update={
-            "stimuli": _stimuli(driven.stimuli, absent, left_out),
+            "entries": _stimuli(driven.entries, absent, left_out),
             "events": _events(driven.events, absent, left_out),
             "parameters": _known(driven.parameters, absent, left_out),
             "start": _known(driven.start, absent, left_out),
@@ -259,10 +260,18 @@ def _connection(connection: Connection, absent: set[str], left_out: list[str]) -
     return connection.model_copy(update={"to": kept}) if kept or connection.via else None
 
 
-def _stimuli(stimuli: Iterable[StimulusEntry], absent: set[str], left_out: list[str]) -> list[StimulusEntry]:
-    kept = []
+def _stimuli(
+    stimuli: Iterable[StimulusEntry | CanLogEntry], absent: set[str], left_out: list[str]
+) -> list[StimulusEntry | CanLogEntry]:
+    kept: list[StimulusEntry | CanLogEntry] = []
     for stimulus in stimuli:
-        if stimulus.to in absent:
+        if isinstance(stimulus, CanLogEntry):
+            to = {name: signal for name, signal in stimulus.to.items() if name not in absent}
+            left_out += [
+                f"the CAN log's {stimulus.to[name]} to {name}" for name in stimulus.to.keys() - to.keys()
+            ]
+            kept.append(stimulus.model_copy(update={"to": to}))
+        elif stimulus.to in absent:
             left_out.append(f"the stimulus of {stimulus.to}")
         else:
             kept.append(stimulus)

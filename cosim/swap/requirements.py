@@ -74,7 +74,8 @@ def lacking(system: System, scenario: Scenario, unit: str, offer: UnitInterface)
         if _unit(c.source) not in out and (takers or c.via):
             used += _ends(c, takers)
     used += _statuses(system)
-    used += [(stimulus.to, f"stimulus of {scenario.name}") for stimulus in scenario.file.stimuli]
+    used += [(stimulus.to, f"stimulus of {scenario.name}") for _, stimulus in scenario.file.stimuli]
+    used += [(name, f"CAN log of {scenario.name}") for _, log in scenario.file.can_logs for name in log.to]
     spec = figure_spec(system, scenario)
     shown = [s.name for panel in spec.panels for s in panel.signals] if spec else []
     shown += [name for metric in metric_specs(system, scenario) for name in metric.all_signals]
@@ -142,7 +143,11 @@ def _uses(system: System, scenario: Scenario, unit: str) -> Iterable[tuple[Role,
     for name, source in _statuses(system):
         if name.startswith(own):
             yield "input", name.removeprefix(own), source
-    for stimulus in scenario.file.stimuli:
+    for _, log in scenario.file.can_logs:
+        for name in log.to:
+            if name.startswith(own):
+                yield "input", name.removeprefix(own), f"CAN log of {scenario.name}"
+    for _, stimulus in scenario.file.stimuli:
         if stimulus.to.startswith(own):
             yield "input", stimulus.to.removeprefix(own), f"stimulus of {scenario.name}"
     for name in _shown(system, scenario):

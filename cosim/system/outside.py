@@ -34,7 +34,10 @@ def _named(system: System, scenario: Scenario, fmus: Mapping[str, Path]) -> Iter
     if scenario.path is not None and chosen is not None and scenario.path == Path(chosen):
         yield f"{system.path}: scenario", scenario.path, system.path  # its default, given by a path
     if scenario.path is not None:
-        for number, stimulus in enumerate(scenario.file.stimuli, 1):
-            if stimulus.csv is not None:
-                place = f"{scenario.path}: stimulus {number}.csv"
-                yield place, data_file(stimulus.csv, scenario.path, place), scenario.path
+        named = [
+            (number, "csv", entry.csv) for number, entry in scenario.file.stimuli if entry.csv is not None
+        ]
+        named += [(number, "can_log", entry.can_log) for number, entry in scenario.file.can_logs]
+        for number, key, name in sorted(named):
+            place = f"{scenario.path}: stimulus {number}.{key}"
+            yield place, data_file(name, scenario.path, place), scenario.path

@@ -6,9 +6,10 @@ import dataclasses
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from ..clock import LATEST
+from .can_log_spec import CanLogEntry, is_log
 from .fault_spec import Fault
 from .figure_spec import FigureSpec
 from .identification_spec import IdentificationSpec
@@ -125,6 +126,13 @@ class StimulusEntry(FiniteModel):
         return self
 
 
+# tags that are no keys of a file
+_Stimulus = Annotated[
+    Annotated[StimulusEntry, Tag("a signal")] | Annotated[CanLogEntry, Tag("a log")],
+    Discriminator(lambda entry: "a log" if is_log(entry) else "a signal"),
+]
+
+
 class _EventRecord(FiniteModel):
     """Keys of all events."""
 
@@ -235,8 +243,9 @@ class ScenarioFile(FileModel):
     start: dict[str, dict[str, FileValue]] = {}
     """Start values of inputs and states in place of the system's: a table `[start.UNIT]` for each unit."""
 
-    stimuli: list[StimulusEntry] = Field(default=[], alias="stimulus")
-    """The signals that drive free inputs: a table `[[stimulus]]` for each."""
+    entries: list[_Stimulus] = Field(default=[], alias="stimulus")
+    """The signals that drive free inputs, and the CAN logs that are replayed: a table `[[stimulus]]` for
+    each."""
 
     faults: list[Fault] = Field(default=[], alias="fault")
     """Faults on buses: a table `[[fault]]` for each."""
@@ -255,6 +264,16 @@ class ScenarioFile(FileModel):
 
     identification: IdentificationSpec | None = None
     """The task of `evcosim identify` in this scenario."""
+
+    @property
+    def stimuli(self) -> list[tuple[int, StimulusEntry]]:
+        """The signals, each with the number of its table."""
+        return [(n, entry) for n, entry in enumerate(self.entries, 1) if isinstance(entry, StimulusEntry)]
+
+    @property
+    def can_logs(self) -> list[tuple[int, CanLogEntry]]:
+        """The CAN logs, each with the number of its table."""
+        return [(n, entry) for n, entry in enumerate(self.entries, 1) if isinstance(entry, CanLogEntry)]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -101,6 +101,9 @@ def _by_tag(part: Any, tables: JsonSchemaValue) -> Any:
         return [_by_tag(inner, tables) for inner in part]
     if not isinstance(part, dict):
         return part
+    if "oneOf" in part and "discriminator" not in part:
+        first, second = (str(member["$ref"]) for member in part["oneOf"])
+        return _by_key(first, second, tables)
     if "discriminator" not in part:
         return {key: _by_tag(inner, tables) for key, inner in part.items()}
     tag, names = part["discriminator"]["propertyName"], part["discriminator"]["mapping"]
@@ -118,6 +121,24 @@ def _by_tag(part: Any, tables: JsonSchemaValue) -> Any:
         "allOf": [
             {"if": {"properties": {tag: {"const": kind}}, "required": [tag]}, "then": {"$ref": reference}}
             for kind, reference in kinds.items()
+        ],
+    }
+
+
+def _by_key(first: str, second: str, tables: JsonSchemaValue) -> Any:
+    """Return the schema of a table of two kinds: the second needs a key that the first has not."""
+    ours, theirs = (tables[reference.rpartition("/")[2]] for reference in (first, second))
+    key = next(key for key in theirs["required"] if key not in ours["properties"])
+    texts = {
+        name: {"description": about["description"]}
+        for name, about in (theirs["properties"] | ours["properties"]).items()
+    }
+    return {
+        "type": "object",
+        "properties": texts,
+        "allOf": [
+            {"if": {"not": {"required": [key]}}, "then": {"$ref": first}},
+            {"if": {"required": [key]}, "then": {"$ref": second}},
         ],
     }
 

@@ -22,7 +22,11 @@ def info(
         ),
     ],
     message: Annotated[
-        str | None, typer.Argument(metavar="[MESSAGE]", help="Database: the message whose signals are shown.")
+        str | None,
+        typer.Argument(
+            metavar="[MESSAGE|SCENARIO]",
+            help="Database: the message whose signals are shown. System: the scenario whose CAN logs are.",
+        ),
     ] = None,
     causality: Annotated[
         list[str] | None,
@@ -75,13 +79,14 @@ def _report(
             options = "--causality, --search, --strict and --diagram"
             raise ConfigError(f"{options} are not for a CAN database, as {what}")
         return info_database.described(Path(what), *of_database), info_database.show
-    if any(of_database):
-        options = "MESSAGE, --bitrate and --data-bitrate"
+    is_system = what.endswith(".toml") or what in system_names()
+    if any(of_database[1:] if is_system else of_database):
+        options = "--bitrate and --data-bitrate" if is_system else "MESSAGE, --bitrate and --data-bitrate"
         raise ConfigError(f"{options} are for a CAN database (.dbc); {what} is none")
-    if what.endswith(".toml") or what in system_names():
+    if is_system:
         if any(of_fmu):
             raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")
-        return info_system.described(what), info_system.show
+        return info_system.described(what, of_database[0]), info_system.show
     if diagram is not None:
         raise ConfigError(f"--diagram draws a system; {what} is none")
     return info_fmu.described(fmu_path(what), *of_fmu), info_fmu.show

@@ -13,14 +13,19 @@ if TYPE_CHECKING:
     from ..prepare import Prepared
 
 
-def described(name: str) -> dict[str, Any]:
-    """Return the report on a system. Raises ConfigError for everything that is wrong in it."""
+def described(name: str, scenario: str | None = None) -> dict[str, Any]:
+    """Return the report on a system, with the logs that a scenario replays.
+
+    Raises ConfigError for everything that is wrong in them.
+    """
     from ...cosim.plan.bus_load import bus_loads
     from ...cosim.system.scenario import load_scenario, scenario_names
     from ..isolation.decision import decided, needs_trust
+    from ..prepare import prepare
 
     prepared = _whole(name)
     system, plan = prepared.system, prepared.plan
+    driven = prepare(name, scenario, runnable=False).plan if scenario is not None else plan
     scenarios = {s: load_scenario(system, s).file.title for s in scenario_names(system)}
     return {
         "file": str(system.path),
@@ -43,9 +48,10 @@ def described(name: str) -> dict[str, Any]:
         "connections": _connections(system, plan),
         "buses": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "messages": [_message(m, plan) for m in plan.messages],
+        "replays": [replay.as_data() for replay in driven.replays],
         "default_scenario": system.file.scenario,
         "scenarios": scenarios,
-        "warnings": [*plan.warnings, *plan.unreached],
+        "warnings": [*driven.warnings, *driven.unreached],
         "outside": list(prepared.outside),
     }  # fmt: skip # one line for each key
 
@@ -139,12 +145,24 @@ def show(about: dict[str, Any]) -> None:
         headers = ("message", "id", "every [s]", "delay [s]", "signal", "bits", "resolution", "range")
         rows = [row for message in about["messages"] for row in _message_rows(message)]
         print_table(headers, rows, right=("bits",))
+    if about["replays"]:
+        print_title("CAN logs of the scenario")
+        of_log = ("log", "bus", "channel", "from [s]", "to [s]", "message", "frames")
+        rows = [row for replay in about["replays"] for row in _replay_rows(replay)]
+        print_table(of_log, rows, right=("from [s]", "to [s]", "frames"))
     if about["scenarios"]:
         print_title("Scenarios (* the default)")
         default = about["default_scenario"]
         print_fields(
             [(f"{name} *" if name == default else name, title) for name, title in about["scenarios"].items()]
         )
+
+
+def _replay_rows(replay: dict[str, Any]) -> list[tuple[str, ...]]:
+    span = (f"{replay['first']:.6g}", f"{replay['last']:.6g}")
+    head = (replay["file"], replay["bus"], replay["channel"], *span)
+    rows = [(name, str(count)) for name, count in replay["messages"].items()]
+    return [(*(head if i == 0 else [""] * len(head)), *row) for i, row in enumerate(rows)]
 
 
 def _unit_row(unit: dict[str, Any]) -> tuple[str, ...]:

@@ -35,6 +35,21 @@ BUS_LOAD = record(
     },
 )
 
+REPLAY = record(
+    "A CAN log that a scenario replays.",
+    {
+        "bus": text("Its bus."),
+        "file": text("Its file."),
+        "channel": text("The channel whose frames are replayed."),
+        "offset": number("Time of the log at which the run's clock shows 0 s [s]."),
+        "first": number("Time of the run at which the log begins [s]."),
+        "last": number("Time of the run at which it ends [s]."),
+        "messages": by_name("Frames within the run by message.", whole("Their number.")),
+        "before": whole("Frames before the start."),
+        "after": whole("Frames from the stop time on."),
+    },
+)
+
 _TIMES = record(
     "Times [s].", {"min": number("The least."), "mean": number("The mean."), "max": number("The greatest.")}
 )
@@ -88,10 +103,11 @@ FRAMES = record(
                     "held": whole("Frames that were sampled while their node was off the bus."),
                     "unheard": whole("Frames that arrived while a receiver was off the bus."),
                     "timeouts": whole("How often no frame came in time."),
+                    "replayed": whole("Frames that came from a log."),
                     "rejected": whole("Frames that the check of their protection did not take."),
                     "statuses": by_name("Frames by the status of their check.", whole("Their number.")),
                 },
-                optional=(*_OF_FAULTS, "timeouts", "rejected", "statuses"),
+                optional=(*_OF_FAULTS, "timeouts", "replayed", "rejected", "statuses"),
             ),
         ),
         "nodes": by_name(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .json_bus import BUS_LOAD
+from .json_bus import BUS_LOAD, REPLAY
 from .json_parts import VALUE, by_name, flag, listed, number, or_null, record, text, whole
 
 LIST = record(
@@ -105,6 +105,7 @@ INFO_SYSTEM = record(
                 },
             ),
         ),
+        "replays": listed("The CAN logs of the scenario that is named.", REPLAY),
         "default_scenario": or_null(text("The scenario that runs without --scenario.")),
         "scenarios": by_name("The scenarios by name.", text("A line about it.")),
         "warnings": listed("Sentences on all that is suspicious."),

@@ -64,6 +64,8 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
 def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, Any]:
     """Return the counts of timeouts, faults, frames that were not taken and statuses, where there are any."""
     found: dict[str, Any] = {}
+    if row[T.REPLAYED]:
+        found["replayed"] = int(row[T.REPLAYED])
     if row[T.TIMEOUT]:
         found["timeouts"] = int(row[T.TIMEOUTS])
     if any(row[column] for column in _FAULTY.values()):

@@ -18,7 +18,7 @@ from ...cosim.can.wire import medium
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.values import set_raw
-from ...cosim.plan.plan import FaultPlan, Plan
+from ...cosim.plan.plan import FaultPlan, Plan, ReplayPlan
 from .fault_tables import nodes_of
 from .schedule import Action
 from .sender import Sender
@@ -30,7 +30,8 @@ class FramePath:
 
     `memory` is the run's, shape (size,), `step` [s] its step. With `logs` the frames are kept for `log_of`.
     `initial` are the values of mailboxes before the first frame, by slot, `receiving` their nodes that can be
-    off the bus (`Plan.receiving_nodes`).
+    off the bus (`Plan.receiving_nodes`). `replays` are the logs whose
+    frames are replayed.
     """
 
     def __init__(
@@ -42,6 +43,7 @@ class FramePath:
         initial: Mapping[int, float] | None = None,
         faults: Sequence[FaultPlan] = (),
         receiving: Mapping[int, tuple[str, str]] | None = None,
+        replays: Sequence[ReplayPlan] = (),
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
@@ -49,7 +51,10 @@ class FramePath:
         self._all = tuple(senders)
         self.senders = tuple(senders[i] for i in framed)
         self._rows = {i: row for row, i in enumerate(framed)}
-        self.arrays = wire_arrays(self.senders, memory, step, logs, initial or {}, faults, receiving)
+        self.arrays = wire_arrays(
+            self.senders, memory, step, logs, initial or {}, faults, receiving, len(replays)
+        )
+        self._replays, self._at = tuple(replays), [0] * len(replays)  # the next row of each recording
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
@@ -68,6 +73,8 @@ class FramePath:
                 if action.kind == "arrive"
                 else (T.CONTEND, int(bus))
             )
+        if action.kind == "replay":
+            return T.REPLAY, action.index
         if action.kind not in ("send", "deliver", "watch") or action.index not in self._rows:
             return None
         row = self._rows[action.index]
@@ -84,11 +91,22 @@ class FramePath:
         """
         if what == T.FLUSH:
             self.flush()
+        elif what == T.FILL:
+            self._fill(i)
         elif what == T.RAW:
             self._set_raw(i, k)
         else:
             self._set_value(i)
         return T.DONE
+
+    def _fill(self, stream: int) -> None:
+        """Bring the next frames of a log into the tables, in place of those that were replayed."""
+        rows, self._at[stream] = self._replays[stream].frames.block(self._at[stream])
+        first = stream * T.REPLAY_ROWS
+        place = self.arrays["replays"][first : first + len(rows)]
+        place[:] = rows
+        place[:, T.LOG_MESSAGE] = [self._rows[number] for number in rows[:, T.LOG_MESSAGE].tolist()]
+        self.arrays["streams"][stream] = 0, len(rows), self._at[stream] < 0
 
     def _set_raw(self, row: int, k: int) -> None:
         sender, i = self._signals[row]
@@ -138,12 +156,19 @@ class FramePath:
         """
         self.flush()
         values = [s.channel.log for s in self._all if s.plan.bus == bus and s.plan.framing is None]
-        messages = {i: s.plan.message for i, s in enumerate(self.senders) if s.plan.bus == bus}
+        own = [(i, s.plan) for i, s in enumerate(self.senders) if s.plan.bus == bus]
+        table = self._kept.table()
+        made = [FrameLog({i: plan.message for i, plan in own if not plan.replayed}, table)]
+        for replay in self._replays if any(plan.replayed for _, plan in own) else ():
+            of_log = {self._rows[number] for number in replay.frames.messages.tolist()}
+            made.append(FrameLog({i: plan.message for i, plan in own if i in of_log}, table, sent=False))
         settings = next((s.plan.settings for s in self._all if s.plan.bus == bus), None)
         switch = settings is not None and settings.data_bitrate is not None
-        return BusLog(bus, values, FrameLog(messages, self._kept.table()), switch)
+        return BusLog(bus, values, tuple(made), switch)
 
 
 def frames_of(plan: Plan, senders: Sequence[Sender], memory: NDArray[np.float64], logs: bool) -> FramePath:
     """Return the frames of a plan, whose messages are `senders`; the rest is as in `FramePath`."""
-    return FramePath(senders, memory, plan.clock.step, logs, plan.initial, plan.faults, plan.receiving_nodes)
+    return FramePath(
+        senders, memory, plan.clock.step, logs, plan.initial, plan.faults, plan.receiving_nodes, plan.replays
+    )

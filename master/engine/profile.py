@@ -12,7 +12,7 @@ Part = tuple[str, str]
 """The name of a unit, of a message, "stimuli" or "results", and its activity, as in ("vehicle", "step")."""
 
 _WHAT: dict[Kind, str] = {
-    "drive": "drive", "arrive": "channel", "contend": "channel",
+    "drive": "drive", "arrive": "channel", "contend": "channel", "replay": "channel",
     "deliver": "channel", "watch": "channel", "send": "channel", "take": "set", "begin": "set and step",
     "end": "get", "record": "record", "note": "note texts", "publish": "get",
 }  # fmt: skip # a table
@@ -35,6 +35,8 @@ def part_of(action: Action, plan: Plan, what: str = "", apart: bool = False) -> 
         name = "results"
     elif action.kind in ("arrive", "contend"):
         name = plan.timed_buses[action.index]
+    elif action.kind == "replay":
+        name = plan.replays[action.index].path.name
     elif action.kind in ("send", "deliver", "watch"):
         message = plan.messages[action.index]
         name = f"{message.bus}.{message.message.name}"

@@ -3,7 +3,7 @@
 Time is a count k, of which `clock` makes the time t_k. The stages of step k, under `gauss_seidel`:
 
 1. the values of the stimuli at t_k are written to the slots of their inputs, and on buses with `timing =
-   "frame"` the frames that ended by t_k reach the mailboxes;
+   "frame"` the frames that ended by t_k reach the mailboxes, as do those of logs with a time up to t_k;
 2. the messages that are due and carry outputs valid at t_k are sent;
 3. each unit in written order, if it has its turn (each period, from its offset on): its inputs are taken,
    overrides and biases applied, it steps to t_k + period, and its outputs are read. They are visible to
@@ -33,6 +33,7 @@ from ...cosim.plan.turns import cut_short
 Kind = Literal[
     "drive",
     "arrive",
+    "replay",
     "deliver",
     "send",
     "watch",
@@ -50,10 +51,11 @@ Kind = Literal[
 class Action:
     """An action that is due at the steps k with k >= first and (k - first) % every == 0.
 
-    `index` is the place in the plan's drives, messages, units or timed buses:
+    `index` is the place in the plan's drives, messages, units, timed buses or replays:
 
         drive     write the stimulus' value to its slot
         arrive    unpack the frames of the bus that have arrived
+        replay    unpack the frames of the log that are seen by this step
         deliver   copy the values that the message sampled `delay` steps ago to the mailboxes, or unpack the
                   frame that was sent then
         send      sample the message and write its values to the mailboxes (with a delay: waiting slots too)
@@ -89,7 +91,9 @@ def schedule(plan: Plan) -> tuple[Action, ...]:
     # 1. the stimuli at t_k
     drives = [Action("drive", i) for i in range(len(plan.drives))]
     # the frames that ended by t_k
-    arrive = [Action("arrive", i) for i in range(len(plan.timed_buses))] + _timed_watches(plan)
+    arrive = [Action("arrive", i) for i in range(len(plan.timed_buses))]
+    # and those of logs up to then
+    arrive += [Action("replay", i) for i in range(len(plan.replays))] + _early_watches(plan)
     # 2. and 3. messages and units, as the algorithm orders them
     steps = _gauss_seidel(plan) if plan.algorithm == "gauss_seidel" else _jacobi(plan)
     # the frames that start before t_k+1; all that were queued at t_k contend, whichever turn sent them
@@ -141,6 +145,8 @@ def _messages(plan: Plan, after: int | None) -> list[Action]:
 
 def _message(plan: Plan, index: int) -> list[Action]:
     message = plan.messages[index]
+    if message.replayed:
+        return []
     send = Action("send", index, message.every, message.first)
     watch = [Action("watch", index, message.cycle, message.first + message.delay)] if message.watched else []
     if message.timed:
@@ -154,11 +160,16 @@ def _message(plan: Plan, index: int) -> list[Action]:
     return [deliver, *watch, send]
 
 
-def _timed_watches(plan: Plan) -> list[Action]:
-    """Return the actions that look at messages whose frames take time, from one cycle after the first on."""
+def _early_watches(plan: Plan) -> list[Action]:
+    """Return the actions that look at messages whose frames take time, from one cycle after the first on.
+
+    So do those that look at messages of logs, from the first on where frames take no time.
+    """
     found = []
     for i, message in enumerate(plan.messages):
-        if message.timed and message.watched:
+        if message.replayed and message.watched and not message.timed:
+            found.append(Action("watch", i, message.every, message.first))
+        elif message.timed and message.watched:
             late = math.ceil(message.settings.delay / plan.clock.step)
             found.append(Action("watch", i, message.cycle, message.first + message.cycle + late))
     return found

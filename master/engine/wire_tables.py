@@ -37,13 +37,14 @@ def wire_arrays(
     initial: Mapping[int, float] | None = None,
     faults: Sequence[FaultPlan] = (),
     receiving: Mapping[int, tuple[str, str]] | None = None,
+    streams: int = 0,
 ) -> Arrays:
     """Return the tables of the messages of `senders`, but for `helper`; message i is that of sender i.
 
     They stand bus by bus, on each in the order in which they win it. `memory` is the run's, shape (size,);
     `step` [s] that of the run. `logs`: frames are logged.
     `initial` are the values of mailboxes before the first frame, by slot, `receiving` their nodes that can be
-    off the bus.
+    off the bus; `streams` logs are replayed.
     """
     plans = [sender.plan for sender in senders]
     made: Arrays = {
@@ -54,6 +55,8 @@ def wire_arrays(
         "verdicts": _table(len(plans), T.VERDICTS),
         "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
+        "replays": _table(streams * T.REPLAY_ROWS, T.LOG_WIDTH),
+        "streams": _table(streams, T.STREAM_WIDTH),
         "memory": memory,
         "frame": np.zeros(T.BYTES, dtype=np.int64),
         "single": np.zeros(1, dtype=np.float32),

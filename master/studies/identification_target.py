@@ -84,7 +84,7 @@ def held(scenario: Scenario, swept: str, clock: Clock) -> tuple[Scenario, tuple[
     """
     times = np.linspace(clock.start, clock.stop, _LOOKS)
     stimuli, said = [], []
-    for number, entry in enumerate(scenario.file.stimuli, 1):
+    for number, entry in scenario.file.stimuli:
         values = course(entry, f"{scenario.path}: stimulus {number}", scenario.path, clock, times)
         if entry.to != swept and len(set(values)) > 1:
             at = values[0]
@@ -98,9 +98,10 @@ def held(scenario: Scenario, swept: str, clock: Clock) -> tuple[Scenario, tuple[
         f"left out: the event '{e.action}' of {', '.join(e.needs)} at {e.time:g} s"
         for e in scenario.file.events
     ]
+    said += [f"left out: the CAN log {log.can_log}" for _, log in scenario.file.can_logs]
     if not said:
         return scenario, ()
-    file = scenario.file.model_copy(update={"stimuli": stimuli, "events": []})
+    file = scenario.file.model_copy(update={"entries": stimuli, "events": []})
     return dataclasses.replace(scenario, file=file), tuple(said)
 
 

@@ -72,7 +72,7 @@ def test_a_copy_gives_the_same_results(tmp_path, name):
     for scenario in scenario_names(system):
         read = load_scenario(system, scenario)
         assert read.path is not None and not is_built_in(read.path)
-        for entry in read.file.stimuli:
+        for _, entry in read.file.stimuli:
             assert entry.csv is None or (read.path.parent / entry.csv).is_file()
     copy, original = (simulate(system, stop_time=1.0) for system in (str(system.path), name))
     assert copy.names == original.names

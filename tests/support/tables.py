@@ -3,7 +3,8 @@
     .venv/bin/python tests/support/tables.py   # writes the page anew, after a change of a key or its text
 
 A table stands between `<!-- table: KIND PATH -->` and `<!-- end -->`: KIND is system, scenario or swap, PATH
-the keys to the table as in the file, with a name in capitals for any name: `units.NAME.map`.
+the keys to the table as in the file, with a name in capitals for any name: `units.NAME.map`. Of tables that
+a key tells apart, `stimulus:can_log` is the one that needs that key, and `stimulus` the other.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ def written(page: str) -> str:
 def table(kind: str, path: str) -> str:
     """Return the keys at a path in a kind of file as a Markdown table, below the text of their record."""
     schema = _schema(kind)
+    path, _, key = path.partition(":")
     members = _tables(schema, schema, path.split(".") if path else [])
+    if len(members) > 1 and not any("action" in member["properties"] for member in members):
+        members = [m for m in members if key in m["required"]] if key else members[:1]
     rows = [_row(key, [m for m in members if key in m["properties"]], members) for key in _keys(members)]
     about = [_escaped(members[0]["description"]), ""] if len(members) == 1 else []
     return "\n".join(["", *about, *markdown_table(("key", "meaning"), rows), "", ""])
@@ -66,7 +70,7 @@ def _tables(schema: dict[str, Any], part: dict[str, Any], path: Sequence[str]) -
         return [part] if "properties" in part else []
     key, *rest = path
     if not key.isupper():
-        return _tables(schema, part["properties"][key], rest)
+        return _tables(schema, part["properties"][key], rest) if key in part["properties"] else []
     named = part.get("patternProperties", {"": part.get("additionalProperties")})
     return _tables(schema, next(iter(named.values())), rest)
 

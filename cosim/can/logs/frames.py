@@ -21,14 +21,15 @@ from ..transmissions import FrameLog, RawLog
 
 @dataclasses.dataclass(frozen=True)
 class BusLog:
-    """The transmissions of one bus' messages (`MessageChannel.log`), and those that were made as frames.
+    """The transmissions of one bus' messages (`MessageChannel.log`), and those that were made as frames, in
+    one or several logs, each in the order of time.
 
     `switch`: its frames of CAN FD take a data bit rate.
     """
 
     bus: str
     messages: Sequence[RawLog]
-    frames: FrameLog | None = None
+    frames: Sequence[FrameLog] = ()
     switch: bool = False
 
 
@@ -63,16 +64,14 @@ def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
         _payloads(channel, log, clock) for channel, bus_log in enumerate(logs) for log in bus_log.messages
     ]
     streams += [
-        _made(channel, bus_log.frames, clock)
-        for channel, bus_log in enumerate(logs)
-        if bus_log.frames is not None
+        _made(channel, frames, clock) for channel, bus_log in enumerate(logs) for frames in bus_log.frames
     ]
-    for time, _, channel, message, data in heapq.merge(*streams, key=lambda item: item[:3]):
+    for time, _, channel, message, data, sent in heapq.merge(*streams, key=lambda item: item[:3]):
         log, data = logs[channel], data.ljust(message.frame_length, b"\0")
-        yield Frame(time, channel, log.bus, message, data, log.switch and message.fd)
+        yield Frame(time, channel, log.bus, message, data, log.switch and message.fd, sent)
 
 
-_Payload = tuple[float, int, int, Message, bytes]
+_Payload = tuple[float, int, int, Message, bytes, bool]
 
 
 def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
@@ -81,7 +80,7 @@ def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
         step, since = instant
         time = clock.at(step) + (since - step * picoseconds(clock.step)) * 1e-12
         for _, _, message, data in sorted(group, key=lambda frame: frame[2].priority):
-            yield time, message.priority, channel, message, data
+            yield time, message.priority, channel, message, data, log.sent
 
 
 def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
@@ -95,7 +94,7 @@ def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
         for k, row in zip(steps.tolist(), rows, strict=True):
             if row != before:  # a quantized value often stays
                 before, data = row, encode(start | dict(zip(raws, row, strict=True)))
-            yield clock.at(k), order, channel, message, data
+            yield clock.at(k), order, channel, message, data, True
 
 
 def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..timing.draws import drawn
 from . import tables as T
 from .arbitration import number_of
+from .payload import low_bits
 from .protect import protect
 from .tables import Wire
 
@@ -58,6 +59,32 @@ def spoil(w: Wire, i: int, now: int) -> None:
         w.messages[i, T.KEPT] = 1
         for byte in range(w.messages[i, T.LENGTH]):
             w.kept[i, byte] = w.frame[byte]
+    corrupt(w, i, now)
+
+
+def spoil_logged(w: Wire, i: int, now: int) -> None:
+    """Do to the frame at hand, of message i of a log, what faults of its sender would have done to it.
+
+    A frozen frame has the payload of the last one; unless its counter is frozen too, its own counter.
+    """
+    m = w.messages
+    frozen = hit(w, T.FREEZE, i, now) if m[i, T.KEPT] else -1
+    counter = low_bits(w.frame, m[i, T.COUNTER_LITTLE], m[i, T.COUNTER_START], m[i, T.COUNTER_BITS])
+    for byte in range(m[i, T.LENGTH]):
+        if frozen >= 0:
+            w.frame[byte] = w.kept[i, byte]
+        else:
+            w.kept[i, byte] = w.frame[byte]
+    m[i, T.KEPT] = 1
+    if frozen >= 0 and m[i, T.PROFILE] and not w.faults[frozen, T.COUNTER_TOO]:
+        wipe(w, i)
+        m[i, T.COUNTER] = counter
+        protect(w, i)
+    corrupt(w, i, now)
+
+
+def corrupt(w: Wire, i: int, now: int) -> None:
+    """Flip the bits of the frame at hand, of message i, that a fault at this time flips."""
     wrong = hit(w, T.CORRUPT, i, now)
     while wrong >= 0:  # each has a byte of its own
         if w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:

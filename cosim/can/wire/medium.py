@@ -9,13 +9,13 @@ from ..timing.lengths import INTERFRAME
 from . import tables as T
 from .arbitration import contend, number_of
 from .babble import begin, go_on
-from .faults import hit, spoil
+from .faults import hit, spoil, spoil_logged
 from .log import log
 from .off import is_off, note_hit, strike, unheard
 from .protect import accepted, protect, watch
 from .requests import wanted
 from .tables import Wire
-from .values import pack, sample, unpack
+from .values import ask, pack, sample, unpack
 
 _JITTER = 1  # what is drawn for
 
@@ -157,6 +157,46 @@ def push(w: Wire, ring: int, i: int, arrival: int, sampled: int) -> None:
         w.flights[row, T.PAYLOAD + byte] = w.frame[byte]
 
 
+def replay(w: Wire, stream: int, k: int) -> int:
+    """Bring the frames of a log that are seen by step k to their receivers; return DONE or RAISED."""
+    s = w.streams
+    while True:
+        if s[stream, T.NEXT] == s[stream, T.FILLED]:
+            if s[stream, T.OVER]:
+                return T.DONE
+            if ask(w, T.FILL, stream, k) != T.DONE:
+                return T.RAISED
+            continue
+        row = stream * T.REPLAY_ROWS + s[stream, T.NEXT]
+        if w.replays[row, T.LOG_STEP] > k:
+            return T.DONE
+        s[stream, T.NEXT] += 1
+        i = w.replays[row, T.LOG_MESSAGE]
+        for byte in range(w.messages[i, T.LENGTH]):
+            w.frame[byte] = w.replays[row, T.LOG_PAYLOAD + (byte >> 3)] >> 8 * (byte & 7) & 255
+        if pass_on(w, i, k, w.replays[row, T.LOG_TIME]) != T.DONE:
+            return T.RAISED
+
+
+def pass_on(w: Wire, i: int, k: int, time: int) -> int:
+    """Let the frame at hand, of message i of a log, which it has at a time, be received; as `deliver`."""
+    if hit(w, T.SILENCE, i, time) >= 0:
+        w.messages[i, T.SILENCED] += 1
+        return T.DONE
+    if w.buses[w.messages[i, T.BUS], T.STRIKES]:
+        strike(w, w.messages[i, T.BUS], time)
+    if is_off(w, w.messages[i, T.NODE], time):
+        w.messages[i, T.HELD] += 1
+        note_hit(w, w.messages[i, T.NODE])
+        return T.DONE
+    if w.state[T.FAULTS]:
+        spoil_logged(w, i, time)
+    w.messages[i, T.REPLAYED] += 1
+    if log(w, i, k, time) != T.DONE:
+        return T.RAISED
+    return deliver(w, i, k, time, time)
+
+
 def flight_of(w: Wire, ring: int, n: int) -> int:
     """Return the row of flights of the n-th frame that is under way in a ring."""
     r = w.rings
@@ -194,7 +234,8 @@ def note(m: Any, i: int, least: int, time: int, before: int) -> None:
 
 
 def act(w: Wire, what: int, i: int, k: int) -> int:
-    """Do an action of step k: SEND or WATCH message i, let the frames of ring i ARRIVE or of bus i CONTEND.
+    """Do an action of step k: SEND or WATCH message i, REPLAY log i, let the frames of ring i ARRIVE or of
+    bus i CONTEND.
 
     Return DONE or RAISED.
     """
@@ -206,4 +247,6 @@ def act(w: Wire, what: int, i: int, k: int) -> int:
         w.state[T.ARRIVING] = k * w.state[T.STEP_TIME]
         watch(w, i)
         return T.DONE
+    if what == T.REPLAY:
+        return replay(w, i, k)
     return run_bus(w, i, k)

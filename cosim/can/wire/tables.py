@@ -38,6 +38,8 @@ class Wire(NamedTuple):
     chances: Any
     verdicts: Any
     log: Any
+    replays: Any
+    streams: Any
     fallback: Any
     memory: Any
     frame: Any
@@ -79,16 +81,17 @@ step at present (`protection.counters`); the number of frames that were not take
 """Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
 it, and how often that was; 1 if a frame came, and was taken, since `watch` looked; STATUSES slots of inputs
 from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
-(KEPT, LOST, SILENCED, DELAYED, HELD, UNHEARD) = range(53, 59)
+(KEPT, LOST, SILENCED, DELAYED, HELD, UNHEARD, REPLAYED) = range(53, 60)
 """1 once `kept` has the last payload that was sent; frames that a fault took from receivers, silenced, or
-made late; those that were sampled while their node was off the bus, and that arrived while a receiver was."""
-(BABBLES, OWNED) = range(59, 61)
+made late; those that were sampled while their node was off the bus, that arrived while a receiver was, and
+that came from a log."""
+(BABBLES, OWNED) = range(60, 62)
 """1 + the row of the fault whose frames they are, 0 for a message; 1 where a receiver has an OWNER."""
-(SEND_TYPE, INTERVAL, CYCLE, ASKED, NEXT_STEP, PHASE, ACTIVE, LOOKED) = range(61, 69)
+(SEND_TYPE, INTERVAL, CYCLE, ASKED, NEXT_STEP, PHASE, ACTIVE, LOOKED) = range(62, 70)
 """Its send type, the least steps between two frames, its cycle in steps; 1 while a frame is wanted, the first
 step at which it may be sent, the step at which it became active, 1 while it is, and once its values were
 looked at."""
-MESSAGE = 69
+MESSAGE = 70
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
@@ -156,6 +159,13 @@ LOG_WIDTH = LOG_PAYLOAD + 8
 """Columns of the log: the step in which the frame was sent, the time of its end, the message, and the
 payload, eight bytes in each word."""
 
+(NEXT, FILLED, OVER) = range(3)
+STREAM_WIDTH = 3
+REPLAY_ROWS = 1024
+"""Columns of streams, the logs that are replayed: of the FILLED rows of `replays` from the stream's number
+times REPLAY_ROWS on, the one whose frame comes next; 1 if there are no more. Rows have the columns of the
+log, but for the step, which is that in which the frame is seen."""
+
 STEP_TIME, LOG_ROWS, FAULTS, ARRIVING = range(4)
 STATE = 4
 """Places in state: the time of a step; rows of the log in use; the number of faults; the time at which the
@@ -172,9 +182,10 @@ LOSE, SILENCE, CORRUPT, FREEZE, LATE, BUS_OFF, BABBLE = range(7)
 
 # ---- what Python is asked for, and what comes back
 
-RAW, VALUE, FLUSH = range(3)
-"""The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log."""
+RAW, VALUE, FLUSH, FILL = range(4)
+"""The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log; the
+next rows of a stream."""
 DONE, RAISED = range(2)
 
-SEND, ARRIVE, CONTEND, WATCH = range(4)
+SEND, ARRIVE, CONTEND, WATCH, REPLAY = range(5)
 """Actions of a step."""

@@ -14,6 +14,7 @@ from ....cosim.interface import UnitInterface, Value
 from ....cosim.plan.unit_maps import End, unit_map
 from ....cosim.row_store import Array
 from ....cosim.swap.mapping import present
+from ....cosim.system.can_log_spec import CanLogEntry
 from ....cosim.system.scenario import Scenario, ScenarioFile, StimulusEntry
 from ....cosim.system.system import Isolation, System, SystemFile, UnitEntry
 from ....cosim.units.measure import Affine
@@ -155,7 +156,7 @@ class Bench:
 
     def _driven(self, drive: InputCourses) -> Scenario:
         """Return a scenario that drives the inputs, with the unit's own parameters and starts."""
-        stimuli = [
+        stimuli: list[StimulusEntry | CanLogEntry] = [
             StimulusEntry(
                 to=f"{self.unit}.{name}",
                 unit=self.ours.variables[name].unit or None,

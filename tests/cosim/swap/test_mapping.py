@@ -147,7 +147,7 @@ def test_what_needs_absent_variables_is_left_out_and_said() -> None:
     assert [m.name for m in system.file.metrics] == ["of z"]
     assert system.file.budget is None
     assert [s.name for s in system.file.figure.panels[0].signals] == ["u.z"] if system.file.figure else False
-    assert [s.to for s in scenario.file.stimuli] == ["w.e"]
+    assert [s.to for _, s in scenario.file.stimuli] == ["w.e"]
     assert [e.needs for e in scenario.file.events] == [("w.e",)]
     assert scenario.file.parameters == {"u": {"p": 2.0}}
     assert scenario.file.start == {"u": {}}

@@ -132,7 +132,11 @@ def test_many_notes_are_cut_short(car, evcosim):
 
 def test_json_and_options_of_others(car, evcosim):
     assert json.loads(evcosim("info", str(car), "Fast", "--json").out)["messages"][0]["name"] == "Fast"
-    for arguments in (("scooter", "EMD_Status"), ("Scooter", "--bitrate", "5")):
+    for arguments in (
+        ("Scooter", "EMD_Status"),
+        ("Scooter", "--bitrate", "5"),
+        ("scooter", "--bitrate", "5"),
+    ):
         answer = evcosim("info", *arguments)
         assert answer.code == 2
         assert "are for a CAN database (.dbc)" in answer.err

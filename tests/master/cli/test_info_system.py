@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
 from pathlib import Path
 
@@ -141,3 +142,18 @@ def test_a_factor_is_shown_as_it_is_written(evcosim, tmp_path: Path) -> None:
     text = " ".join(evcosim("info", system).out.split())
     assert "b.load [A] (x 0.5 - 1) (factor = 0.5, offset = -1)" in text
     assert "b.load: factor = 48" in text
+
+
+def test_a_scenario_s_logs_are_shown_with_the_frames_that_they_would_replay(evcosim, tmp_path: Path):
+    frame = "can0 148#" + "00" * 8
+    (tmp_path / "a.log").write_text(f"(5.0) {frame}\n(5.01) {frame}\n(500.0) {frame}\n")
+    scenario = tmp_path / "s.toml"
+    panel = "{ signals = ['ecu.throttle'], unit = '%' }"
+    left_out = f'leave_out = ["vehicle", "battery", "rider"]\nfigure = {{ panels = [{panel}] }}\n'
+    scenario.write_text(f'{left_out}[[stimulus]]\ncan_log = "a.log"\nbus = "can0"\n')
+    answer = evcosim("info", "scooter", str(scenario))
+    assert answer.code == 0, answer.err
+    assert "a.log can0 can0 0 495 EMD_Status 2" in " ".join(answer.out.split())
+    (replay,) = json.loads(evcosim("info", "scooter", str(scenario), "--json").out)["replays"]
+    assert replay["messages"]["EMD_Status"] == 2 and replay["after"] == 1
+    assert json.loads(evcosim("info", "scooter", "--json").out)["replays"] == []

@@ -52,7 +52,7 @@ def test_a_frame_carries_what_the_channel_carries(case):
     path.flush()
     assert old.channel.saturations == new.channel.saturations
     raws = [raw for _, row in old.channel.log.stretches() for raw in row["S"].tolist()]
-    log = path.log_of("can0").frames
+    log = path.log_of("can0").frames[0]
     assert log is not None
     assert [data for *_, data in log.frames()] == [encoder(message)({"S": raw}) for raw in raws]
 
@@ -118,5 +118,5 @@ def test_a_signal_of_64_bits_comes_from_python():
     path = FramePath([sender(plan, memory, False)], memory, 0.01, logs=True)
     path.act(*path.operation(Action("send", 0)), 0)
     assert memory[1] == -(2.0**62)
-    ((*_, data),) = path.log_of("can0").frames.frames()
+    ((*_, data),) = path.log_of("can0").frames[0].frames()
     assert struct.unpack("<q", data) == (-(2**62),)

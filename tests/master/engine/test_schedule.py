@@ -16,6 +16,7 @@ def message(after=None, every=1, first=0, delay=0, width=2, **more):
         "timed": False,
         "watched": False,
         "latest": 0,
+        "replayed": False,
         "settings": SimpleNamespace(delay=0.015),
     } | more
     values.setdefault("cycle", every)
@@ -32,6 +33,7 @@ def plan(
     told=True,
     timed=(),
     first=0,
+    replays=0,
 ):
     units = [SimpleNamespace(every=every, first=first) for every in periods]
     return SimpleNamespace(
@@ -41,6 +43,7 @@ def plan(
         messages=messages,
         timed_buses=timed,
         drives=[None] * drives,
+        replays=[None] * replays,
         memory_size=100,
         text_columns=[None] * texts,
     )
@@ -60,6 +63,16 @@ def test_timed_buses_arrive_before_all_messages_and_contend_behind_all_turns(alg
     actions = words(schedule(plan(algorithm, messages=[message()], drives=1, timed=("a", "b"))))
     assert actions.startswith("drive0 arrive0 arrive1 send0 take0")
     assert actions.endswith("end1 contend0 contend1 record publish0 publish1")
+
+
+@pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
+def test_logs_are_replayed_before_all_messages_and_their_messages_are_sent_by_nobody(algorithm):
+    logged = message(every=5, first=2, replayed=True, watched=True, framing=1)
+    actions = schedule(plan(algorithm, messages=[message(), logged], replays=1, timed=("a",)))
+    assert words(actions).startswith("arrive0 replay0 watch1 send0 take0") and "send1" not in words(actions)
+    assert actions[2] == Action("watch", 1, 5, 2)
+    timed = message(every=5, first=2, replayed=True, watched=True, framing=1, timed=True)
+    assert schedule(plan(algorithm, messages=[timed], replays=1))[1] == Action("watch", 0, 5, 2 + 5 + 2)
 
 
 def test_a_message_is_watched_once_a_cycle_behind_what_brings_it():

@@ -153,7 +153,7 @@ def test_who_is_carried_when_and_what_is_seen(case, sendings, seed):
         sent, payloads, STEPS, 10**9, round(1e12 / use.bitrate),
         lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 1), offs, babbling, sent_at,
     )  # fmt: skip # one call
-    log = path.log_of("can0").frames
+    log = path.log_of("can0").frames[0]
     assert [(end, m.name, data) for _, end, m, data in log.frames()] == [
         (frame.end, frame.message.name, frame.payload) for frame in expected
     ]

@@ -70,7 +70,7 @@ def test_values_arrive_with_a_counter_that_goes_round(profile):
     path = Path(profile)
     received = [path.step(value) for value in range(40)]
     assert received == [(2.0 * value, 0.0 if value else 4.0) for value in range(40)]
-    frames = [data for *_, data in path.path.log_of("can0").frames.frames()]
+    frames = [data for *_, data in path.path.log_of("can0").frames[0].frames()]
     counters = [data[2] if profile == "5" else data[1] & 15 for data in frames]
     assert counters == [n % {"5": 256, "2": 16}.get(profile, 15) for n in range(40)]
 

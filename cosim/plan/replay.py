@@ -1,0 +1,308 @@
+"""CAN logs of a scenario, from their files to the messages whose frames they replay."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from pathlib import Path
+
+import numpy as np
+
+from ..can.channel import SignalRoute
+from ..can.database import Database, Message, Signal
+from ..can.flaws import conditions
+from ..can.framing import Framing, framing_of
+from ..can.logs.recording import Key, Recording, chosen_channel, key_of, recorded
+from ..can.logs.replay import Replayed
+from ..can.send_steps import send_steps
+from ..clock import Clock
+from ..errors import ConfigError
+from ..system.can_log_spec import CanLogEntry
+from ..system.scenario import Scenario
+from ..system.system import System
+from ..system.toml import data_file
+from .plan import MessagePlan, ReplayPlan
+from .received import Received
+from .steps import steps_in
+
+_MOST = 8  # names in a sentence
+
+
+def with_replays(system: System, scenario: Scenario, received: Received, clock: Clock) -> list[ReplayPlan]:
+    """Return the replays of a scenario; add their messages, and what to know of them, to the network.
+
+    Raises ConfigError, which names the place in the scenario or in the log, for all that does not fit.
+    """
+    network, plans = received.network, []
+    for number, entry in scenario.file.can_logs:
+        place = f"{scenario.path}: stimulus {number}" if scenario.path else f"stimulus {number}"
+        if received.ideal:
+            raise ConfigError(f"{place}: with ideal buses there are no frames, and so none of a log")
+        path = data_file(entry.can_log, scenario.path, place) if scenario.path else Path(entry.can_log)
+        wanted = received.wanted(entry, place)
+        variants = _Variants(wanted)
+        recording = recorded(path, {key_of(m): m.length for m, _ in wanted}, variants)
+        channel = chosen_channel(recording, entry.channel, entry.bus, place)
+        if channel in recording.backward:
+            raise ConfigError(
+                f"{path}: channel {channel}: {recording.backward[channel]}: a log is replayed in its order"
+            )
+        database, sent = network.databases[entry.bus], received.sent(entry.bus)
+        _check_matches(recording, channel, wanted, database, place)
+        first = len(network.messages)
+        replayed = _timed(system, entry, recording, channel, variants, first, clock)
+        made = [_message(system, entry.bus, variant, clock, received) for variant in variants.found]
+        plan = _plan(entry.bus, replayed, made, wanted, clock, place)
+        network.messages += made
+        network.warnings += _notes(plan, wanted, database, sent, clock)
+        plans.append(plan)
+    return plans
+
+
+@dataclasses.dataclass(frozen=True)
+class _Variant:
+    """Frames of a message that hold the same of its connected signals; `page` are multiplexers' values."""
+
+    message: Message
+    routes: Sequence[SignalRoute]
+    page: Mapping[str, int]
+
+
+def _constant(number: int) -> Callable[[bytes], int | None]:
+    return lambda data: number
+
+
+class _Variants:
+    """The variants of the wanted messages, as they come up in a log; called with each of their frames."""
+
+    def __init__(self, wanted: Sequence[tuple[Message, Sequence[SignalRoute]]]) -> None:
+        self.found: list[_Variant] = []
+        self._choose: dict[Key, Callable[[bytes], int | None]] = {}
+        for message, routes in wanted:
+            names = [route.signal.name for route in routes]
+            selecting = list(
+                dict.fromkeys(name for each in names for name, _ in conditions(message.signals, each))
+            )
+            if selecting:
+                self._choose[key_of(message)] = self._multiplexed(message, routes, selecting)
+            else:
+                self.found.append(_Variant(message, routes, {}))
+                self._choose[key_of(message)] = _constant(len(self.found) - 1)
+
+    def __call__(self, key: Key, data: bytes) -> int | None:
+        """Return the number of the variant of a frame; None where it holds no connected signal."""
+        return self._choose[key](data)
+
+    def _multiplexed(
+        self, message: Message, routes: Sequence[SignalRoute], selecting: Sequence[str]
+    ) -> Callable[[bytes], int | None]:
+        known: dict[tuple[int, ...], int | None] = {}
+        by_held: dict[tuple[str, ...], int] = {}
+
+        def choose(data: bytes) -> int | None:
+            raws = tuple(raw_value(message.signals[name], data) for name in selecting)
+            if raws not in known:
+                known[raws] = self._of_page(message, routes, dict(zip(selecting, raws, strict=True)), by_held)
+            return known[raws]
+
+        return choose
+
+    def _of_page(
+        self,
+        message: Message,
+        routes: Sequence[SignalRoute],
+        raws: dict[str, int],
+        by_held: dict[tuple[str, ...], int],
+    ) -> int | None:
+        held = [route for route in routes if _is_held(message, route.signal.name, raws)]
+        names = tuple(route.signal.name for route in held)
+        if not held:
+            return None
+        if names not in by_held:
+            by_held[names] = len(self.found)
+            self.found.append(_Variant(message, held, raws))
+        return by_held[names]
+
+
+def _is_held(message: Message, name: str, raws: Mapping[str, int]) -> bool:
+    """Return True if a frame with these raw values of its multiplexers holds a signal."""
+    return all(
+        any(low <= raws[multiplexer] <= high for low, high in ranges)
+        for multiplexer, ranges in conditions(message.signals, name)
+    )
+
+
+def raw_value(signal: Signal, data: bytes) -> int:
+    """Return the raw value of an integer signal in a payload."""
+    if signal.little_endian:
+        raw = int.from_bytes(data, "little") >> signal.start
+    else:
+        begin = 8 * (signal.start // 8) + 7 - signal.start % 8
+        raw = int.from_bytes(data, "big") >> (8 * len(data) - begin - signal.length)
+    raw &= (1 << signal.length) - 1
+    return raw - (1 << signal.length) if signal.signed and raw >> (signal.length - 1) else raw
+
+
+def _timed(
+    system: System,
+    entry: CanLogEntry,
+    recording: Recording,
+    channel: str,
+    variants: _Variants,
+    first: int,
+    clock: Clock,
+) -> Replayed:
+    """Return the frames in the run's time; those of variant i are of the message with number first + i."""
+    if entry.time_offset is not None:
+        offset = int(Decimal(repr(entry.time_offset)) * 10**9)
+    else:
+        offset = recording.first or 0
+    numbers = first + np.arange(len(variants.found), dtype=np.int64)
+    return Replayed(recording, channel, offset, clock, system.file.buses[entry.bus].delay, numbers)
+
+
+def _message(system: System, bus: str, variant: _Variant, clock: Clock, received: Received) -> MessagePlan:
+    """Return the plan of a message, or of a page of it, whose frames come from a log."""
+    settings, message = system.file.buses[bus], variant.message
+    names = [route.signal.name for route in variant.routes]
+    framing = framing_of(message, settings, names, f"{system.path}: buses.{bus}") or Framing()
+    framing = dataclasses.replace(framing, status=received.status_inputs(bus, message))
+    every, first = 1, 0
+    if framing.watched(settings.of_message(message.name)):
+        every, first = send_steps(message, clock.step, str(system.path), bus)
+        if settings.timing == "instant":
+            first += steps_in(settings.delay, clock.step, f"{system.path}: buses.{bus}.delay")
+    protection = framing.protection.signals if framing.protection is not None else []
+    signals = {signal.name: signal for signal in protection}
+    signals |= {route.signal.name: route.signal for route in variant.routes}
+    return MessagePlan(
+        bus=bus,
+        message=dataclasses.replace(message, signals=signals),
+        settings=settings,
+        routes=tuple(variant.routes),
+        senders={},
+        every=every,
+        first=first,
+        after=None,
+        framing=framing,
+        page=variant.page,
+        replayed=True,
+    )
+
+
+def _check_matches(
+    recording: Recording,
+    channel: str,
+    wanted: Sequence[tuple[Message, Sequence[SignalRoute]]],
+    database: Database,
+    place: str,
+) -> None:
+    """Raise ConfigError where no frame of the log is one of the wanted messages."""
+    seen = recording.seen[channel]
+    good = [m for m, _ in wanted if (one := seen.get(key_of(m))) is not None and one.frames > one.short]
+    if good:
+        return
+    names = ", ".join(f"{m.name} ({_identifier(key_of(m))}, {m.length} bytes)" for m, _ in wanted[:_MOST])
+    known = {key_of(m) for m in database.messages.values()}
+    matching = sum(one.frames for key, one in seen.items() if key in known)
+    short = [(m, seen[key_of(m)]) for m, _ in wanted if key_of(m) in seen]
+    lengths = "".join(f"; {m.name} has {one.least} bytes there, not {m.length}" for m, one in short[:_MOST])
+    raise ConfigError(
+        f"{place}.can_log: {recording.path}: of the {recording.count(channel)} frames of channel {channel} "
+        f"none is one of the messages that would be replayed: {names}{lengths}; {matching} frames have an "
+        f"identifier of {database.path}: is it the log of another bus, or of another database?"
+    )
+
+
+def _identifier(key: Key) -> str:
+    return f"{key[0]:#x}{' extended' if key[1] else ''}"
+
+
+def _plan(
+    bus: str,
+    replayed: Replayed,
+    made: Sequence[MessagePlan],
+    wanted: Sequence[tuple[Message, Sequence[SignalRoute]]],
+    clock: Clock,
+    place: str,
+) -> ReplayPlan:
+    """Return the plan of a replay with its counts. Raises ConfigError where no frame of it is in the run."""
+    variants, steps = replayed.steps()
+    inside = (steps >= 0) & (steps < clock.steps)
+    counts = {m.name: 0 for m, _ in wanted}
+    for number, count in enumerate(np.bincount(variants[inside], minlength=len(made)).tolist()):
+        counts[made[number].message.name] += count
+    path = replayed.recording.path
+    first, last = (
+        ((time or 0) - replayed.offset) * 1e-9 for time in (replayed.recording.first, replayed.recording.last)
+    )
+    if not inside.any():
+        raise ConfigError(
+            f"{place}: none of the {len(steps)} frames that would be replayed of {path} is within the run, "
+            f"from {clock.start:g} s to {clock.stop:g} s: its frames are from {first:.6g} s to {last:.6g} s "
+            "of the run's time; `time_offset` is the time of the log at which the run's clock shows 0 s"
+        )
+    return ReplayPlan(
+        bus=bus,
+        path=path,
+        frames=replayed,
+        counts=counts,
+        span=(first, last),
+        before=int((steps < 0).sum()),
+        after=int((steps >= clock.steps).sum()),
+    )
+
+
+def _notes(
+    plan: ReplayPlan,
+    wanted: Sequence[tuple[Message, Sequence[SignalRoute]]],
+    database: Database,
+    sent: Mapping[Key, str],
+    clock: Clock,
+) -> Iterator[str]:
+    """Yield a sentence for each kind of frames of the log that is not replayed, and for what is missing."""
+    recording = plan.frames.recording
+    seen = recording.seen[plan.frames.channel]
+    by_units = {name: seen[key].frames for key, name in sent.items() if key in seen}
+    if by_units:
+        yield (
+            f"{plan.path}: {sum(by_units.values())} frames are of messages that units of the run send, and "
+            f"not replayed: {_first(by_units)}"
+        )
+    known = {key_of(m) for m in database.messages.values()}
+    unknown = {_identifier(key): one.frames for key, one in seen.items() if key not in known}
+    if unknown:
+        yield (
+            f"{plan.path}: {sum(unknown.values())} frames have {len(unknown)} identifiers that "
+            f"{database.path} does not have: {_first(unknown)}"
+        )
+    for message, _ in wanted:
+        one = seen.get(key_of(message))
+        if one is not None and one.short:
+            yield (
+                f"{plan.path}: {one.short} of {one.frames} frames of {message.name} have fewer than its "
+                f"{message.length} bytes, {one.least} at least, and are not replayed"
+            )
+        if not plan.counts[message.name]:
+            yield (
+                f"{plan.path}: no frame of {plan.bus}.{message.name} is replayed: its receivers keep their "
+                "first values"
+            )
+    if (late := _ends_early(plan, clock)) > 0.0:
+        yield (
+            f"{plan.path} ends at {plan.span[1]:.6g} s of the run's time, {late:.3g} s before the stop time: "
+            "the last values hold"
+        )
+
+
+def _first(counts: Mapping[str, int]) -> str:
+    shown = [f"{name} ({count})" for name, count in list(counts.items())[:_MOST]]
+    return ", ".join(shown) + (f" and {len(counts) - _MOST} more" if len(counts) > _MOST else "")
+
+
+def _ends_early(plan: ReplayPlan, clock: Clock) -> float:
+    """Return by how much [s] a log ends before the run; 0 where its messages may just not be due again."""
+    left = clock.stop - plan.span[1]
+    longest = max((clock.stop - clock.start) / count for count in plan.counts.values() if count)
+    return left if left > 2.0 * longest else 0.0
