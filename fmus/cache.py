@@ -46,6 +46,11 @@ def folder() -> Path:
     return Path(base) / "evcosim"
 
 
+def folders() -> list[Path]:
+    """Return the cache folder, and the temporary one that this process has in its place."""
+    return [folder(), *_replaced.values()]
+
+
 def _home() -> Path:
     """Return the user's home; where there is none, as for a user id without a name, one of our own."""
     try:

@@ -5,6 +5,7 @@ This is the one module of the master that knows the package of FMUs.
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 
@@ -141,6 +142,14 @@ def model_source(name: str) -> tuple[str, str]:
     from ..fmus import from_file
 
     return from_file.model_source(name)
+
+
+def by_names(text: str) -> str:
+    """Return a message in which the files of built-in FMUs, which are in the cache, are their names."""
+    from ..fmus import cache
+
+    folders = "|".join(re.escape(str(each)) for each in cache.folders())
+    return re.sub(rf"(?:{folders})[/\\](\w+)_[0-9a-f]{{12}}\.fmu", r"\1", text)
 
 
 def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:

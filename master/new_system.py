@@ -41,6 +41,8 @@ def new_system(folder: Path, base: str | None = None) -> list[str]:
         draft.rename(folder)
     except OSError as error:
         raise ConfigError(f"{folder}: cannot be made: {reason(folder, error)}") from error
+    except ConfigError as error:  # of a file of the draft, which nobody knows
+        raise ConfigError(*(line.replace(str(draft), str(folder)) for line in error.lines)) from error
     finally:
         if draft is not None:
             shutil.rmtree(draft, ignore_errors=True)

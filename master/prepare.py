@@ -274,6 +274,10 @@ def _advice(system: System, scenario: Scenario, unit: str, path: str | Path) -> 
     return f"'evcosim check {path} --as {name}.{unit}{in_it}' shows what the system needs and what fits"
 
 
+_OF_STEPS = ("communication step {} s", " steps of {:g} s with ")
+"""Texts in the messages of `steps_in` and `check_kept`, which name a stop time where the step is wrong."""
+
+
 def _advised(
     system: System,
     scenario: Scenario,
@@ -287,8 +291,9 @@ def _advised(
     except ConfigError as error:
         step = options.get("step_size")
         files = step_size_of(system, scenario, {})  # of an FMU by itself it is the option's
-        if step not in (None, files) and f"communication step {float(step)} s" in str(error):
-            raise ConfigError(f"step_size = {step:g} s, where the files have {files:g} s: {error}") from error
+        if step is not None and any(said.format(float(step)) in str(error) for said in _OF_STEPS):
+            instead = f", where the files have {files:g} s" if step != files else ""
+            raise ConfigError(f"step_size = {step:g} s{instead}: {error}") from error
         if swaps:
             unit, path = next(iter(swaps.items()))
             raise ConfigError(*error.lines, _advice(system, scenario, unit, path)) from error

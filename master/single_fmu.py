@@ -69,9 +69,10 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     path = fmu_file(target)
     name = target if target in builtin_names() else path.stem
     fmu = read_fmu(path, options.get("strict", False)).using(options.get("interface"))
-    values = _by_name(options.get("parameters") or {}, "parameter", fmu.interface, path)
-    starts = _by_name(options.get("start") or {}, "start", fmu.interface, path)
-    inputs = _by_name(options.get("inputs") or {}, "input", fmu.interface, path)
+    said = Path(target)  # the file of a built-in FMU is in the cache, which nobody wrote
+    values = _by_name(options.get("parameters") or {}, "parameter", fmu.interface, said)
+    starts = _by_name(options.get("start") or {}, "start", fmu.interface, said)
+    inputs = _by_name(options.get("inputs") or {}, "input", fmu.interface, said)
     unit: dict[str, object] = {"fmu": str(path.resolve()), "interface": options.get("interface")}
     data = {
         "name": identifier(name),
@@ -80,7 +81,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
         "units": {UNIT: unit | {"tolerance": options.get("tolerance")}},
         "record": _recorded(fmu.interface),
     }
-    stimuli = [_stimulus(text, name, x, fmu.interface, path) for name, (text, x) in inputs.items()]
+    stimuli = [_stimulus(text, name, x, fmu.interface, said) for name, (text, x) in inputs.items()]
     left: Any = {name: value for name, value in options.items() if name not in ALONE}
     return (
         System(path, validate(data, SystemFile, str(path))),

@@ -41,4 +41,4 @@ def _nearest(cycle: float, count: int, step_size: float) -> str:
     """Return a clause on the multiples of the step around a cycle time [s] that is none."""
     low = count if point(count, 0.0, step_size) < cycle else count - 1
     found = [f"{point(k, 0.0, step_size)!r} s" for k in (low, low + 1) if k > 0]
-    return f"the nearest {'is' if len(found) == 1 else 'are'} {' and '.join(found)}"
+    return f"the nearest {'multiple is' if len(found) == 1 else 'are'} {' and '.join(found)}"

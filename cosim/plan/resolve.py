@@ -232,8 +232,8 @@ def _turns(system: System, entries: Mapping[str, UnitEntry], clock: Clock) -> di
         place, most = f"{system.keys_of(unit)}offset", clock.length(every - 1)
         if offset >= clock.length(every):
             raise ConfigError(
-                f"{place} = {offset} s is not less than the period of the unit, {period} s; the nearest is "
-                f"{most} s{'' if most else ', or the unit needs a longer `period`'}"
+                f"{place} = {offset} s is not less than the period of the unit, {period} s; the "
+                f"greatest offset is {most} s{'' if most else ', or the unit needs a longer `period`'}"
             )
         first = steps_in(offset, clock.step, place, most=every - 1)
         if first >= clock.steps:

@@ -30,7 +30,7 @@ def steps_in(
     after = f" after start_time {start} s" if start else ""
     raise ConfigError(
         f"{place} = {time} s is not a multiple of the communication step {step_size} s{after}; "
-        f"the nearest {'is' if len(found) == 1 else 'are'} {' and '.join(found)}"
+        f"the nearest {'multiple is' if len(found) == 1 else 'are'} {' and '.join(found)}"
     )
 
 

@@ -94,7 +94,8 @@ def open_closed_streams() -> None:
 
 def complain(message: str, whole: bool = False) -> None:
     """Print a message on stderr: at most a screen, wrapped in a terminal, unless `whole`."""
-    lines = visible(message.strip()).split("\n") if message.strip() else ["no reason given"]
+    message = _by_names(message.strip())
+    lines = visible(message).split("\n") if message else ["no reason given"]
     if len(lines) > _SCREEN and not whole:
         lines[_SCREEN - 1 :] = [f"... and {len(lines) - _SCREEN + 1} more lines; --debug shows them"]
     # a name with a line feed must not make another message of what follows
@@ -103,6 +104,15 @@ def complain(message: str, whole: bool = False) -> None:
     width = 0 if whole else _terminal_width()
     shown = [part for line in lines for part in message_lines(line, width)] if width else lines
     print("\n".join(shown), file=sys.stderr)
+
+
+def _by_names(message: str) -> str:
+    """Return a message with the names of built-in FMUs in place of their files in the cache."""
+    if ".fmu" not in message:
+        return message
+    from ..builtin import by_names
+
+    return by_names(message)
 
 
 def _terminal_width() -> int:

@@ -148,10 +148,10 @@ def test_a_sampled_output_goes_out_with_the_messages_own_cycle(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("keys", "rule"),
     [
-        ("period = 0.04\noffset = 0.04", "less than the period of the unit, 0.04 s; the nearest is 0.03 s"),
-        ("offset = 0.01", "the nearest is 0.0 s, or the unit needs a longer `period`"),
+        ("period = 0.04\noffset = 0.04", "period of the unit, 0.04 s; the greatest offset is 0.03 s"),
+        ("offset = 0.01", "the greatest offset is 0.0 s, or the unit needs a longer `period`"),
         ("period = 0.04\noffset = 0.015", "step 0.01 s; the nearest are 0.01 s and 0.02 s"),
-        ("period = 0.04\noffset = 0.038", "communication step 0.01 s; the nearest is 0.03 s"),
+        ("period = 0.04\noffset = 0.038", "communication step 0.01 s; the nearest multiple is 0.03 s"),
         ("period = 4.0\noffset = 3.0", "starts at 3.0 s, not before the stop time 2.0 s; stop later"),
         ("offset = -0.01", "greater than or equal to 0, not -0.01"),
         ("offset = nan", "not nan"),

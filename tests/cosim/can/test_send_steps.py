@@ -43,7 +43,7 @@ def test_no_multiple() -> None:
         ConfigError, match=r"^s\.toml: ev\.dbc: message 'M': its cycle time 0\.015 s is no multiple"
     ):
         send_steps(message(15), 0.01, "s.toml")
-    with pytest.raises(ConfigError, match=r"step 0\.02 s; the nearest is 0\.02 s \(`cycle_time` in"):
+    with pytest.raises(ConfigError, match=r"step 0\.02 s; the nearest multiple is 0\.02 s \(`cycle_time` in"):
         send_steps(message(10), 0.02)
     with pytest.raises(ConfigError, match=r"the nearest are 0\.01 s and 0\.02 s"):
         send_steps(message(17), 0.01)

@@ -35,8 +35,8 @@ def test_a_time_between_two_points_is_refused(count: int, share: float, step_siz
         (1.005, 0.0, "the nearest are 1.0 s and 1.01 s"),
         (0.33000001, 0.0, "the nearest are 0.33 s and 0.34 s"),
         (1.704, 0.7, "after start_time 0.7 s; the nearest are 1.7 s and 1.71 s"),
-        (-0.004, 0.0, "the nearest is 0.0 s"),
-        (-7.0, 0.0, "the nearest is 0.0 s"),
+        (-0.004, 0.0, "the nearest multiple is 0.0 s"),
+        (-7.0, 0.0, "the nearest multiple is 0.0 s"),
     ],
 )
 def test_the_nearest_multiples_are_named(time: float, start: float, nearest: str) -> None:
@@ -46,13 +46,13 @@ def test_the_nearest_multiples_are_named(time: float, start: float, nearest: str
 
 def test_no_more_steps_than_there_may_be_are_named() -> None:
     assert steps_in(0.03, 0.01, "here", most=3) == 3
-    with pytest.raises(ConfigError, match=r"the nearest is 0\.03 s$"):
+    with pytest.raises(ConfigError, match=r"the nearest multiple is 0\.03 s$"):
         steps_in(0.038, 0.01, "here", most=3)
 
 
 def test_a_stop_time_or_a_period_is_a_step_at_least() -> None:
     for time in (0.0, 0.004, -3.0):
-        with pytest.raises(ConfigError, match=r"the nearest is 0\.01 s$"):
+        with pytest.raises(ConfigError, match=r"the nearest multiple is 0\.01 s$"):
             steps_in(time, 0.01, "here", least=1)
 
 
