@@ -1,8 +1,9 @@
 """Reading CAN databases: DBC by evcosim, KCD, SYM (6.0) and ARXML by cantools.
 
 The same content makes the same records, whatever the format; what a format cannot say, as SYM the sender
-of a message, is as in a DBC without it. Tables (XLSX, XLS) and DBF are not read: what canmatrix makes of them
-has lost signs, offsets and codes, so that values would be others.
+of a message, is as in a DBC without it. Tables (XLSX, XLS) and DBF are refused: canmatrix (1.2), the one
+library that reads them, cannot read back the XLSX and the DBF that it has written of `ev.dbc`, and its XLS
+has lost lengths of messages, signs, ranges and codes, so that values would be others.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from .flaws import code_by_text, database_of
 _BY_CANTOOLS = (".kcd", ".sym", ".arxml")
 SUFFIXES = (".dbc", *_BY_CANTOOLS)
 """The suffixes of the files that are read as CAN databases."""
+REFUSED = (".xlsx", ".xls", ".dbf")
+"""The suffixes of CAN databases that no library reads as they were written."""
 
 
 def load_database(path: str | Path) -> Database:
@@ -31,6 +34,12 @@ def load_database(path: str | Path) -> Database:
     Raises ConfigError when the file cannot be read or is not of its format.
     """
     path = Path(path)
+    if path.suffix.lower() in REFUSED:
+        raise ConfigError(
+            f"{path}: {_name(path)} is not read as a CAN database: libraries for it lose lengths, signs, "
+            "ranges and codes, or fail. Export a DBC, KCD or ARXML file from the tool that has the database; "
+            "a file that was converted (as by canconvert) needs a look at all of these by `evcosim info`"
+        )
     if path.suffix.lower() in _BY_CANTOOLS:
         return _by_cantools(path)
     return load_dbc(path)

@@ -69,12 +69,12 @@ def _report(
     of_database: tuple[str | None, int | None, int | None],
 ) -> tuple[dict[str, Any], Callable[[dict[str, Any]], None]]:
     """Return the report and what prints it. Raises ConfigError for options of another kind of file."""
-    from ...cosim.can.formats import SUFFIXES
+    from ...cosim.can.formats import REFUSED, SUFFIXES
     from ...cosim.errors import ConfigError
     from ...cosim.system.system import system_names
     from . import info_database, info_fmu, info_system
 
-    if what.lower().endswith(SUFFIXES):
+    if what.lower().endswith((*SUFFIXES, *REFUSED)):
         if any(of_fmu) or diagram:
             options = "--causality, --search, --strict and --diagram"
             raise ConfigError(f"{options} are not for a CAN database, as {what}")

@@ -230,3 +230,9 @@ def test_a_file_that_is_none_of_its_format(tmp_path, suffix, text):
     path.write_text(text)
     with pytest.raises(ConfigError, match=rf"bad\{suffix}: not a valid {suffix[1:].upper()} file"):
         load_database(path)
+
+
+@pytest.mark.parametrize("suffix", ["xlsx", "XLS", "dbf"])
+def test_tables_are_refused_with_what_to_do(suffix: str) -> None:
+    with pytest.raises(ConfigError, match=f"a.{suffix}: {suffix.upper()} is not read .* Export a DBC, KCD"):
+        load_database(f"a.{suffix}")
