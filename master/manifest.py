@@ -15,6 +15,7 @@ from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.system import Isolation, System
 from .engine.bus_statistics import bus_statistics
+from .engine.effective_delays import effective_delays
 from .engine.engine import Engine
 from .engine.fault_tables import hits_of
 from .fmi.tolerance import tolerance_of
@@ -53,6 +54,7 @@ def manifest(
         "connections": _scaled(system),
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
         "frames": bus_statistics(engine.frames, engine.k),
+        "effective_delays": effective_delays(plan, engine.frames, engine.k),
         "faults": described(plan.faults, hits_of(engine.frames.arrays, plan.faults)),
         "bus_load": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "events": [

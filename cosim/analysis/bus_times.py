@@ -32,6 +32,7 @@ class Carried:
 class BusTimes:
     """A bus in a run: its load before the run, and what was counted (`frames` of run.json).
 
+    `delays` are the effective delays of each message's receivers (`effective_delays` of run.json).
     `period` are the frames of one busy period, in which nobody waits longer than in any other: between two of
     them there is the interframe space alone.
     """
@@ -39,6 +40,7 @@ class BusTimes:
     load: BusLoad
     counted: Mapping[str, Any]
     period: tuple[Carried, ...]
+    delays: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
     def rows(self) -> list[tuple[str, ...]]:
         """Return a row of texts for each message in the order of arbitration, below `headers`."""
@@ -52,6 +54,14 @@ class BusTimes:
             head = (message.name, identifier, message.every, str(message.length))
             found.append((*head, share, *times, bound))
         return found
+
+    def delay_rows(self) -> list[tuple[str, ...]]:
+        """Return a row of texts for each message and receiver, below message, receiver and times in ms."""
+        return [
+            (name, unit, *(f"{1e3 * times[key]:.3f}" if times else "-" for key in ("min", "mean", "max")))
+            for name, units in self.delays.items()
+            for unit, times in units.items()
+        ]
 
     @staticmethod
     def headers() -> tuple[str, ...]:
@@ -79,6 +89,7 @@ class BusTimes:
         return {
             **self.load.as_data(),
             "counted": dict(self.counted),
+            "effective_delays": dict(self.delays),
             "period": [dataclasses.asdict(frame) for frame in self.period],
         }
 

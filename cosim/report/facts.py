@@ -130,14 +130,33 @@ def units_section(about: Mapping[str, Any]) -> str:
     ]
     algorithm = shown(dict(items_of(about.get("experiment"))).get("algorithm"))
     rule = _RULES.get(algorithm, "")
-    ways = [(a, b, via or "direct", when) for a, b, via, when in arrivals(about)]
+    ways = [
+        (a, b, via or "direct", when, _delay(about, via, b.partition(".")[0]))
+        for a, b, via, when in arrivals(about)
+    ]
     return section(
         "Units, in the order in which they step",
         f"<p>{escaped(rule)}</p>" if rule and rows else "",
         table(("unit", "FMU", "every", "process", "receives from"), rows),
         diagram(about),
-        folded(f"{len(ways)} connections", table(("from", "to", "over", "arrives"), ways)) if ways else "",
+        folded(
+            f"{len(ways)} connections",
+            table(("from", "to", "over", "arrives", "sampled until used [ms]"), ways),
+        )
+        if ways
+        else "",
     )
+
+
+def _delay(about: Mapping[str, Any], via: str, unit: str) -> str:
+    """Return least, mean and greatest time [ms] from the sampling of a bus signal to a unit's use of it."""
+    times = dict(items_of(dict(items_of(about.get("effective_delays"))).get(via.rpartition(".")[0]))).get(
+        unit
+    )
+    if not isinstance(times, Mapping):
+        return ""
+    least, mean, most = (1e3 * times[key] for key in ("min", "mean", "max"))
+    return f"{mean:.3g}" if least == most else f"{mean:.3g} ({least:.3g} to {most:.3g})"
 
 
 def _steps(unit: Mapping[str, Any]) -> str:

@@ -85,5 +85,8 @@ def _show(found: list[BusTimes], folder: Path, files: Sequence[str]) -> None:
         headers = each.headers()
         print_table(headers, each.rows(), right=headers[2:])
         print()
+        used = ("message", "receiver", "sampled until used: least [ms]", "mean", "most")
+        print_table(used, each.delay_rows(), right=used[2:])
+        print()
     if files:
         print_paragraph(f"in {folder}: {', '.join(files)}")

@@ -133,6 +133,9 @@ BUS_TIMES = record(
                 {
                     **BUS_LOAD["properties"],
                     "counted": FRAMES,
+                    "effective_delays": by_name(
+                        "By message.", by_name("From sampling to the step that uses it.", or_null(_TIMES))
+                    ),
                     "period": listed(
                         "The frames of the busy period of the longest wait.",
                         record(

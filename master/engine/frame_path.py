@@ -19,10 +19,11 @@ from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import words
 from ...cosim.can.wire.values import set_raw
 from ...cosim.plan.plan import FaultPlan, Plan, ReplayPlan
+from ...cosim.plan.readers import Reader, readers
 from .fault_tables import nodes_of
 from .schedule import Action
 from .sender import Sender
-from .wire_tables import ring_of_bus, views, wire_arrays
+from .wire_tables import add_uses, ring_of_bus, views, wire_arrays
 
 
 class FramePath:
@@ -30,8 +31,8 @@ class FramePath:
 
     `memory` is the run's, shape (size,), `step` [s] its step. With `logs` the frames are kept for `log_of`.
     `initial` are the values of mailboxes before the first frame, by slot, `receiving` their nodes that can be
-    off the bus (`Plan.receiving_nodes`). `replays` are the logs whose
-    frames are replayed.
+    off the bus (`Plan.receiving_nodes`). `replays` are the logs whose frames are replayed, `receivers` the
+    units that receive the messages.
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class FramePath:
         faults: Sequence[FaultPlan] = (),
         receiving: Mapping[int, tuple[str, str]] | None = None,
         replays: Sequence[ReplayPlan] = (),
+        receivers: Sequence[Sequence[Reader]] = (),
     ) -> None:
         buses = list(dict.fromkeys(sender.plan.bus for sender in senders))
         framed = [i for i, sender in enumerate(senders) if sender.plan.framing is not None]
@@ -55,10 +57,16 @@ class FramePath:
             self.senders, memory, step, logs, initial or {}, faults, receiving, len(replays)
         )
         self._replays, self._at = tuple(replays), [0] * len(replays)  # the next row of each recording
+        self.receivers = [receivers[i] if i < len(receivers) else () for i in framed]
+        add_uses(self.arrays, self.receivers)
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
         self._kept = frame_store()
+
+    def row_of(self, number: int) -> int | None:
+        """Return the row of a message by its number in the plan; None where it is no frame."""
+        return self._rows.get(number)
 
     def act(self, what: int, i: int, k: int) -> None:
         """Do an action of `wire.medium` in step k. Raises RunError for a value that cannot be sent."""
@@ -169,6 +177,5 @@ class FramePath:
 
 def frames_of(plan: Plan, senders: Sequence[Sender], memory: NDArray[np.float64], logs: bool) -> FramePath:
     """Return the frames of a plan, whose messages are `senders`; the rest is as in `FramePath`."""
-    return FramePath(
-        senders, memory, plan.clock.step, logs, plan.initial, plan.faults, plan.receiving_nodes, plan.replays
-    )
+    more = plan.initial, plan.faults, plan.receiving_nodes, plan.replays, readers(plan)
+    return FramePath(senders, memory, plan.clock.step, logs, *more)

@@ -21,6 +21,7 @@ from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
+from ...cosim.plan.readers import Reader
 from ...cosim.plan.receivers import node_of
 from .fault_tables import Arrays, add_faults, nodes_of, owner_of
 from .sender import Sender
@@ -52,6 +53,7 @@ def wire_arrays(
         "base": _table(len(plans), T.BYTES),
         "waiting": _table(len(plans), T.BYTES),
         "kept": _table(len(plans), T.BYTES),
+        "uses": _table(0, T.USE),
         "verdicts": _table(len(plans), T.VERDICTS),
         "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
@@ -332,6 +334,16 @@ def _under_way(made: Arrays, bus: NDArray[np.int64], plans: Sequence[MessagePlan
     first = int(bus[T.FIRST_MESSAGE])
     own = plans[first : first + int(bus[T.MESSAGES])]
     return sum((span + plan.latest) // (plan.every * step) + 3 for plan in own)
+
+
+def add_uses(made: Arrays, receivers: Sequence[Sequence[Reader]]) -> None:
+    """Add the table of uses to those of the frame path; `receivers` are those of its rows of messages."""
+    rows = [[r.every, r.first, r.later, -1, 0, 0, 0, 0, 0] for own in receivers for r in own]
+    made["uses"] = np.array(rows or [[1] + [0] * (T.USE - 1)], dtype=np.int64)
+    first = 0
+    for i, own in enumerate(receivers):
+        made["messages"][i, [T.FIRST_USE, T.USES]] = first, len(own)
+        first += len(own)
 
 
 def _table(rows: int, width: int, kind: Any = np.int64) -> NDArray[Any]:

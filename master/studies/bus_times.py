@@ -47,5 +47,10 @@ def bus_times(
                 settings: BusSettings = simulation.system.file.buses[log.bus]
                 frames = carried(log, simulation.plan.clock, settings)
                 period = longest_wait(frames, settings.bitrate)
-                found.append(BusTimes(loads[log.bus], about["frames"][log.bus], period))
+                delays = {
+                    name.partition(".")[2]: units
+                    for name, units in about["effective_delays"].items()
+                    if name.partition(".")[0] == log.bus
+                }
+                found.append(BusTimes(loads[log.bus], about["frames"][log.bus], period, delays))
         return found

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..timing.draws import drawn
 from ..timing.lengths import INTERFRAME
 from . import tables as T
@@ -15,6 +13,7 @@ from .off import is_off, note_hit, strike, unheard
 from .protect import accepted, protect, watch
 from .requests import wanted
 from .tables import Wire
+from .uses import note, use
 from .values import ask, pack, sample, unpack
 
 _JITTER = 1  # what is drawn for
@@ -218,19 +217,10 @@ def deliver(w: Wire, i: int, k: int, sampled: int, time: int) -> int:
     w.state[T.ARRIVING] = time
     if m[i, T.OWNED] and unheard(w, i):
         return T.DONE
-    return unpack(w, i, k) if accepted(w, i) else T.DONE
-
-
-def note(m: Any, i: int, least: int, time: int, before: int) -> None:
-    """Add a time to three columns that follow each other: the least so far, the sum, and the most.
-
-    `before` times were added already.
-    """
-    if before == 0 or time < m[i, least]:
-        m[i, least] = time
-    m[i, least + 1] += time
-    if before == 0 or time > m[i, least + 2]:
-        m[i, least + 2] = time
+    if not accepted(w, i):
+        return T.DONE
+    use(w, i, k, sampled)
+    return unpack(w, i, k)
 
 
 def act(w: Wire, what: int, i: int, k: int) -> int:

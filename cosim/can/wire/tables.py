@@ -30,6 +30,7 @@ class Wire(NamedTuple):
     base: Any
     waiting: Any
     kept: Any
+    uses: Any
     faults: Any
     rings: Any
     flights: Any
@@ -91,7 +92,9 @@ that came from a log."""
 """Its send type, the least steps between two frames, its cycle in steps; 1 while a frame is wanted, the first
 step at which it may be sent, the step at which it became active, 1 while it is, and once its values were
 looked at."""
-MESSAGE = 70
+(FIRST_USE, USES) = range(70, 72)
+"""USES rows of `uses` from FIRST_USE on: one for each unit that receives it."""
+MESSAGE = 72
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
@@ -125,6 +128,12 @@ bus), and of maps, from the bus' unit to the receiver's."""
 BYTES = 64
 """Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
 the frame that waits."""
+
+(TURN_EVERY, FIRST_TURN, LATER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST) = range(9)
+USE = 9
+"""Columns of uses: period and offset of the receiver in steps, and 1 if what arrives in its step comes after
+its turn; the turn in which the last value is used (-1: none came), and when that was sampled; the number of
+values that were used before, and least, sum and greatest time from sampling to turn."""
 
 # ---- frames under way
 

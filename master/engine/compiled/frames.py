@@ -32,6 +32,7 @@ from ....cosim.can.wire import (
     protect,
     requests,
     tables,
+    uses,
     values,
 )
 from ....cosim.can.wire.tables import Wire
@@ -43,7 +44,7 @@ from .wire_types import BY_ANNOTATION, WORDS, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
     draws, lengths, profiles, counters, payload, off, values, log, babble, arbitration, protect, faults,
-    requests, medium,
+    requests, uses, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
 SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access, wire_types)

@@ -1,0 +1,42 @@
+"""The units that receive the messages of a plan, with the steps at which they take their values."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from .plan import Plan
+
+
+@dataclasses.dataclass(frozen=True)
+class Reader:
+    """A unit that takes what a message brings at the steps k >= first with (k - first) % every == 0.
+
+    `later`: what arrives in such a step comes behind its turn, and is taken in the next one.
+    """
+
+    unit: str
+    every: int
+    first: int
+    later: bool
+
+    def turn(self, k: int) -> int:
+        """Return the step in which it takes what arrives in step k."""
+        return self.first + -(-max(0, k + self.later - self.first) // self.every) * self.every
+
+
+def readers(plan: Plan) -> tuple[tuple[Reader, ...], ...]:
+    """Return the receivers of each message, in the order of the messages and of the units."""
+    owners = {route.source: i for i, unit in enumerate(plan.units) for route in unit.routes}
+    found = []
+    for message in plan.messages:
+        mailboxes = dict(message.arrivals)
+        sinks = [mailboxes.get(slot, slot) for route in message.routes for slot, _ in route.sinks]
+        units = sorted({owners[slot] for slot in sinks if slot in owners})
+        behind = -1 if message.after is None or message.timed else message.after
+        found.append(
+            tuple(
+                Reader(plan.units[i].name, plan.units[i].every, plan.units[i].first, i <= behind)
+                for i in units
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,60 @@
+"""The time from the sampling of a value on a bus to the step of its receiver that uses it first."""
+
+from __future__ import annotations
+
+from ...cosim.can.wire import tables as T
+from ...cosim.clock import picoseconds
+from ...cosim.plan.plan import MessagePlan, Plan
+from ...cosim.plan.readers import Reader, readers
+from .frame_path import FramePath
+
+_PICOSECOND = 1e-12
+Delays = dict[str, dict[str, float] | None]
+"""Least, mean and greatest time [s] by receiving unit; None: it has used no value."""
+
+
+def delays_of_frames(frames: FramePath, row: int, steps: int) -> Delays:
+    """Return the delays of the message in a row of the frame path, after so many steps."""
+    messages, uses = frames.arrays["messages"], frames.arrays["uses"]
+    step, found = int(frames.arrays["state"][T.STEP_TIME]), {}
+    for i, reader in enumerate(frames.receivers[row], int(messages[row, T.FIRST_USE])):
+        at, sampled, count, least, total, most = (int(n) for n in uses[i, T.USED_AT :])
+        if 0 <= at < steps:  # the last value that came was used too
+            time = at * step - sampled
+            least, most = (min(least, time), max(most, time)) if count else (time, time)
+            total, count = total + time, count + 1
+        found[reader.unit] = _times(least, total, most, count)
+    return found
+
+
+def delays_of_values(plan: Plan, number: int, steps: int) -> Delays:
+    """Return the delays of a message that is no frame, by its number in the plan, after so many steps."""
+    message = plan.messages[number]
+    return {r.unit: _at_once(message, r, steps, plan.clock.step) for r in readers(plan)[number]}
+
+
+def _at_once(message: MessagePlan, reader: Reader, steps: int, step: float) -> dict[str, float] | None:
+    """Return the delays of a unit that receives each value as many steps after it was sampled."""
+    sampled = range(message.first, steps, message.every)
+    used = {reader.turn(k + message.delay): k for k in sampled}  # the last one of those before a turn
+    times = [(turn - k) * picoseconds(step) for turn, k in used.items() if turn < steps]
+    return _times(min(times), sum(times), max(times), len(times)) if times else None
+
+
+def _times(least: int, total: int, most: int, count: int) -> dict[str, float] | None:
+    if count == 0:
+        return None
+    return {"min": least * _PICOSECOND, "mean": total / count * _PICOSECOND, "max": most * _PICOSECOND}
+
+
+def effective_delays(plan: Plan, frames: FramePath, steps: int) -> dict[str, Delays]:
+    """Return the delays of all messages that somebody receives, by "bus.message", after so many steps."""
+    found = {}
+    for number, (message, own) in enumerate(zip(plan.messages, readers(plan), strict=True)):
+        if own:
+            page = "".join(f" {name} = {raw}" for name, raw in message.page.items())
+            row = frames.row_of(number)
+            found[f"{message.bus}.{message.message.name}{page}"] = (
+                delays_of_values(plan, number, steps) if row is None else delays_of_frames(frames, row, steps)
+            )
+    return found

@@ -1,0 +1,31 @@
+"""When values are used; tests/master/engine/test_effective_delays.py has the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from evcosim.cosim.can.wire import tables as T
+from evcosim.cosim.can.wire.tables import Wire
+from evcosim.cosim.can.wire.uses import count_use, use
+
+
+@pytest.mark.parametrize(
+    ("every", "first", "later", "arrivals", "delays"),
+    [
+        (1, 0, 0, [(3, 1), (4, 4)], [2, 0]),
+        (1, 0, 1, [(3, 1), (4, 4)], [3, 1]),
+        (10, 4, 0, [(0, 0), (4, 3), (5, 4), (14, 12), (15, 15)], [1, 2, 9]),  # of two before a turn the newer
+    ],
+)
+def test_a_value_is_used_in_the_next_turn(every, first, later, arrivals, delays):
+    tables = {name: np.zeros((2, 80), dtype=np.int64) for name in Wire._fields}
+    tables["state"] = np.ones(8, dtype=np.int64)
+    tables["messages"][0, T.USES] = 1
+    tables["uses"][0, [T.TURN_EVERY, T.FIRST_TURN, T.LATER, T.USED_AT]] = every, first, later, -1
+    w = Wire(**tables)
+    for k, sampled in arrivals:
+        use(w, 0, k, sampled)
+    count_use(w, 0)
+    found = w.uses[0, [T.USE_COUNT, T.USE_LEAST, T.USE_SUM, T.USE_MOST]].tolist()
+    assert found == [len(delays), min(delays), sum(delays), max(delays)]
