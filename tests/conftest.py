@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import gc
+import os
 import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -32,6 +35,13 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.pluginmanager.register(costs.Costs(config), "costs")
+
+
+def pytest_sessionstart(session):
+    """Compile what the cache lacks, once: else each worker would, and each command that a test starts."""
+    if session.config.getoption("numprocesses", None) and "PYTEST_XDIST_WORKER" not in os.environ:
+        code = "from evcosim.master.engine.selection import compile_engine; compile_engine()"
+        subprocess.run([sys.executable, "-c", code], check=False)  # tests of the engine say what is wrong
 
 
 @pytest.hookimpl(wrapper=True)

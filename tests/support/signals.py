@@ -34,7 +34,7 @@ COMMAND = [sys.executable, "-m", "evcosim", "run", "scooter", "--scenario", "ece
 LONG = [*COMMAND[:6], "udds", "-o", "out"]  # of which a killed run has rows that were saved
 COUNTS = {"SIGINT": 200, "SIGTERM": 20, "SIGHUP": 20, "SIGKILL": 20}
 _MARK = "EVCOSIM_CAMPAIGN"
-_GONE, _LAST = 2.0, 1.0  # s: for children to end; for Python to end when the command has done all
+_GONE, _LAST = 30.0, 1.0  # s: for children to end; for Python to end when the command has done all
 
 
 @dataclasses.dataclass
@@ -87,6 +87,15 @@ def await_first_line(process: subprocess.Popen[str]) -> None:
             if int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) & bit:
                 return
         time.sleep(0.001)
+
+
+def await_rows(run: subprocess.Popen[str], folder: Path) -> None:
+    """Wait until rows of a run are on the disk, in the folder of its results."""
+    rows = folder / "results.rows"
+    # the file is made a moment before its first line and the rows are written
+    while not (rows.exists() and rows.read_bytes().partition(b"\n")[2]):
+        assert run.poll() is None
+        time.sleep(0.02)
 
 
 def ended(

@@ -13,6 +13,7 @@ import pytest
 
 from evcosim.cosim.results.results import Results
 from support.answers import refused
+from support.signals import await_rows
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="SIGKILL, and /proc that shows the children")
 
@@ -27,11 +28,7 @@ def children(pid: int) -> list[int]:
 
 def killed(run, folder: Path) -> list[int]:
     """Kill a run as soon as rows are on the disk; return the processes that it had."""
-    rows = folder / "results.rows"
-    # the file is made a moment before its first line and the rows are written
-    while not (rows.exists() and rows.read_bytes().partition(b"\n")[2]):
-        assert run.poll() is None
-        time.sleep(0.05)
+    await_rows(run, folder)
     mine = children(run.pid)
     run.send_signal(signal.SIGKILL)
     run.wait()
@@ -65,7 +62,7 @@ def test_a_unit_that_is_stuck_holds_no_row_back_and_is_ended(process, system, ev
     run = process("run", system({"cart": "Stuck"}), "--isolation", "process", "-o", "out")
     units = killed(run, tmp_path / "out")
     assert units
-    end = time.monotonic() + 2.0
+    end = time.monotonic() + 30.0
     while any(Path(f"/proc/{unit}/stat").exists() and not gone(unit) for unit in units):
         assert time.monotonic() < end
         time.sleep(0.02)

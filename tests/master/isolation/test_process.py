@@ -62,7 +62,7 @@ def test_children_end_with_a_master_that_is_killed(tmp_path: Path) -> None:
     ended = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=False)
     assert ended.returncode == -9
     process = int(ended.stdout)
-    for _ in range(100):
+    for _ in range(1000):
         if not runs(process):
             break
         time.sleep(0.05)
@@ -89,7 +89,7 @@ def test_what_a_unit_starts_ends_with_the_master(tmp_path: Path, kill: bool) -> 
     command = [sys.executable, "-c", code, str(pair(tmp_path, 65))]
     subprocess.run(command, env=os.environ | {"EVCOSIM_TEST_CHILD": str(noted)}, check=False)
     process = int(noted.read_text())
-    for _ in range(100):
+    for _ in range(1000):
         if not runs(process):
             break
         time.sleep(0.05)
@@ -132,7 +132,7 @@ def test_a_process_is_alive_until_it_is_killed(process: Process) -> None:
 
 
 def test_its_output_is_kept_to_its_last_2000_characters(process: Process) -> None:
-    for _ in range(200):
+    for _ in range(1000):
         if process.printed():
             break
         time.sleep(0.05)

@@ -48,9 +48,12 @@ def test_units_step_at_the_same_time_under_jacobi(tmp_path: Path) -> None:
     units = "".join(f'[units.{name}]\nfmu = "{fmu}"\n' for name in "ab")
     path = tmp_path / "two.toml"
     path.write_text(f'name = "two"\n[experiment]\nstop_time = 0.2\nalgorithm = "jacobi"\n{units}')
-    with Simulation(path) as simulation:
-        simulation.run()
-        assert 20 * 0.05 < simulation.loop_seconds < 1.5 * 20 * 0.05
+    seconds = []
+    while not seconds or (min(seconds) >= 1.5 * 20 * 0.05 and len(seconds) < 10):  # a busy machine adds to it
+        with Simulation(path) as simulation:
+            simulation.run()
+            seconds.append(simulation.loop_seconds)
+    assert 20 * 0.05 < min(seconds) < 1.5 * 20 * 0.05
 
 
 @pytest.mark.parametrize("fmi", [1, 2, 3])

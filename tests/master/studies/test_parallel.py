@@ -135,7 +135,7 @@ if __name__ == "__main__":
     wait_for_the_end_of(int(mark.read_text()))
 
 
-def wait_for_the_end_of(process, seconds=10.0):
+def wait_for_the_end_of(process, seconds=60.0):
     """Until there is no such process, or it is one that nobody has asked how it ended."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -26,7 +26,7 @@ from evcosim.master.simulation import simulate
 from support.hostile import units
 from support.hostile.case import WHOLE, Case
 
-_ENDING = 2.0  # s
+_ENDING = 30.0  # s
 _MARK = "EVCOSIM_TEST_MARK"
 SYSTEM = """
 name = "hostile"
