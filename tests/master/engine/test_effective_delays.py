@@ -43,9 +43,9 @@ def test_it_is_what_the_frames_of_a_log_say(engine, timing, delay):
     with Simulation(found, "fig8", engine=engine, log_frames=True, isolation="none") as simulation:
         simulation.step(300)
         told = effective_delays(simulation.plan, simulation._engine.frames, 300)["can0.EMD_Status"]["ecu"]
-        log = simulation._engine.frames.log_of("can0")
+        log = simulation._engine.frames.log_of("can0").frames[0]
     if timing == "frame":
-        frames = [(k, end) for k, end, m, _ in log.frames.frames() if m.name == "EMD_Status"]
+        frames = [(k, end) for k, end, m, _ in log.frames() if m.name == "EMD_Status"]
     else:
         frames = [(k, k * 10**10) for k in range(300)]
     used = {}
