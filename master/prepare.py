@@ -23,7 +23,7 @@ from ..cosim.swap.requirements import lacking
 from ..cosim.swap.sampled import discrete_in, inherited, sampled_in, told, unknown, untold
 from ..cosim.swap.swap_file import swapped
 from ..cosim.system.outside import read_outside
-from ..cosim.system.run_options import RunOptions, check_options
+from ..cosim.system.run_options import RunOptions, check_options, in_floats
 from ..cosim.system.scenario import Scenario, load_scenario, scenario_names
 from ..cosim.system.selection import recorded_alone, without_undrawn
 from ..cosim.system.system import System, load_system
@@ -71,6 +71,7 @@ def prepare(
     Raises ConfigError naming place, rule and values; TypeError for an unknown option.
     """
     check_options(options)
+    options = in_floats(options)
     given = given_options(options)
     swaps, fmus = options.get("swaps") or {}, options.get("fmus") or {}
     _check_one_fmu(swaps, fmus)

@@ -152,6 +152,11 @@ def _remarks(
             f"the times differ: {alone[0]} are of the first alone and {alone[1]} of the second alone, where "
             "the other was interpolated (linear; held values: the previous one)"
         )
+    elif not left and len(first) != len(second):
+        remarks.append(
+            f"the first has {counted(len(first), 'row')}, the second {len(second)}: of a time that one has "
+            "more often, the last row of the other is taken"
+        )
     if left:
         spans = [f"{t[0]:g} to {t[-1]:g} s" for t in (first, second)]
         remarks.append(f"the first goes from {spans[0]}, the second from {spans[1]}")

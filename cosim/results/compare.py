@@ -71,7 +71,8 @@ class Comparison:
 
     `points` is the number of compared times, of which `only_times_a` and `only_times_b` are of one run alone.
     `not_compared` are the points of one run before or after the other; `same_span` is true without any. With
-    `common`, variables of one side alone are no difference.
+    `common`, variables of one side alone are no difference. Where the rows of both are not the `same_rows` in
+    number, one of them has times that the other has not, or has fewer often.
     """
 
     rows: tuple[VariableDifference, ...]
@@ -86,6 +87,7 @@ class Comparison:
     relative: float
     remarks: tuple[str, ...] = ()
     common: bool = False
+    same_rows: bool = True
 
     @property
     def equal(self) -> bool:
@@ -95,8 +97,12 @@ class Comparison:
         neither are runs of which one has times that the other has not.
         """
         compared = bool(self.rows) and self.points > 0 and all(row.equal for row in self.rows)
-        same_times = self.same_span and not (self.exact and (self.only_times_a or self.only_times_b))
+        same_times = self.same_span and (self._same_times or not self.exact)
         return compared and same_times and (self.common or not (self.only_a or self.only_b))
+
+    @property
+    def _same_times(self) -> bool:
+        return self.same_rows and not (self.only_times_a or self.only_times_b)
 
     @property
     def exact(self) -> bool:
@@ -121,7 +127,7 @@ class Comparison:
                 counts = "" if self.common else " (a difference, unless --common leaves it out)"
                 lines.append(f"only in the {side}: {', '.join(names)}{counts}")
         lines += self.remarks
-        if self.exact and (self.only_times_a or self.only_times_b):
+        if self.exact and self.same_span and not self._same_times:
             lines.append("without a tolerance, times of one run alone are a difference")
         return "\n".join(map(on_one_line, lines))
 
@@ -166,6 +172,7 @@ def compare(
         relative=relative,
         remarks=at.remarks,
         common=common,
+        same_rows=len(a) == len(b),
     )
 
 

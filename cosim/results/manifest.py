@@ -97,7 +97,8 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         manifest = from_json(text.decode("utf-8"))
     except ValueError as error:
-        raise ConfigError(f"{path}: is not a JSON file: {error}") from error
+        advice = f"; it was cut off: 'evcosim results recover {path.parent}' mends it" if is_cut(path) else ""
+        raise ConfigError(f"{path}: is not a JSON file: {error}{advice}") from error
     if not isinstance(manifest, dict):
         raise ConfigError(f"{path}: a JSON object is needed, not {type(manifest).__name__}")
     return manifest
@@ -157,6 +158,6 @@ def check_whole(path: Path, count: int, wanted: object) -> None:
     """Raise ConfigError for a results.csv that has fewer rows than run.json says: it was cut off."""
     if isinstance(wanted, int) and count < wanted:
         raise ConfigError(
-            f"{path}: has {count} rows, where run.json says {wanted}: the file was cut off. 'evcosim "
+            f"{path}: has {count} rows, where run.json says {short(wanted)}: the file was cut off. 'evcosim "
             "results recover' makes results of the rows that are left"
         )

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Real
 from pathlib import Path
-from typing import Any, Literal, TypedDict, get_args
+from typing import Any, Literal, TypedDict, cast, get_args
 
 from ..can.bus_settings import LONGEST_DELAY, BusVariation
 from ..clock import LATEST
@@ -97,6 +97,17 @@ def check_options(options: Mapping[str, Any]) -> None:
             )
         if (value := options[name]) is not None and name in _RULES and not _RULES[name][0](value):
             raise ConfigError(f"{name} = {short(value)}: {_RULES[name][1]}")
+
+
+def in_floats(options: RunOptions) -> RunOptions:
+    """Return options whose numbers of other types than Python's own, as a Fraction, are floats."""
+    given = {name: options.get(name) for name in ("delay", "stop_time", "step_size", "tolerance")}
+    numbers = {
+        name: float(value)
+        for name, value in given.items()
+        if isinstance(value, Real) and not isinstance(value, int | float)
+    }
+    return cast(RunOptions, {**options, **numbers})
 
 
 def _one_of(kind: Any) -> tuple[Callable[[Any], bool], str]:

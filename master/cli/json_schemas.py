@@ -164,6 +164,7 @@ _COMPARE = record(
         "relative": number("The difference allowed beside it, as a share of the range."),
         "remarks": listed("What else there is to say."),
         "equal": flag("Whether they are equal within the tolerance."),
+        "same_rows": flag("Whether both have as many rows."),
         "common": flag("Whether variables of one side alone are no difference."),
         "metrics": listed(
             "A row for each metric that both runs have; none with --signals.",

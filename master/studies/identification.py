@@ -28,7 +28,7 @@ from ...cosim.errors import ConfigError, RunError
 from ...cosim.plan.resolve import step_size_of
 from ...cosim.row_store import Array
 from ...cosim.system.identification_spec import IdentificationSpec
-from ...cosim.system.run_options import RunOptions, check_options
+from ...cosim.system.run_options import RunOptions, check_options, in_floats
 from ...cosim.system.scenario import load_scenario
 from ...cosim.system.system import load_system
 from ..prepare import prepare
@@ -123,6 +123,7 @@ def identify(
     output does not come to rest or does not react.
     """
     check_options(options)
+    options = in_floats(options)
     spec = spec or spec_of(target, scenario)
     if spec is None:
         raise ConfigError(f"{target}: which input and output? There is no [identification] in its scenario")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction as F
 
 import pytest
 
@@ -162,3 +163,10 @@ def test_variables_that_are_absent_may_not_be_there(tmp_path):
     path.write_text(text)
     with pytest.raises(ConfigError, match=r"mine\.toml: units\.vehicle\.absent: .* has 'power'"):
         prepare(path)
+
+
+def test_a_time_may_be_a_fraction() -> None:
+    plans = [prepare("scooter", stop_time=n, step_size=h).plan for n, h in ((1.0, 0.005), (F(1), F(1, 200)))]
+    assert plans[0].clock == plans[1].clock
+    with pytest.raises(ConfigError, match=r"^step_size = 0.5 s, where the files have 0.01 s"):
+        prepare("scooter", stop_time=1.25, step_size=F(1, 2))

@@ -141,6 +141,16 @@ def test_a_variable_of_one_side_alone_is_a_difference_unless_only_common_ones_ar
     assert not compare(one([1.0]), one([1.0], STATE), common=True).equal
 
 
+def test_a_time_that_one_run_has_more_often_is_a_difference_without_a_tolerance() -> None:
+    twice = Results([0.0, 1.0, 1.0, 2.0], [[1.0]] * 4, [SPEED])
+    for pair in ((one([1.0] * 3), twice), (twice, one([1.0] * 3))):
+        found = compare(*pair)
+        assert (found.equal, found.same_rows) == (False, False)
+        assert "of a time that one has more often, the last row of the other is taken" in found.summary()
+        assert compare(*pair, tolerance=1e-12).equal
+    assert compare(twice, twice).equal
+
+
 KINDS = [
     (dataclasses.replace(SPEED, unit=""), "[m/s] on one side only: compared as numbers"),
     (dataclasses.replace(SPEED, type="Integer"), "Real in the first, Integer in the second"),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.system.run_options import RunOptions, check_options
+from evcosim.cosim.system.run_options import RunOptions, check_options, in_floats
 
 
 def test_the_names_that_there_are_pass() -> None:
@@ -39,3 +40,17 @@ def test_a_value_of_another_type_is_refused_by_name(name: str, value: object) ->
 
 def test_numbers_of_numpy_are_numbers() -> None:
     check_options({"stop_time": np.float32(1.5), "bus": BusVariation(delay_steps=np.int64(1))})
+
+
+@pytest.mark.parametrize("name", ["delay", "stop_time", "step_size", "tolerance"])
+@pytest.mark.parametrize("value", [Fraction(1, 2), np.float32(0.5), np.float64(0.5), 0.5])
+def test_numbers_of_every_type_are_floats(name: str, value: float) -> None:
+    given = {name: value}
+    check_options(given)
+    assert in_floats(given) == {name: 0.5}  # type: ignore[arg-type] # a key that is not known before
+    assert isinstance(in_floats(given)[name], float)  # type: ignore[arg-type,literal-required] # as above
+
+
+def test_what_is_a_number_already_stays() -> None:
+    given: RunOptions = {"stop_time": 10, "step_size": None, "engine": "python"}
+    assert in_floats(given) == given and isinstance(in_floats(given)["stop_time"], int)
