@@ -25,6 +25,7 @@ class Sent:
     replaced: int = 0
     kind: str = "cyclic"
     interval: int = 0
+    fd: bool = False
 
     @property
     def field(self) -> str:

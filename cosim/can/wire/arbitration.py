@@ -3,8 +3,9 @@
 A wrong bit is seen by the sender at once and by all others before the error flag ends, so that the flags of
 both take 12 bits; the delimiter takes 8. The frame waits on, and contends anew. The sender's error counter
 (TEC) grows by 8, and falls by 1 with each frame that is carried; those of the receivers (REC) grow and fall
-by 1. Beyond 127 a node is error passive: after a frame of its own it lets 8 bits pass before the next. Beyond
-255 it is bus-off (`off`), and begins again with counters of 0.
+by 1, from above 127 to 127. Beyond 127 in one of them a node is error passive: after a frame of its own it
+lets 8 bits pass before the next. With a TEC beyond 255 it is bus-off (`off`), and begins again with counters
+of 0.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ def carry(w: Wire, bus: int, i: int, now: int) -> int:
     m[i, T.BUSY] += b[bus, T.FREE_AT] - now
     if b[bus, T.OFF_NODES]:
         recover(w, bus, now)
-    if w.nodes[m[i, T.NODE], T.ERROR_COUNT] > _PASSIVE:
+    if max(w.nodes[m[i, T.NODE], T.ERROR_COUNT], w.nodes[m[i, T.NODE], T.RECEIVE_COUNT]) > _PASSIVE:
         suspend(w, bus, m[i, T.NODE])
     return 1 if wrong < 0 else 0
 
@@ -133,8 +134,13 @@ def count_errors(w: Wire, bus: int, sender: int, wrong: int, now: int) -> None:
     for node in range(len(w.nodes)):
         if w.nodes[node, T.BUS_OF] == bus and not is_off(w, node, now):
             column = T.ERROR_COUNT if node == sender else T.RECEIVE_COUNT
-            step = 8 if node == sender else 1
-            count = w.nodes[node, column] + step if wrong else max(0, w.nodes[node, column] - 1)
+            count = w.nodes[node, column]
+            if wrong:
+                count += 8 if node == sender else 1
+            elif node == sender:
+                count = max(0, count - 1)
+            else:
+                count = max(0, min(count, _PASSIVE + 1) - 1)
             w.nodes[node, column] = count
 
 

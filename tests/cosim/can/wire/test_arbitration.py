@@ -92,3 +92,11 @@ def test_a_frame_is_sent_until_its_bits_are_right(chance):
     assert carried == 200
     share = w.messages[0, T.ERRORS] / (200 + w.messages[0, T.ERRORS])
     assert share == pytest.approx(chance, abs=0.1)
+
+
+def test_a_receive_counter_beyond_127_is_error_passive_too_and_falls_to_127():
+    w = wire(2, chance=1e-9)
+    w.nodes[0, T.RECEIVE_COUNT] = w.nodes[1, T.RECEIVE_COUNT] = 140
+    assert arbitration.contend(w.wire, 0, 10**6) == 0
+    assert w.nodes[:2, T.RECEIVE_COUNT].tolist() == [140, 127]
+    assert w.nodes[:2, T.READY_AT].tolist() == [w.buses[0, T.FREE_AT] + 8, 0]
