@@ -170,6 +170,7 @@ def _run(path: Path, names: _Names, codec: Any, found: Outcome) -> None:
     codecs = [_codec_signal(codec, message, signal) for message, signal in names]
     flawed = {m.name for m, _ in names if any(s.problem for s in m.signals.values())}
     flawed |= {m.name for m, s in names if s.is_multiplexer and not _ids(m, s)}  # cantools reads a page there
+    flawed |= _lost(codec)
     right = [True] * len(names)
     for turn in range(_ROUNDS):
         sent = [_value(message, signal, turn, chance) for message, signal in names]
@@ -185,6 +186,16 @@ def _run(path: Path, names: _Names, codec: Any, found: Outcome) -> None:
         sent_frames = [frame for frame in sent_frames if frame.message.name not in flawed]
         _compare_frames(codec, raws, sent_frames, found)
     found.usable += sum(right)
+
+
+def _lost(codec: Any) -> set[str]:
+    """Return the messages whose pages cantools loses: it seeks a multiplexer by its short name."""
+    lost = set()
+    for parsed in codec.messages if codec else ():
+        selectors = {s.multiplexer_signal for s in parsed.signals} - {None}
+        if not selectors <= {s.name for s in parsed.signals}:
+            lost.add(parsed.name)
+    return lost
 
 
 def _ids(message: Message, multiplexer: Signal) -> list[int]:
