@@ -157,7 +157,7 @@ def progress_bar(text: str, start: float, stop: float, wanted: bool) -> Iterator
         TimeRemainingColumn(),
     )
     # refreshed from here: a thread of its own would take the interpreter away from the units
-    console = Console(file=raw_stream(sys.stderr))
+    console = Console(file=raw_stream(sys.stderr), no_color=not is_bold(True))
     with Progress(*columns, console=console, transient=True, auto_refresh=False) as progress:
         # rich has streams of its own now, which print above the bar
         sys.stdout, sys.stderr = map(visible_stream, (sys.stdout, sys.stderr))

@@ -13,9 +13,11 @@ import sys
 import numpy as np
 import pytest
 
-from evcosim.master.cli import console
+from evcosim.master.cli import app, console
 from evcosim.master.reproduce import papers
 from evcosim.master.reproduce.page import Page, Row
+from evcosim.master.studies import bus_budget
+from support.judged_budget import judged
 
 
 @pytest.mark.parametrize("columns", ["20", "40", "80", "200"])
@@ -77,7 +79,34 @@ VERBS = [
     ("schema", "swap"),
     ("new", "made"),
     ("run", "nothing"),
+    ("compile", "nothing"),
+    ("results", "recover", "a"),
 ]
+LONGER = [
+    ("identify", "Scooter", "--input", "throttle", "--output", "speed", "--amplitude", "5", "--at-input",
+     "30", "--duration", "40", "--sweep", "0.2,2", "-o", "out"),
+    ("budget", "scooter", "-o", "out"),
+    ("bus", "braking", "--stop-time", "0.1", "-o", "out"),
+    ("build", "Battery", "-o", "out"),
+    ("plot", "a", "-o", "out.png"),
+]  # fmt: skip # a line each
+
+
+def test_each_verb_is_tried():
+    """Its output has no color where nobody wants any; a new verb gets its line above."""
+    assert set(app.command().commands) == {verb for verb, *_ in (*VERBS, *LONGER)}
+
+
+@pytest.mark.parametrize("arguments", LONGER, ids=lambda arguments: arguments[0])
+def test_no_color_keeps_escapes_out_of_what_takes_longer(evcosim, request, monkeypatch, arguments):
+    if arguments[0] == "plot":
+        request.getfixturevalue("two_runs")
+    if arguments[0] == "budget":
+        monkeypatch.setattr(bus_budget, "budget", lambda *_, **__: judged([1.0] * 5))
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("NO_COLOR", "1")
+    answer = evcosim(*arguments)
+    assert answer.code == 0 and answer.out and "\x1b" not in answer.out + answer.err
 
 
 @pytest.mark.parametrize("command", VERBS, ids=lambda command: " ".join(command[:2]))
@@ -85,7 +114,7 @@ def test_color_adds_escapes_to_what_a_verb_prints_and_no_color_keeps_them_out(
     evcosim, request, monkeypatch, command
 ):
     """Only headings are set off, so that the text is the same without."""
-    if command[0] == "compare":
+    if command[0] in ("compare", "results"):
         request.getfixturevalue("two_runs")
     if command[0] == "reproduce":
         page = Page("lane_keeping", "t", "s", "a", (Row("(1)", "x", "", "", "1", "calibrated"),), (), (), ())
