@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import multiprocessing
+
 import pytest
 
 from evcosim.master.reproduce import papers
 from evcosim.master.studies.parallel import run_all
+from support import warm
 
 
 @pytest.fixture(scope="session")
 def braking_runs():
     """What all runs of the braking two-wheeler return, by name."""
-    tasks = papers.load("braking").runs()
-    return {task.name: outcome.result() for task, outcome in zip(tasks, run_all(tasks), strict=True)}
+    tasks, forking = papers.load("braking").runs(), warm.context()
+    with pytest.MonkeyPatch.context() as set_for_it:  # as the fixture warm_workers, which is one test's
+        set_for_it.setattr(multiprocessing, "get_context", lambda method=None: forking)
+        return {task.name: outcome.result() for task, outcome in zip(tasks, run_all(tasks), strict=True)}
 
 
 @pytest.fixture(scope="session")
