@@ -91,6 +91,10 @@ CALLS: dict[str, list[Callable[[Any], object]]] = {
     "BusVariation.delay_steps": [lambda x: simulated(bus=BusVariation(delay_steps=x))],
     "BusVariation.resolution": [lambda x: simulated(bus=BusVariation(resolution=x))],
     "BusVariation.cycle": [lambda x: simulated(bus=BusVariation(cycle=x))],
+    "BusVariation.jitter": [lambda x: simulated(bus=BusVariation(jitter=x, timing="frame"))],
+    "BusVariation.loss": [lambda x: simulated(bus=BusVariation(loss=x))],
+    "BusVariation.seed": [lambda x: simulated(bus=BusVariation(loss=0.5, seed=x))],
+    "budget.seeds": [lambda x: evcosim.budget("s.toml", seeds=x, stop_time=0.01, workers=1, **SHORT)],
     "budget.workers": [lambda x: evcosim.budget("s.toml", workers=x, stop_time=0.01, **SHORT)],
     "run_all.workers": [lambda x: evcosim.run_all([Task("a", abs, (1,))], workers=x)],
 }

@@ -1,13 +1,16 @@
 """The bus budget of a system: its own metric over delay, resolution and cycle of its buses, each by itself.
 
-A point is one run with a variation of all buses (`bus_settings.BusVariation`); the nominal point, the system
-as its file says, is one of each series. A point is broken when the metric is beyond the limit or has no
-value, and failed when its run was: an FMU refused, or diverged to what is no number.
+A point is one run, or one for each of several seeds, with a variation of all buses
+(`bus_settings.BusVariation`); the nominal point, the system as its file says, is one of each series. A point
+is broken when the metric is beyond the limit or has no value, and failed when its run was: an FMU refused, or
+diverged to what is no number.
 """
 
 from __future__ import annotations
 
+import csv
 import dataclasses
+import io
 import math
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -17,12 +20,16 @@ from ..results.metrics import Metric
 from ..visible import visible
 from ..writing import markdown_table
 
+_QUANTILE = 0.8
+
 
 @dataclasses.dataclass(frozen=True)
 class Point:
     """One run: the change of the buses, in words and as it is; the metric, or NaN and the `reason` why.
 
-    `failed`: it is the run that has failed.
+    `failed`: it is the run that has failed. A point of chance is several runs, with the `seeds` from that of
+    `bus` on: `value` is the worst of their `values`, NaN if one has none, and `quantile` that which 80 % of
+    them are not worse than.
     """
 
     label: str
@@ -30,6 +37,30 @@ class Point:
     value: float = math.nan
     reason: str = ""
     failed: bool = False
+    seeds: int = 1
+    values: tuple[float, ...] = ()
+    quantile: float = math.nan
+
+    def runs(self) -> list[BusVariation]:
+        """Return the variation of each of its runs."""
+        return [dataclasses.replace(self.bus, seed=self.bus.seed + n) for n in range(self.seeds)]
+
+    def of_seeds(self, found: Sequence[Point], kind: Literal["max", "min"]) -> Point:
+        """Return the point with the values of its runs, of which `found` are the points."""
+        if len(found) == 1:
+            return dataclasses.replace(self, **_outcome(found[0]))
+        sign = 1.0 if kind == "max" else -1.0
+        ordered = sorted(found, key=lambda p: math.inf if math.isnan(p.value) else sign * p.value)
+        return dataclasses.replace(
+            self,
+            **_outcome(ordered[-1]),
+            values=tuple(point.value for point in found),
+            quantile=ordered[math.ceil(_QUANTILE * len(ordered)) - 1].value,
+        )
+
+
+def _outcome(point: Point) -> dict[str, Any]:
+    return {"value": point.value, "reason": point.reason, "failed": point.failed}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,6 +95,43 @@ def series(step_size: float) -> tuple[Series, ...]:
             ),
         ),
         Series("message cycle", tuple(Point(f"x {n}", BusVariation(cycle=n)) for n in times)),
+    )
+
+
+def chance_series(timing: str, shortest: float, seeds: int) -> tuple[Series, ...]:
+    """Return the points of chance to run, without values, over so many seeds.
+
+    They are the `timing` of the buses and "frame", with a jitter of 25, 50 and 90 % of the `shortest` [s]
+    cycle time; and frames that are lost with 1, 5, 10 and 20 %.
+    """
+    frame = BusVariation(timing="frame")
+    shares = (0.25, 0.5, 0.9)
+    return (
+        Series(
+            "timing and jitter",
+            (
+                Point(timing, BusVariation()),
+                *((Point("frame", frame),) if timing == "instant" else ()),
+                *(
+                    Point(
+                        f"jitter {1000.0 * share * shortest:g} ms",
+                        dataclasses.replace(frame, jitter=share * shortest),
+                        seeds=seeds,
+                    )
+                    for share in shares
+                ),
+            ),
+        ),
+        Series(
+            "lost frames",
+            (
+                Point("0 %", BusVariation()),
+                *(
+                    Point(f"{percent} %", BusVariation(loss=percent / 100), seeds=seeds)
+                    for percent in (1, 5, 10, 20)
+                ),
+            ),
+        ),
     )
 
 
@@ -112,8 +180,11 @@ class Budget:
         return f"{self.metric}: at {'most' if self.kind == 'max' else 'least'} {limit}"
 
     def text(self, point: Point) -> str:
-        """Return the value of a point with its unit."""
-        return "-" if math.isnan(point.value) else Metric("", point.value, self.unit).text
+        """Return the value of a point with its unit; of several seeds the worst and the quantile."""
+        worst = "-" if math.isnan(point.value) else Metric("", point.value, self.unit).text
+        if not point.values or math.isnan(point.quantile):
+            return worst
+        return f"{worst} ({_QUANTILE:.0%}: {Metric('', point.quantile, self.unit).text})"
 
     def verdict(self, point: Point) -> str:
         """Return "holds", "broken" or "failed", the last one with the first line of the reason."""
@@ -165,11 +236,30 @@ def _point(budget: Budget, point: Point) -> dict[str, Any]:
         "label": point.label,
         "nominal": point.bus == BusVariation(),
         "bus": dataclasses.asdict(point.bus),
-        "value": point.value if math.isfinite(point.value) else None,
+        "value": _finite(point.value),
+        "seeds": [_finite(value) for value in point.values],
+        "quantile": _finite(point.quantile),
         "broken": budget.broken(point),
         "failed": point.failed,
         "reason": point.reason,
     }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def as_csv(budget: Budget) -> str:
+    """Return a line for each run: series, point, seed, and the value in the metric's unit or nothing."""
+    rows = [("series", "point", "seed", f"{budget.metric} [{budget.unit}]")]
+    for each in budget.series:
+        for point in each.points:
+            for n, value in enumerate(point.values or (point.value,)):
+                shown = repr(value) if math.isfinite(value) else ""
+                rows.append((each.name, point.label, str(point.bus.seed + n), shown))
+    file = io.StringIO()
+    csv.writer(file, lineterminator="\n").writerows(rows)
+    return file.getvalue()
 
 
 def as_markdown(budget: Budget, figure: str) -> str:

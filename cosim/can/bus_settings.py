@@ -7,7 +7,7 @@ it for all buses, BusVariation has it too.
 from __future__ import annotations
 
 import dataclasses
-from numbers import Integral
+from numbers import Integral, Real
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, WithJsonSchema
@@ -16,6 +16,7 @@ from ..errors import ConfigError, short
 from .message_settings import SLOWEST, MessageSettings
 
 _SLOWEST, _MOST_STEPS = 10**6, 10**6
+_SEEDS = 2**63
 LONGEST_DELAY = 3600.0
 """The longest delay of a bus [s] that a file or an option gives."""
 
@@ -110,14 +111,19 @@ class BusVariation:
 
     `delay_steps` communication steps are added to the delay; `resolution` multiplies the factor by which
     signals are coarser than their DBC says, "ideal" leaves quantization out; `cycle` multiplies the cycle
-    time of every message; `timing`, "instant" or "frame", takes the place of theirs. Raises ConfigError for a
-    value that is none of these.
+    time of every message; `timing`, "instant" or "frame", takes the place of theirs. `jitter` [s] is added to
+    that of every message, with timing = "frame"; `loss` is the probability with which each frame is lost on
+    its way to the receivers; `seed` is added to the seed of the draws. Raises ConfigError for a value that is
+    none of these.
     """
 
     delay_steps: int = 0
     resolution: Resolution = 1.0
     cycle: int = 1
     timing: Timing | None = None
+    jitter: float = 0.0
+    loss: float = 0.0
+    seed: int = 0
 
     def __post_init__(self) -> None:
         if not (_whole(self.delay_steps) and 0 <= self.delay_steps <= _MOST_STEPS):
@@ -129,6 +135,14 @@ class BusVariation:
         if self.timing is not None and self.timing not in get_args(Timing):
             given = f"bus variation: timing = {short(self.timing)}"
             raise ConfigError(f"{given}: it is {' or '.join(map(repr, get_args(Timing)))}")
+        for name, most in (("jitter", SLOWEST), ("loss", 1.0)):
+            value = getattr(self, name)
+            if not (_real(value) and 0.0 <= value <= most):
+                raise ConfigError(
+                    f"bus variation: {name} = {short(value)}: it is a number from 0 to {most:g}"
+                )
+        if not (_whole(self.seed) and 0 <= self.seed < _SEEDS):
+            raise ConfigError(f"bus variation: seed = {short(self.seed)}: it is a whole number from 0 on")
         try:
             checked_resolution(self.resolution)
         except ValueError as error:
@@ -143,8 +157,20 @@ class BusVariation:
                 "resolution": "ideal" if ideal else float(settings.resolution) * float(self.resolution),
                 "cycle": settings.cycle * self.cycle,
                 "timing": self.timing or settings.timing,
+                "jitter": settings.jitter + float(self.jitter),
+                "seed": (settings.seed + int(self.seed)) % _SEEDS,
+                "messages": {name: self._of_message(own) for name, own in settings.messages.items()},
             }
         )
+
+    def _of_message(self, own: MessageSettings) -> MessageSettings:
+        if own.jitter is None or not self.jitter:
+            return own
+        return own.model_copy(update={"jitter": own.jitter + float(self.jitter)})
+
+
+def _real(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def _whole(value: object) -> bool:

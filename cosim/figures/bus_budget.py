@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HOLDS, _BROKEN, _FAILED, _SHADE = COLORS[0], COLORS[1], COLORS[3], "#FBE3C0"
+_COLUMNS = 3
 _ROOM = 5.0  # what lies farther from the limit than so many times the nominal point is off the scale
 
 
@@ -26,20 +27,27 @@ def draw_budget(budget: Budget) -> Figure:
 
     A point that holds is a disk, a broken one a cross; one off the scale or without a value is a triangle at
     the edge, with its value or "no value"; one whose run failed is a black square there, "failed". The
-    nominal point has a ring.
+    nominal point has a ring; of several seeds the worst is the point, and each has a dash.
     """
     name = " ".join(part for part in (budget.system, budget.scenario) if part)
-    with canvas(columns=len(budget.series), height=4.2, title=f"Bus budget of {name}") as (figure, axes):
+    count = len(budget.series)
+    columns = min(count, _COLUMNS)
+    rows = -(-count // columns)
+    with canvas(rows, columns, height=4.2, title=f"Bus budget of {name}") as (figure, axes):
         low, high = _scale(budget)
-        for panel, each in zip(axes[0], budget.series, strict=True):
+        panels = axes.ravel()
+        for panel in panels[count:]:
+            panel.set_axis_off()
+        for panel, each in zip(panels, budget.series, strict=False):
             panel.set_ylim(low, high)
             _draw_limit(panel, budget, low, high)
             _draw_points(panel, budget, each, low, high)
             _label(panel, budget, each)
-        for panel in axes[0][1:]:
+        for panel in axes[:, 1:].ravel():
             panel.tick_params(labelleft=False)
         unit = f" [{pretty(budget.unit)}]" if budget.unit not in ("", "1") else ""
-        axes[0][0].set_ylabel("\n".join(textwrap.wrap(f"{flowing(budget.metric)}{unit}", 44)))
+        for panel in axes[:, 0]:
+            panel.set_ylabel("\n".join(textwrap.wrap(f"{flowing(budget.metric)}{unit}", 44)))
         handles, labels = axes[0][0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
         return figure
@@ -78,6 +86,10 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
                 [i], [y], marker="o", markersize=14.0, linestyle="none", markerfacecolor="none",
                 markeredgecolor=COLORS[3], zorder=3, label="as it is",
             )  # fmt: skip # where, then how
+        inside = [v for v in point.values if low <= v <= high]
+        panel.plot(
+            [i] * len(inside), inside, marker="_", color=color, markersize=12.0, linestyle="none", zorder=3
+        )
         text = _text(point)
         # not over the edge, and not over the line of the limit, nor a steep one to the next point
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)
@@ -115,4 +127,4 @@ def _label(panel: Axes, budget: Budget, series: Series) -> None:
 
 
 def _tick(label: str) -> str:
-    return label.replace(" (", "\n(").replace("DBC x", "x")
+    return label.replace(" (", "\n(").replace("DBC x", "x").replace("jitter ", "jitter\n")

@@ -6,11 +6,12 @@ import dataclasses
 import itertools
 from collections.abc import Mapping, Sequence
 
+from ..can.bus_settings import BusVariation
 from ..can.database import Message
 from ..can.framing import Framing, check_quantized
 from ..clock import picoseconds
 from ..errors import ConfigError, nearest
-from ..system.fault_spec import Babble, BusOff, Corrupt, Delay, Fault, Freeze, target_of
+from ..system.fault_spec import Babble, BusOff, Corrupt, Delay, Fault, Freeze, Lose, target_of
 from ..system.scenario import Scenario
 from ..system.system import System
 from .plan import FaultPlan, MessagePlan, Plan
@@ -21,15 +22,19 @@ FOREVER = 2**62
 _ALONE = (Freeze, Delay, BusOff, Babble)  # two of them at once contradict each other
 
 
-def with_faults(plan: Plan, system: System, scenario: Scenario) -> Plan:
+def with_faults(plan: Plan, system: System, scenario: Scenario, varied: BusVariation | None = None) -> Plan:
     """Return the plan with the faults of a scenario: messages that one hits are sent as frames.
 
+    A variation with a `loss` has a fault for each message that loses its frames.
     Raises ConfigError, which names the fault, where there is no message or node that it could hit. In an
     ideal run there is no bus, and no fault on one: it has a warning.
     """
     if plan.ideal:
         return dataclasses.replace(plan, warnings=(*plan.warnings, *_without_bus(scenario)))
-    faults = planned(scenario.file.faults, plan.messages, plan.clock.start, str(scenario.path))
+    losses = _losses(plan, varied) if varied is not None and varied.loss else []
+    given = [*scenario.file.faults, *losses]
+    place = str(scenario.path or "bus variation")
+    faults = planned(given, plan.messages, plan.clock.start, place)
     messages = framed(plan.messages, faults)
     struck = {fault.bus for fault in faults if isinstance(fault.fault, BusOff)}
     return dataclasses.replace(
@@ -39,6 +44,14 @@ def with_faults(plan: Plan, system: System, scenario: Scenario) -> Plan:
         babblers=babblers(faults, messages),
         receiving_nodes=receiving_nodes(messages, plan.inputs, system, struck),
     )
+
+
+def _losses(plan: Plan, varied: BusVariation) -> list[Fault]:
+    """Return a fault for each message of a plan by which its frames are lost with a probability."""
+    names = dict.fromkeys(f"{message.bus}.{message.message.name}" for message in plan.messages)
+    loss, seed = float(varied.loss), int(varied.seed)
+    start = plan.clock.start
+    return [Lose(action="lose", time=start, message=name, probability=loss, seed=seed) for name in names]
 
 
 def planned(

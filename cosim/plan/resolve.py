@@ -66,7 +66,8 @@ def resolve(
 
     Raises ConfigError naming place, rule and values, before any unit is instantiated.
     """
-    return with_faults(_resolved(system, scenario, interfaces, options), system, scenario)
+    plan = _resolved(system, scenario, interfaces, options)
+    return with_faults(plan, system, scenario, options.get("bus"))
 
 
 def _resolved(

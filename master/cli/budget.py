@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...cosim.analysis.bus_budget import Budget
     from ...cosim.system.run_options import RunOptions
 
-_PAGE, _DATA, _FIGURE = "budget.md", "budget.json", "budget"
+_PAGE, _DATA, _TABLE, _FIGURE = "budget.md", "budget.json", "budget.csv", "budget"
 
 
 @takes_run_options("ideal", "record", *ALONE)
@@ -29,12 +29,19 @@ def budget(
         typer.Option("--output", "-o", metavar="DIR", help="Default: results/<system>-<scenario>-budget."),
     ] = None,
     workers: WorkersOption = None,
+    seeds: Annotated[
+        int,
+        typer.Option(
+            metavar="N",
+            help="Vary timing, jitter and lost frames too, what is chance over N seeds (default: 0).",
+        ),
+    ] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
 ) -> int:
     """Find how late, coarse and slow the buses may be.
 
     Bus delay, signal resolution and message cycle are stepped up, each by itself, and the system is judged by
-    the metric of its [budget] table. Writes budget.md, budget.json and a figure.
+    the metric of its [budget] table. Writes budget.md, budget.json, a figure and budget.csv.
     """
     from ...cosim.analysis.bus_budget import as_data
     from ...cosim.results.repeat import given_options
@@ -42,13 +49,16 @@ def budget(
     from .console import print_json, progress_bar
     from .studies import ended, names_of, study_folder, written
 
-    kept = {"system": system, "scenario": scenario, "options": given_options(options)}
+    kept: dict[str, Any] = {"system": system, "scenario": scenario, "options": given_options(options)}
+    if seeds:
+        kept["seeds"] = seeds
     folder, remarks = study_folder(output, (*names_of(system, scenario), "budget"), _DATA, kept)
     with progress_bar(f"{system} budget", 0.0, 1.0, not as_json) as show:
         found = measure_budget(
             system,
             scenario,
             workers=workers,
+            seeds=seeds,
             progress=lambda done, total, _: show(done / total),
             **options,
         )
@@ -61,8 +71,8 @@ def budget(
 
 
 def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> Iterator[str]:
-    """Write page, data and figure and yield the names of the files. Raises ConfigError."""
-    from ...cosim.analysis.bus_budget import as_data, as_markdown
+    """Write page, data, figure and table and yield the names of the files. Raises ConfigError."""
+    from ...cosim.analysis.bus_budget import as_csv, as_data, as_markdown
     from ...cosim.figures import draw as figures
     from ...cosim.figures.bus_budget import draw_budget
     from ...cosim.visible import visible_json
@@ -76,6 +86,8 @@ def _write(folder: Path, found: Budget, settings: dict[str, Any]) -> Iterator[st
     yield _DATA
     for path in figures.save(draw_budget(found), folder, _FIGURE):
         yield path.name
+    write_text(folder / _TABLE, as_csv(found))
+    yield _TABLE
 
 
 def _show(found: Budget, folder: Path, files: Sequence[str]) -> None:

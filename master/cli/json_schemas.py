@@ -17,6 +17,9 @@ _BUS = record(
         "resolution": of(["number", "string"], 'Factor of the resolution, or "ideal".'),
         "cycle": whole("Factor by which messages are sent less often."),
         "timing": or_null(text('"instant" or "frame"; null: as the files say.')),
+        "jitter": number("Time that is added to the jitter of every message [s]."),
+        "loss": number("Probability with which each frame is lost."),
+        "seed": whole("Number that is added to the seeds."),
     },
 )
 
@@ -267,7 +270,9 @@ _BUDGET = record(
                                 "label": text("Its name."),
                                 "nominal": flag("Whether it is the system as it is."),
                                 "bus": _BUS,
-                                "value": or_null(number("The metric; null: none.")),
+                                "value": or_null(number("The metric, the worst of all seeds; null: none.")),
+                                "seeds": listed("The metric of each seed, where there are several."),
+                                "quantile": or_null(number("That of 80 % of the seeds; null: one run.")),
                                 "broken": flag("Whether the limit is passed, or there is no value."),
                                 "failed": flag("Whether the run failed."),
                                 "reason": text("Why there is no value."),

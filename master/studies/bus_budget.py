@@ -6,12 +6,13 @@ The record `Budget` and its arithmetic stand in `cosim.analysis.bus_budget`, its
 from __future__ import annotations
 
 import dataclasses
+from numbers import Integral
 from pathlib import Path
 from typing import Unpack
 
-from ...cosim.analysis.bus_budget import Budget, Point, series
+from ...cosim.analysis.bus_budget import Budget, Point, Series, chance_series, series
 from ...cosim.can.bus_settings import BusVariation
-from ...cosim.errors import ConfigError, ShortageError, nearest
+from ...cosim.errors import ConfigError, ShortageError, nearest, short
 from ...cosim.results.metrics import Metric, evaluate
 from ...cosim.system.metric_spec import MetricSpec
 from ...cosim.system.run_options import RunOptions
@@ -22,6 +23,7 @@ from ..prepare import Prepared, prepare
 from ..simulation import simulate
 from .parallel import Outcome, Task, TaskError, TaskProgress, run_all
 
+_MOST_SEEDS = 1000
 _OF_THE_MACHINE = (ShortageError.__name__, "MemoryError", "OSError", "ImportError")  # a failure's kinds
 
 
@@ -31,10 +33,12 @@ def budget(
     *,
     workers: int | None = None,
     progress: TaskProgress | None = None,
+    seeds: int = 0,
     **options: Unpack[RunOptions],
 ) -> Budget:
     """Measure the bus budget of a system: its buses varied, judged by the metric of its [budget] table.
 
+    With `seeds` timing, jitter and losses are varied too, those of chance over so many seeds.
     The arguments are those of `simulate`, except for `bus` and `ideal`, which a budget sets itself, and
     `record`, since it keeps no results;
     `workers` and `progress` are those of `parallel.run_all` (a script needs `if __name__ == "__main__":`).
@@ -46,13 +50,19 @@ def budget(
             raise ConfigError(f"a bus budget varies the buses itself, so that '{name}' cannot be given")
     if options.get("record"):
         raise ConfigError("a bus budget keeps no results, so that 'record' cannot be given")
+    if not (isinstance(seeds, Integral) and not isinstance(seeds, bool) and 0 <= seeds <= _MOST_SEEDS):
+        raise ConfigError(f"seeds = {short(seeds)}: it is a whole number from 0 to {_MOST_SEEDS}")
     prepared = prepare(system, scenario, **options)
     entry, spec = _criterion(prepared)
     planned = series(prepared.plan.experiment.step_size)
+    if seeds:
+        planned += _of_chance(prepared, int(seeds))
     names: dict[BusVariation, str] = {}
     for each in planned:
         for point in each.points:
-            names.setdefault(point.bus, f"{each.name} {point.label}")  # the nominal point is run once
+            for n, run in enumerate(point.runs()):
+                seed = f" seed {n}" if point.seeds > 1 else ""
+                names.setdefault(run, f"{each.name} {point.label}{seed}")  # the nominal point is run once
     tasks = [
         Task(name, measure, (system, scenario, spec), {**options, "bus": bus}) for bus, name in names.items()
     ]
@@ -65,10 +75,23 @@ def budget(
         limit=entry.limit,
         kind=entry.kind,
         series=tuple(
-            dataclasses.replace(each, points=tuple(_judged(p, found[p.bus]) for p in each.points))
+            dataclasses.replace(
+                each,
+                points=tuple(
+                    p.of_seeds([_judged(p, found[run]) for run in p.runs()], entry.kind) for p in each.points
+                ),
+            )
             for each in planned
         ),
     )
+
+
+def _of_chance(prepared: Prepared, seeds: int) -> tuple[Series, ...]:
+    """Return the series of chance, by the timing and the shortest cycle time of the messages."""
+    messages = prepared.plan.messages
+    timing = "frame" if any(message.timed for message in messages) else "instant"
+    shortest = min(prepared.plan.clock.length(message.every) for message in messages)
+    return chance_series(timing, shortest, seeds)
 
 
 def measure(

@@ -8,7 +8,16 @@ import math
 
 import pytest
 
-from evcosim.cosim.analysis.bus_budget import as_data, as_markdown, series
+from evcosim.cosim.analysis.bus_budget import (
+    Budget,
+    Point,
+    Series,
+    as_csv,
+    as_data,
+    as_markdown,
+    chance_series,
+    series,
+)
 from evcosim.cosim.can.bus_settings import BusVariation
 from support.judged_budget import judged
 
@@ -78,6 +87,46 @@ def test_texts():
     assert [p["nominal"] for p in points] == [False, True, False, False, False]
     assert data["series"][0]["first_broken"] == "DBC x 4"
     assert points[3]["reason"] == "it fell\nover"
+
+
+def test_points_of_chance():
+    timing, losses = chance_series("instant", 0.02, 4)
+    assert [p.label for p in timing.points] == [
+        "instant", "frame", "jitter 5 ms", "jitter 10 ms", "jitter 18 ms"
+    ]  # fmt: skip # a row
+    assert [p.bus.timing for p in timing.points] == [None, "frame", "frame", "frame", "frame"]
+    assert [p.bus.loss for p in losses.points] == [0.0, 0.01, 0.05, 0.1, 0.2]
+    assert timing.nominal == losses.nominal == 0
+    assert [p.seeds for p in losses.points] == [1, 4, 4, 4, 4]
+    assert [run.seed for run in losses.points[1].runs()] == [0, 1, 2, 3]
+    timed, _ = chance_series("frame", 0.02, 4)
+    assert [p.label for p in timed.points][:2] == ["frame", "jitter 5 ms"]
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "worst", "quantile"),
+    [
+        ([1.0, 5.0, 2.0, 3.0, 4.0], "max", 5.0, 4.0),
+        ([1.0, 5.0, 2.0, 3.0, 4.0], "min", 1.0, 2.0),
+        ([1.0, math.nan, 2.0, 3.0, 4.0], "max", math.nan, 4.0),
+        ([1.0, math.nan, math.nan], "max", math.nan, math.nan),
+        ([2.0], "max", 2.0, math.nan),
+    ],
+)
+def test_the_worst_of_the_seeds_judges_and_80_percent_are_not_worse_than_the_quantile(
+    values, kind, worst, quantile
+):
+    point = Point("5 %", BusVariation(loss=0.05), seeds=len(values))
+    runs = [dataclasses.replace(point, value=v, reason="no" if math.isnan(v) else "") for v in values]
+    found = point.of_seeds(runs, kind)
+    assert (found.value, found.quantile) == pytest.approx((worst, quantile), nan_ok=True)
+    assert found.reason == ("no" if math.isnan(worst) else "")
+    budget = Budget("s", "t", "error", "m", 3.5, kind, (Series("lost frames", (point, found)),))
+    assert budget.broken(found) == (len(values) > 1)
+    if len(values) == 5 and not math.isnan(worst):
+        assert budget.text(found) == f"{worst:g} m (80%: {quantile:g} m)"
+    shown = [line.split(",")[2:] for line in as_csv(budget).splitlines()[2:]]
+    assert shown == [[str(n), "" if math.isnan(v) else repr(v)] for n, v in enumerate(values)]
 
 
 @pytest.mark.parametrize("kind", ["max", "min"])

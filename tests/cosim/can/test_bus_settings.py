@@ -6,6 +6,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from evcosim.cosim.can.bus_settings import BusSettings, BusVariation
+from evcosim.cosim.can.message_settings import MessageSettings
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.system import BusEntry
 from evcosim.cosim.system.toml import validate
@@ -49,6 +50,10 @@ def test_the_option_comes_on_top_of_the_file():
     assert (more.delay, more.resolution, more.cycle) == (pytest.approx(0.03), 8.0, 6)
     assert BusVariation(resolution="ideal").of(entry, 0.01).resolution == "ideal"
     assert BusVariation().of(entry, 0.01) == entry
+    messages = {"M": MessageSettings(jitter=0.002)}
+    own = entry.model_copy(update={"jitter": 0.001, "seed": 3, "messages": messages})
+    chance = BusVariation(jitter=0.004, seed=2).of(own, 0.01)
+    assert (chance.jitter, chance.seed, chance.jitter_of("M")) == (0.005, 5, 0.006)
 
 
 def test_a_variation_leaves_the_other_settings():
@@ -74,6 +79,13 @@ def test_two_variations_are_one_after_the_other():
         ({"resolution": 0.5}, 'resolution = 0.5: a resolution is a factor from 1 to 1e9, or "ideal"'),
         ({"resolution": float("inf")}, "resolution = inf"),
         ({"resolution": "idael"}, "resolution = 'idael'"),
+        ({"loss": 1.1}, "loss = 1.1: it is a number from 0 to 1"),
+        ({"loss": -0.1}, "loss = -0.1"),
+        ({"loss": float("nan")}, "loss = nan"),
+        ({"jitter": -1.0}, "jitter = -1.0: it is a number from 0 to"),
+        ({"jitter": True}, "jitter = True"),
+        ({"seed": -1}, "seed = -1: it is a whole number from 0 on"),
+        ({"seed": 2**63}, "seed = 9223372036854775808"),
     ],
 )
 def test_wrong_options(values, text):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
@@ -23,6 +24,19 @@ def test_figure(values, kind):
     low, high = figure.axes[0].get_ylim()
     assert low < 1.5 < high
     assert high - low < 20.0  # what diverged does not squeeze the rest
+
+
+def test_five_panels_stand_in_two_rows_and_each_seed_is_a_dash():
+    (one,) = judged([1.0, 1.1, 1.2, 1.3, 1.4]).series
+    point = dataclasses.replace(one.points[0], values=(0.95, 0.97, 1.0), quantile=0.97)
+    many = dataclasses.replace(one, points=(point, *one.points[1:]))
+    found = dataclasses.replace(judged([1.0] * 5), series=(many, one, one, one, one))
+    figure = draw_budget(found)
+    figure.draw_without_rendering()
+    tops = [round(axes.get_position().y1, 3) for axes in figure.axes]
+    assert len(tops) == 6 and len(set(tops)) == 2
+    dashes = [line for line in figure.axes[0].get_lines() if line.get_marker() == "_"]
+    assert sorted(y for line in dashes for y in line.get_ydata()) == [0.95, 0.97, 1.0]
 
 
 def test_same_figure_same_bytes(tmp_path):

@@ -11,7 +11,7 @@ import pytest
 
 from evcosim import simulate
 from evcosim.cosim.analysis.bus_budget import as_data
-from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.selection import metric_specs
 from evcosim.cosim.system.system import load_system, system_names
@@ -182,6 +182,29 @@ def test_no_budget_table(evcosim, line):
 # ---- the command
 
 
+def test_timing_jitter_and_losses_over_seeds(line):
+    """A frame is seen a step later, and one of a hundred that is lost is a jump or a meter less."""
+    found = budget(line / "line.toml", workers=1, trust=True, seeds=2, stop_time=0.3)
+    timing, losses = found.series[3:]
+    assert timing.points[1].value == found.series[0].points[1].value  # a delay of one step
+    assert [len(point.values) for point in losses.points] == [0, 2, 2, 2, 2]
+    for point in (losses.points[2], timing.points[2]):
+        for run, value in zip(point.runs(), point.values, strict=True):
+            try:
+                expected = simulate(line / "line.toml", bus=run, trust=True, stop_time=0.3).metrics()[0].value
+            except RunError:
+                expected = math.nan
+            assert value == pytest.approx(expected, abs=0.0, nan_ok=True)
+    lost = simulate(line / "line.toml", bus=losses.points[1].bus, trust=True, stop_time=0.3).manifest
+    assert [(fault["action"], fault["probability"]) for fault in lost["faults"]] == [("lose", 0.01)]
+
+
+@pytest.mark.parametrize("seeds", [-1, 1.5, True, 10**9])
+def test_a_wrong_number_of_seeds(line, seeds):
+    with pytest.raises(ConfigError, match=r"seeds = .* it is a whole number from 0 to 1000"):
+        budget(line / "line.toml", seeds=seeds, trust=True)
+
+
 @pytest.mark.usefixtures("warm_workers")
 def test_command(evcosim, line, measured, tmp_path):
     answer = evcosim("budget", line / "line.toml", "-o", "out")
@@ -191,7 +214,7 @@ def test_command(evcosim, line, measured, tmp_path):
         "bus delay          +0 steps *",
         "failed: its process died: exit code 7",
         "message cycle      fails at x 4",
-        "in out: budget.md, budget.json, budget.png, budget.svg",
+        "in out: budget.md, budget.json, budget.png, budget.svg, budget.csv",
     ):
         assert text in answer.out, answer.out
     written = json.loads((tmp_path / "out" / "budget.json").read_text())
