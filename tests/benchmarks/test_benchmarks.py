@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import coldstart, memory, scaling, slaves, worker
+from benchmarks import bus, coldstart, memory, scaling, slaves, worker
 from benchmarks.asking import Figure, ask, measured
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -154,7 +154,7 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
         put(page, "y", "")
 
 
-@pytest.mark.parametrize("module", [ring, scaling, slaves, coldstart, memory])
+@pytest.mark.parametrize("module", [ring, scaling, slaves, coldstart, memory, bus])
 def test_help_says_what_is_measured(
     module: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -162,3 +162,11 @@ def test_help_says_what_is_measured(
     with pytest.raises(SystemExit, match="0"):
         module.main()
     assert "--write" in capsys.readouterr().out
+
+
+def test_each_way_over_a_bus_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    best = {way: bus.measured(way, 2, 50) for way in bus.WAYS}
+    assert min(best.values()) > 0.0
+    assert bus.report(best).count("|") == 5 * (2 + len(bus.WAYS))
