@@ -74,6 +74,15 @@ class FrameLog:
     table: Table
     sent: bool = True
 
+    def errors(self) -> Iterator[tuple[int, int, Message]]:
+        """Yield of each error frame the step, the time of its end [ps], and the message that it ended."""
+        for start in range(0, self.table.shape[0], _STRETCH):
+            rows = self.table.rows(start, start + _STRETCH).view("<i8")
+            for row in rows[rows[:, T.LOG_MESSAGE] < 0, : T.LOG_PAYLOAD].tolist():
+                message = self.messages.get(-1 - row[T.LOG_MESSAGE])
+                if message is not None:
+                    yield row[T.LOG_STEP], row[T.LOG_TIME], message
+
     def frames(self) -> Iterator[tuple[int, int, Message, bytes]]:
         """Yield of each frame the step in which it was sent, the time of its end [ps], message, payload."""
         for start in range(0, self.table.shape[0], _STRETCH):

@@ -38,7 +38,7 @@ class Frame:
     """One frame: `time` in s, `channel` the index of its bus among the logged ones.
 
     `data` are the bytes on the wire; `switch` tells a frame of CAN FD with the data bit rate. `sent`: a unit
-    of the run sent it, else it came from outside.
+    of the run sent it, else it came from outside. `error`: it is an error frame, which ended the message's.
     """
 
     time: float
@@ -48,6 +48,7 @@ class Frame:
     data: bytes
     switch: bool = False
     sent: bool = True
+    error: bool = False
 
     @property
     def fd(self) -> bool:
@@ -66,19 +67,36 @@ def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
     streams += [
         _made(channel, frames, clock) for channel, bus_log in enumerate(logs) for frames in bus_log.frames
     ]
+    streams += [
+        _errors(channel, frames, clock) for channel, bus_log in enumerate(logs) for frames in bus_log.frames
+    ]
     for time, _, channel, message, data, sent in heapq.merge(*streams, key=lambda item: item[:3]):
-        log, data = logs[channel], data.ljust(message.frame_length, b"\0")
-        yield Frame(time, channel, log.bus, message, data, log.switch and message.fd, sent)
+        log = logs[channel]
+        if data is None:
+            yield Frame(time, channel, log.bus, message, b"", sent=sent, error=True)
+        else:
+            payload = data.ljust(message.frame_length, b"\0")
+            yield Frame(time, channel, log.bus, message, payload, log.switch and message.fd, sent)
 
 
-_Payload = tuple[float, int, int, Message, bytes, bool]
+_Payload = tuple[float, int, int, Message, bytes | None, bool]
+
+
+def _time(clock: Clock, step: int, since: int) -> float:
+    return clock.at(step) + (since - step * picoseconds(clock.step)) * 1e-12
+
+
+def _errors(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
+    """Yield the error frames of a log, which have no payload (None)."""
+    for step, since, message in log.errors():
+        yield _time(clock, step, since), message.priority, channel, message, None, log.sent
 
 
 def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
     """Yield time [s], arbitration key, channel, message and payload of the frames of a log."""
     for instant, group in itertools.groupby(log.frames(), key=lambda frame: frame[:2]):
         step, since = instant
-        time = clock.at(step) + (since - step * picoseconds(clock.step)) * 1e-12
+        time = _time(clock, step, since)
         for _, _, message, data in sorted(group, key=lambda frame: frame[2].priority):
             yield time, message.priority, channel, message, data, log.sent
 

@@ -41,6 +41,8 @@ def writing(file: BinaryIO, buses: Sequence[str], start: datetime) -> Iterator[C
         _append(mdf, [], first=True)
 
         def write(frame: Frame) -> None:
+            if frame.error:
+                return  # the group of frames with data has no place for one without
             waiting.append(frame)
             if len(waiting) == _BLOCK:
                 _append(mdf, waiting)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime
 from typing import BinaryIO
 
+from .candump import ERROR
 from .frames import Frame
 
 _SECTION, _INTERFACE, _PACKET = 0x0A0D0D0A, 1, 6
@@ -32,7 +33,10 @@ def writing(file: BinaryIO, buses: Sequence[str], start: datetime) -> Iterator[C
     def write(frame: Frame) -> None:
         m = frame.message
         flags = _FD | _SWITCH * frame.switch if frame.fd else 0
-        data = struct.pack(">IBBxx", m.frame_id | _EXTENDED * m.extended, len(frame.data), flags) + frame.data
+        key, payload = m.frame_id | _EXTENDED * m.extended, frame.data
+        if frame.error:
+            key, payload, flags = ERROR, bytes(8), 0
+        data = struct.pack(">IBBxx", key, len(payload), flags) + payload
         time = begin + round(frame.time * 1e9)
         head = struct.pack("<IIIII", frame.channel, time >> 32, time & 0xFFFFFFFF, len(data), len(data))
         options = _option(_FLAGS, struct.pack("<I", _OUTBOUND if frame.sent else _INBOUND)) + _LAST_OPTION

@@ -83,6 +83,10 @@ class _Stopped:
 def _message(frame: Frame, timestamp: float) -> Any:
     import can
 
+    if frame.error:
+        return can.Message(
+            timestamp=timestamp, is_error_frame=True, is_rx=not frame.sent, channel=frame.channel
+        )
     return can.Message(
         timestamp=timestamp,
         arbitration_id=frame.message.frame_id,

@@ -28,7 +28,8 @@ _NEVER = 0x7FFFFFFFFFFFFFFF
 def contend(w: Wire, bus: int, end: int) -> int:
     """Let the next frame have the bus that starts before a time; return its message, -1 for none.
 
-    It is the frame at hand then, and the bus is free after it.
+    It is the frame at hand then, and the bus is free after it. For one that ends with a wrong bit, return
+    -2 - its message: it waits on.
     """
     b = w.buses
     now = b[bus, T.FREE_AT]
@@ -43,11 +44,11 @@ def contend(w: Wire, bus: int, end: int) -> int:
             w.frame[byte] = w.waiting[i, byte]
         b[bus, T.BEGUN] = now
         good = carry(w, bus, i, now)
-        now = b[bus, T.FREE_AT]
-        if good:
-            w.messages[i, T.QUEUED] = 0
-            b[bus, T.PENDING] -= 1
-            return i
+        if not good:
+            return -2 - i
+        w.messages[i, T.QUEUED] = 0
+        b[bus, T.PENDING] -= 1
+        return i
     return -1
 
 

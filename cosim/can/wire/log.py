@@ -23,3 +23,13 @@ def log(w: Wire, i: int, k: int, end: int) -> int:
         w.log[row, T.LOG_PAYLOAD + first // 8] = word
     w.state[T.LOG_ROWS] += 1
     return T.DONE
+
+
+def log_error(w: Wire, i: int, k: int, end: int) -> int:
+    """Add the error frame to the log that ends a frame of message i; return DONE or RAISED."""
+    if not w.messages[i, T.LOGGED]:
+        return T.DONE
+    if log(w, i, k, end) != T.DONE:
+        return T.RAISED
+    w.log[w.state[T.LOG_ROWS] - 1, T.LOG_MESSAGE] = -1 - i
+    return T.DONE

@@ -8,7 +8,7 @@ from . import tables as T
 from .arbitration import contend, number_of
 from .babble import begin, go_on
 from .faults import hit, spoil, spoil_logged
-from .log import log
+from .log import log, log_error
 from .off import is_off, note_hit, strike, unheard
 from .protect import accepted, protect, watch
 from .requests import wanted
@@ -106,9 +106,13 @@ def run_bus(w: Wire, bus: int, k: int) -> int:
         begin(w, bus, end)
     while w.buses[bus, T.PENDING] > 0:
         i = contend(w, bus, end)
-        if i < 0:
+        if i == -1:
             break
         finish = w.buses[bus, T.FREE_AT] - INTERFRAME * w.buses[bus, T.BIT]
+        if i < 0:
+            if log_error(w, -2 - i, k, finish) != T.DONE:
+                return T.RAISED
+            continue
         note(m, i, T.LATENCY_LEAST, finish - m[i, T.SAMPLED], m[i, T.CARRIED])
         m[i, T.CARRIED] += 1
         if log(w, i, k, finish) != T.DONE:

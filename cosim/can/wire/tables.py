@@ -165,8 +165,8 @@ are left to be heard, which count from HEARD_AT on."""
 
 (LOG_STEP, LOG_TIME, LOG_MESSAGE, LOG_PAYLOAD) = range(4)
 LOG_WIDTH = LOG_PAYLOAD + 8
-"""Columns of the log: the step in which the frame was sent, the time of its end, the message, and the
-payload, eight bytes in each word."""
+"""Columns of the log: the step in which the frame was sent, the time of its end, the message (-1 - it for an
+error frame that ended one of its frames), and the payload, eight bytes in each word."""
 
 (NEXT, FILLED, OVER) = range(3)
 STREAM_WIDTH = 3
