@@ -101,5 +101,7 @@ def _time_column(file: CsvFile) -> int:
 def _check_unnamed(file: CsvFile) -> None:
     """Raise ConfigError for a column without a name that holds something, other than the numbers of rows."""
     for j, name in enumerate(file.names):
-        if not name and any(text and text != str(k) for k, text in enumerate(file.texts(j))):
+        texts = [] if name else file.texts(j)
+        counts = j == 0 and any(texts == [str(k + first) for k in range(len(texts))] for first in (0, 1))
+        if any(texts) and not counts:  # pandas counts the rows there from 0, R from 1
             raise ConfigError(f"{file.path}: line {file.header_lines}, column {j + 1}: a name is needed")

@@ -139,6 +139,7 @@ def test_an_integer_beyond_64_bits_keeps_its_value(value: float, tmp_path: Path)
 @pytest.mark.parametrize(
     "text",
     ["time,x,\n0,1,\n2,3,\n", "time,x,,\n0,1\n2,3\n", "time,x\n0,1,\n\n2,3,\n", ",time,x\n0,0,1\n1,2,3\n",
+     '"","time","x"\n"1",0,1\n"2",2,3\n',
      "time;;x;\r\n0;;1;\r\n\r\n;;;\r\n2;;3;\r\n", "x,,time\n1,,0\n,,\n3,,2\n"],
 )  # fmt: skip # a table of files
 def test_a_column_without_name_and_values_is_none(text: str, tmp_path: Path) -> None:
