@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..analysis.bus_times import BusTimes
@@ -24,18 +25,20 @@ def draw_bus_times(times: BusTimes, title: str) -> Figure:
 
     The upper panel has from the least to the greatest time from sampling to the end of the frame as a bar,
     the mean as a disk, the bound of the response-time analysis as a line. The lower one is a busy period:
-    each frame waits from its sampling on, then takes the bus.
+    each frame waits from its sampling on, then takes the bus. What babbles has a row below the messages.
     """
-    count = len(times.load.messages)
+    own = [message.name for message in times.load.messages]
+    own += sorted({frame.name for frame in times.period} - set(own))
+    count = len(own)
     height = max(2.2, 1.1 + _ROW * count)
     with canvas(rows=2, height=height, title=title, ratios=(1.0, 1.0)) as (figure, axes):
-        names = [visible(message.name) for message in times.load.messages]
+        names = [visible(name) for name in own]
         for panel in axes[:, 0]:
             panel.set_yticks(range(count), names, fontsize=8.5)
             panel.set_ylim(count - 0.4, -0.6)  # the first to win on top
             panel.grid(axis="y", visible=False)
         _draw_latencies(axes[0, 0], times)
-        _draw_period(axes[1, 0], times)
+        _draw_period(axes[1, 0], times, own)
         for panel in axes[:, 0]:
             handles, labels = panel.get_legend_handles_labels()
             unique = dict(zip(labels, handles, strict=True))
@@ -59,8 +62,8 @@ def _draw_latencies(panel: Axes, times: BusTimes) -> None:
     panel.set_xlabel("From sampling to the end of the frame [ms]")
 
 
-def _draw_period(panel: Axes, times: BusTimes) -> None:
-    rows = {message.name: row for row, message in enumerate(times.load.messages)}
+def _draw_period(panel: Axes, times: BusTimes, names: Sequence[str]) -> None:
+    rows = {name: row for row, name in enumerate(names)}
     begin = min((frame.sampled for frame in times.period), default=0.0)
     for frame in times.period:
         row = rows[frame.name]

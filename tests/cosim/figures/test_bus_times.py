@@ -35,3 +35,12 @@ def test_the_legend_names_each_thing_once() -> None:
     names = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in figure.axes]
     assert sorted(names[0]) == ["bound", "least to greatest", "mean"]
     assert sorted(names[1]) == ["takes the bus", "waits"]
+
+
+def test_what_babbles_has_a_row_below_the_messages() -> None:
+    known = times()
+    babbling = BusTimes(known.load, known.counted, (*known.period, Carried("fault_1_0x0", 1.0, 1.0, 1.0002)))
+    figure = draw_bus_times(babbling, "s: can0")
+    for panel in figure.axes:
+        assert [tick.get_text() for tick in panel.get_yticklabels()] == ["A", "B", "fault_1_0x0"]
+    assert sorted({round(p.get_y() + p.get_height() / 2) for p in figure.axes[1].patches}) == [0, 1, 2]
