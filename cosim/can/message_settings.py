@@ -80,6 +80,17 @@ class MessageSettings(BaseModel):
     e2e: E2eSettings | None = None
     """Protection by counter and checksum: frames that break it are not taken."""
 
+    checksum: str | None = Field(default=None, pattern=r"^[A-Za-z_][\w.]*:[A-Za-z_]\w*$")
+    """A maker's own checksum in place of `e2e`: "module:function", a function in Python of a module beside
+    the system file, or of an installed one. It gets the payload, in which the checksum is 0, the identifier
+    and the counter, -1 without one, and returns the number that `checksum_signal` has."""
+
+    checksum_signal: str | None = None
+    """The signal of the checksum: 32 bits at most."""
+
+    checksum_counter: str | None = None
+    """The signal of the counter, 16 bits at most, from 0 to its maximum; without it frames have none."""
+
     status: list[str] = []
     """Inputs that receive the status of the last frame, as "unit.input": with `e2e` 0 ok, 1 no new data,
     2 wrong CRC, 4 the first one, 8 repeated, 32 some lost, 64 wrong sequence; with `timeout`

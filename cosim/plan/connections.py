@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal, check_signal
-from ..can.framing import Framing, check_jitter, framing_of
+from ..can.framing import bare_framing, check_jitter, framing_of
 from ..can.limits import notes_on
 from ..can.pages import pages
 from ..can.resolution import with_resolution
@@ -320,9 +320,10 @@ def _message(
     """
     settings = work.system.file.buses[bus]
     message = as_sent(work.network.databases[bus].require(name), settings)
-    path, where = str(work.system.path), f"{work.system.path}: buses.{bus}"
+    path, connected = str(work.system.path), [route.signal.name for route in routes]
+    where = f"{path}: buses.{bus}"
     delay = steps_in(settings.delay, step_size, f"{where}.delay") if settings.timing == "instant" else 0
-    framing = framing_of(message, settings, [route.signal.name for route in routes], where)
+    framing = framing_of(message, settings, connected, where, str(work.system.path.parent))
     if framing is not None:
         own = settings.of_message(name)
         framing = dataclasses.replace(framing, status=_status_inputs(work, own.status, message, where))
@@ -335,11 +336,11 @@ def _message(
             if work.interfaces[unit].variables[variable].sampled
         ]
         after = max(sampled, default=None)
-    turns = pages(message, [route.signal.name for route in routes], path)
+    turns = pages(message, connected, path)
     units = (sender.split(".")[0] for sender in senders.values())
     times = send_times(message, settings, units, work.turns, step_size, path, bus, len(turns))
     if times.sending.kind != "cyclic":
-        framing = framing or Framing()
+        framing = framing or bare_framing(settings, where, f"the send type of {name} needs them")
     check_jitter(message, settings, times.apart * step_size, where)
     for i, page in enumerate(turns):
         arrivals: list[tuple[int, int]] = []

@@ -91,7 +91,9 @@ def _planned(
         own = f"fault_{number}_0x{fault.id:X}"  # of its frames
         found = dataclasses.replace(found, message=own, since=max(0, since))
     _check_target(fault, message, messages, place)
-    check_quantized(next(m.settings for m in messages if m.bus == bus), f"{place}: buses.{bus}", fault=True)
+    check_quantized(
+        next(m.settings for m in messages if m.bus == bus), f"{place}: buses.{bus}", "a fault hits frames"
+    )
     if isinstance(fault, Delay):
         _check_sent(found, messages, place)
     if isinstance(fault, Corrupt):

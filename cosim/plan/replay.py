@@ -166,7 +166,8 @@ def _message(system: System, bus: str, variant: _Variant, clock: Clock, received
     """Return the plan of a message, or of a page of it, whose frames come from a log."""
     settings, message = system.file.buses[bus], variant.message
     names = [route.signal.name for route in variant.routes]
-    framing = framing_of(message, settings, names, f"{system.path}: buses.{bus}") or Framing()
+    place, folder = f"{system.path}: buses.{bus}", str(system.path.parent)
+    framing = framing_of(message, settings, names, place, folder) or Framing()
     framing = dataclasses.replace(framing, status=received.status_inputs(bus, message))
     every, first = 1, 0
     if framing.watched(settings.of_message(message.name)):

@@ -16,7 +16,7 @@ from ...cosim.can.quantization import ChannelError, decode, quantize
 from ...cosim.can.transmissions import FrameLog, frame_store
 from ...cosim.can.wire import medium
 from ...cosim.can.wire import tables as T
-from ...cosim.can.wire.payload import words
+from ...cosim.can.wire.payload import low_bits, words
 from ...cosim.can.wire.values import set_raw
 from ...cosim.plan.plan import FaultPlan, Plan, ReplayPlan
 from ...cosim.plan.readers import Reader, readers
@@ -62,6 +62,13 @@ class FramePath:
         self.wire = views(self.arrays, self.help)
         self.nodes = nodes_of([sender.plan for sender in self.senders])
         self._signals = [(s, i) for s in self.senders for i in range(len(s.plan.routes))]
+        framings = [s.plan.framing for s in self.senders]
+        self._protections = [None if framing is None else framing.protection for framing in framings]
+        self._makers = {
+            row: protection.maker.loaded()
+            for row, protection in enumerate(self._protections)
+            if protection is not None and protection.maker is not None
+        }
         self._kept = frame_store()
 
     def row_of(self, number: int) -> int | None:
@@ -103,6 +110,8 @@ class FramePath:
             self._fill(i)
         elif what == T.RAW:
             self._set_raw(i, k)
+        elif what == T.CHECKSUM:
+            self._set_checksum(i)
         else:
             self._set_value(i)
         return T.DONE
@@ -139,6 +148,21 @@ class FramePath:
         if signal.signed and raw >> (signal.length - 1):
             raw -= 1 << signal.length
         self.wire.double[0] = decode(signal, raw)
+
+    def _set_checksum(self, row: int) -> None:
+        protection, found = self._protections[row], self.wire.messages
+        assert protection is not None  # nobody else asks
+        frame, length = self.wire.frame, found[row, T.LENGTH]
+        counter = -1
+        if found[row, T.COUNTER_BITS]:
+            layout = (found[row, column] for column in (T.COUNTER_LITTLE, T.COUNTER_START, T.COUNTER_BITS))
+            counter = low_bits(frame, *layout)
+        payload = bytearray(frame[:length])
+        for bit in protection.crc.bits:
+            payload[bit // 8] &= ~(1 << bit % 8)
+        message = self.senders[row].plan.message
+        value = self._makers[row](bytes(payload), message.frame_id, counter, protection.crc.length)
+        self.wire.double[0] = float(value)
 
     # ---- what was counted and kept
 

@@ -163,15 +163,21 @@ def _message(plan: Plan, index: int) -> list[Action]:
 def _early_watches(plan: Plan) -> list[Action]:
     """Return the actions that look at messages whose frames take time, from one cycle after the first on.
 
-    So do those that look at messages of logs, from the first on where frames take no time.
+    So do those that look at messages of logs, from the first on where frames take no time. Of P pages each is
+    sent every P cycles, and looked at as often; those of a log are looked at once a cycle, by the first.
     """
     found = []
-    for i, message in enumerate(plan.messages):
-        if message.replayed and message.watched and not message.timed:
+    looked_at = {i: m for i, m in enumerate(plan.messages) if m.watched and (m.timed or m.replayed)}
+    names = [(message.bus, message.message.name) for message in looked_at.values()]
+    for place, (i, message) in enumerate(looked_at.items()):
+        if message.replayed and names.index(names[place]) < place:
+            continue
+        if not message.timed:
             found.append(Action("watch", i, message.every, message.first))
-        elif message.timed and message.watched:
+        else:
             late = math.ceil(message.settings.delay / plan.clock.step)
-            found.append(Action("watch", i, message.cycle, message.first + message.cycle + late))
+            cycle = message.cycle if message.replayed else message.cycle // names.count(names[place])
+            found.append(Action("watch", i, message.cycle, message.first + cycle + late))
     return found
 
 

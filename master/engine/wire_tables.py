@@ -204,12 +204,15 @@ def _add_protection(
             statuses += [slot, owner_of(slot, nodes, receiving)]
         if (protection := plan.framing.protection) is not None:
             made["ids"][16 * i : 16 * i + len(protection.ids)] = protection.ids
-            start, little = place_of(protection.counter)
+            start, little = place_of(protection.crc)
             row |= {
                 T.PROFILE: protection.profile, T.CRC_AT: protection.crc.start // 8,
-                T.COUNTER_START: start, T.COUNTER_LITTLE: little, T.COUNTER_BITS: protection.counter.length,
+                T.CHECK_START: start, T.CHECK_LITTLE: little, T.CHECK_BITS: protection.crc.length,
                 T.MAX_DELTA: protection.max_delta, T.GAP: protection.max_delta,
             }  # fmt: skip # a row
+            if protection.counter is not None:
+                row[T.COUNTER_START], row[T.COUNTER_LITTLE] = place_of(protection.counter)
+                row[T.COUNTER_BITS] = protection.counter.length
             if protection.nibble is not None:
                 row[T.NIBBLE_START], row[T.NIBBLE_LITTLE] = place_of(protection.nibble)
         _fill(made["messages"], i, row)

@@ -51,6 +51,8 @@ def judged(
     gap = grown(profile, gap, max_delta)
     if not right:
         return WRONG_CRC, last, gap
+    if modulus(profile) == 0:  # a maker's, without a counter
+        return INITIAL if last < 0 else OK, 0, max_delta
     if counter >= modulus(profile):
         return WRONG_SEQUENCE, last, gap  # 15 of a counter that goes to 14
     if last < 0:
@@ -74,4 +76,4 @@ def grown(profile: int, gap: int, max_delta: int) -> int:
     """Return the greatest difference that the next check takes."""
     if profile == P5:
         return max_delta
-    return min(gap + 1, modulus(profile) - 1)
+    return min(gap + 1, max(1, modulus(profile) - 1))

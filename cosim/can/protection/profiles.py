@@ -20,13 +20,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 P1A, P1B, P1C, P2, P5 = 1, 2, 3, 4, 5
+MAKER = 1000
+"""The code of a maker's own checksum, to which the number of values of its counter is added; 0: none."""
 
 CODES = {"1A": P1A, "1B": P1B, "1C": P1C, "2": P2, "5": P5}
 """The profiles by the names that files give them."""
 
 
 def modulus(profile: int) -> int:
-    """Return the number of values of the profile's counter, which begins with 0."""
+    """Return the number of values of the profile's counter, which begins with 0; 0 if it has none."""
+    if profile >= MAKER:
+        return profile - MAKER
     if profile == P5:
         return 256
     return 16 if profile == P2 else 15

@@ -10,7 +10,7 @@ from ..timing.draws import drawn
 from . import tables as T
 from .arbitration import number_of
 from .payload import low_bits
-from .protect import protect
+from .protect import protect, wipe
 from .tables import Wire
 
 _FAULT = 3  # what is drawn for
@@ -42,30 +42,36 @@ def hit_from(w: Wire, start: int, kind: int, i: int, now: int) -> int:
     return -1
 
 
-def spoil(w: Wire, i: int, now: int) -> None:
+def spoil(w: Wire, i: int, now: int, k: int) -> int:
     """Protect the frame at hand, of message i, and do what faults of its sender do to it.
 
-    A frozen frame is the last one before; unless its counter is frozen too, that goes on.
+    A frozen frame is the last one before; unless its counter is frozen too, that goes on. Return DONE
+    or RAISED.
     """
     frozen = hit(w, T.FREEZE, i, now) if w.messages[i, T.KEPT] else -1
     if frozen >= 0:
         for byte in range(w.messages[i, T.LENGTH]):
             w.frame[byte] = w.kept[i, byte]
         if w.messages[i, T.PROFILE] and not w.faults[frozen, T.COUNTER_TOO]:
-            wipe(w, i)
-            protect(w, i)
+            m = w.messages
+            wipe(w, m[i, T.COUNTER_LITTLE], m[i, T.COUNTER_START], m[i, T.COUNTER_BITS])
+            if protect(w, i, k) != T.DONE:
+                return T.RAISED
     else:
-        protect(w, i)
+        if protect(w, i, k) != T.DONE:
+            return T.RAISED
         w.messages[i, T.KEPT] = 1
         for byte in range(w.messages[i, T.LENGTH]):
             w.kept[i, byte] = w.frame[byte]
     corrupt(w, i, now)
+    return T.DONE
 
 
-def spoil_logged(w: Wire, i: int, now: int) -> None:
+def spoil_logged(w: Wire, i: int, now: int, k: int) -> int:
     """Do to the frame at hand, of message i of a log, what faults of its sender would have done to it.
 
-    A frozen frame has the payload of the last one; unless its counter is frozen too, its own counter.
+    A frozen frame has the payload of the last one; unless its counter is frozen too, its own counter. Return
+    DONE or RAISED.
     """
     m = w.messages
     frozen = hit(w, T.FREEZE, i, now) if m[i, T.KEPT] else -1
@@ -77,10 +83,12 @@ def spoil_logged(w: Wire, i: int, now: int) -> None:
             w.kept[i, byte] = w.frame[byte]
     m[i, T.KEPT] = 1
     if frozen >= 0 and m[i, T.PROFILE] and not w.faults[frozen, T.COUNTER_TOO]:
-        wipe(w, i)
-        m[i, T.COUNTER] = counter
-        protect(w, i)
+        wipe(w, m[i, T.COUNTER_LITTLE], m[i, T.COUNTER_START], m[i, T.COUNTER_BITS])
+        m[i - m[i, T.PAGE], T.COUNTER] = counter
+        if protect(w, i, k) != T.DONE:
+            return T.RAISED
     corrupt(w, i, now)
+    return T.DONE
 
 
 def corrupt(w: Wire, i: int, now: int) -> None:
@@ -90,11 +98,3 @@ def corrupt(w: Wire, i: int, now: int) -> None:
         if w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:
             w.frame[w.faults[wrong, T.BYTE]] ^= w.faults[wrong, T.MASK]
         wrong = hit_from(w, wrong + 1, T.CORRUPT, i, now)
-
-
-def wipe(w: Wire, i: int) -> None:
-    """Set the bits of the counter of the frame at hand, of message i, to 0; the checksum is written anew."""
-    little, start = w.messages[i, T.COUNTER_LITTLE], w.messages[i, T.COUNTER_START]
-    for place in range(start, start + w.messages[i, T.COUNTER_BITS]):
-        bit = place & 7 if little else 7 - (place & 7)
-        w.frame[place >> 3] &= ~(1 << bit)

@@ -34,10 +34,9 @@ def send(w: Wire, i: int, k: int) -> int:
     if not spontaneous and sample(w, i, k) != T.DONE:
         return T.RAISED
     pack(w, i)
-    if w.state[T.FAULTS]:
-        spoil(w, i, now)
-    else:
-        protect(w, i)
+    done = spoil(w, i, now, k) if w.state[T.FAULTS] else protect(w, i, k)
+    if done != T.DONE:
+        return T.RAISED
     m[i, T.SENT] += 1
     m[i, T.INSTANCE] += 1
     if b[bus, T.STRIKES]:
@@ -192,8 +191,8 @@ def pass_on(w: Wire, i: int, k: int, time: int) -> int:
         w.messages[i, T.HELD] += 1
         note_hit(w, w.messages[i, T.NODE])
         return T.DONE
-    if w.state[T.FAULTS]:
-        spoil_logged(w, i, time)
+    if w.state[T.FAULTS] and spoil_logged(w, i, time, k) != T.DONE:
+        return T.RAISED
     w.messages[i, T.REPLAYED] += 1
     if log(w, i, k, time) != T.DONE:
         return T.RAISED
@@ -221,7 +220,10 @@ def deliver(w: Wire, i: int, k: int, sampled: int, time: int) -> int:
     w.state[T.ARRIVING] = time
     if m[i, T.OWNED] and unheard(w, i):
         return T.DONE
-    if not accepted(w, i):
+    verdict = accepted(w, i, k)
+    if verdict < 0:
+        return T.RAISED
+    if verdict == 0:
         return T.DONE
     use(w, i, k, sampled)
     return unpack(w, i, k)

@@ -80,7 +80,8 @@ by a wire error, and that arrived; the time that the bus was busy with them."""
 step at present (`protection.counters`); the number of frames that were not taken."""
 (TIMEOUT, MISSED, TIMED_OUT, TIMEOUTS, FRESH, TAKEN, FIRST_STATUS, STATUSES) = range(45, 53)
 """Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
-it, and how often that was; 1 if a frame came, and was taken, since `watch` looked; STATUSES slots of inputs
+it, and how often that was; 1 if a frame came, and was taken, since `watch` looked (what changes of a
+multiplexed message, here and in its protection, has the row of its first page); STATUSES slots of inputs
 from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
 (KEPT, LOST, SILENCED, DELAYED, HELD, UNHEARD, REPLAYED) = range(53, 60)
 """1 once `kept` has the last payload that was sent; frames that a fault took from receivers, silenced, or
@@ -94,7 +95,9 @@ step at which it may be sent, the step at which it became active, 1 while it is,
 looked at."""
 (FIRST_USE, USES) = range(70, 72)
 """USES rows of `uses` from FIRST_USE on: one for each unit that receives it."""
-MESSAGE = 72
+(CHECK_START, CHECK_BITS, CHECK_LITTLE) = range(72, 75)
+"""The layout of a maker's checksum."""
+MESSAGE = 75
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
@@ -191,9 +194,9 @@ LOSE, SILENCE, CORRUPT, FREEZE, LATE, BUS_OFF, BABBLE = range(7)
 
 # ---- what Python is asked for, and what comes back
 
-RAW, VALUE, FLUSH, FILL = range(4)
+RAW, VALUE, FLUSH, FILL, CHECKSUM = range(5)
 """The raw value of a signal for `double`; the value of a signal's raw value, in `double`; an empty log; the
-next rows of a stream."""
+next rows of a stream; a maker's checksum of the frame at hand, in `double`."""
 DONE, RAISED = range(2)
 
 SEND, ARRIVE, CONTEND, WATCH, REPLAY = range(5)

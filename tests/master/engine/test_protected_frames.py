@@ -95,7 +95,7 @@ def test_what_a_receiver_says_of_a_fault(tmp_path, engine, fault, statuses):
         ({"e2e": E2E, "status": ["vehicle.wind"]}, "status: unit 'vehicle' has no"),
         ({"e2e": E2E, "status": ["car.wind"]}, "status: there is no unit of 'car.wind'"),
         ({"e2e": E2E, "status": ["controller.yaw_rate"]}, "controller.yaw_rate is driven already"),
-        ({"status": ["vehicle.crosswind"]}, "there is a status with `e2e` or with a `timeout`"),
+        ({"status": ["vehicle.crosswind"]}, "there is a status with `e2e`, `checksum` or `timeout`"),
         ({"on_timeout": "sna"}, "on_timeout: it needs a `timeout`, in cycles"),
     ],
 )

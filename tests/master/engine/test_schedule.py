@@ -67,18 +67,30 @@ def test_timed_buses_arrive_before_all_messages_and_contend_behind_all_turns(alg
 
 @pytest.mark.parametrize("algorithm", ["gauss_seidel", "jacobi"])
 def test_logs_are_replayed_before_all_messages_and_their_messages_are_sent_by_nobody(algorithm):
-    logged = message(every=5, first=2, replayed=True, watched=True, framing=1)
+    of = {"bus": "a", "message": SimpleNamespace(name="M")}
+    logged = message(every=5, first=2, replayed=True, watched=True, framing=1, **of)
     actions = schedule(plan(algorithm, messages=[message(), logged], replays=1, timed=("a",)))
     assert words(actions).startswith("arrive0 replay0 watch1 send0 take0") and "send1" not in words(actions)
     assert actions[2] == Action("watch", 1, 5, 2)
-    timed = message(every=5, first=2, replayed=True, watched=True, framing=1, timed=True)
+    timed = message(every=5, first=2, replayed=True, watched=True, framing=1, timed=True, **of)
     assert schedule(plan(algorithm, messages=[timed], replays=1))[1] == Action("watch", 0, 5, 2 + 5 + 2)
+
+
+def test_pages_are_watched_once_a_cycle_of_their_message():
+    of = {"bus": "a", "message": SimpleNamespace(name="M")}
+    pages = [message(every=10, first=5 * i, watched=True, framing=1, timed=True, **of) for i in range(2)]
+    found = [a for a in schedule(plan(messages=pages, timed=("a",))) if a.kind == "watch"]
+    assert found == [Action("watch", 0, 10, 0 + 5 + 2), Action("watch", 1, 10, 5 + 5 + 2)]
+    logged = [message(every=5, replayed=True, watched=True, framing=1, **of) for _ in range(2)]
+    found = [a for a in schedule(plan(messages=logged, replays=1)) if a.kind == "watch"]
+    assert found == [Action("watch", 0, 5, 0)]
 
 
 def test_a_message_is_watched_once_a_cycle_behind_what_brings_it():
     watched = message(every=5, first=2, watched=True, framing=1)
     late = message(every=5, first=2, delay=3, watched=True, framing=1)
-    timed = message(every=5, first=2, watched=True, framing=1, timed=True)
+    name = SimpleNamespace(name="M")
+    timed = message(every=5, first=2, watched=True, framing=1, timed=True, bus="a", message=name)
     assert words(schedule(plan(messages=[watched]))).startswith("send0 watch0 take0")
     assert words(schedule(plan(messages=[late]))).startswith("deliver0 watch0 send0 take0")
     actions = schedule(plan(messages=[timed], timed=("a",)))

@@ -9,6 +9,7 @@ import pytest
 
 from evcosim.cosim.can.wire import faults
 from evcosim.cosim.can.wire import tables as T
+from evcosim.cosim.can.wire.protect import wipe
 from evcosim.cosim.can.wire.tables import Wire
 
 
@@ -68,6 +69,5 @@ def test_the_bits_of_the_counter_alone_are_wiped():
     for little, start, expected in ((1, 4, [0x0F, 0xF0]), (0, 4, [0xF0, 0x0F])):
         made = wire()
         made.frame[:2] = 255
-        made.messages[0, [T.COUNTER_LITTLE, T.COUNTER_START, T.COUNTER_BITS]] = little, start, 8
-        faults.wipe(made.wire, 0)
+        wipe(made.wire, little, start, 8)
         assert made.frame[:2].tolist() == expected
