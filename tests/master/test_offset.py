@@ -89,7 +89,8 @@ def scooter(folder: Path, offset: float, start_delay: float = 0.0, **bus: Any) -
     text = text.replace("[buses.can0]\n", f"[buses.can0]\n{lines}")
     names = {line.split(".")[1] for line in text.splitlines() if line.startswith("via")}
     for name in sorted(names):
-        text += f"\n[buses.can0.messages.{name}]\ncycle_time = 0.04\nstart_delay = {start_delay}\n"
+        table, times = f"[buses.can0.messages.{name}]\n", f"cycle_time = 0.04\nstart_delay = {start_delay}\n"
+        text = text.replace(table, table + times) if table in text else f"{text}\n{table}{times}"
     (folder / f"late{offset}.toml").write_text(text)
     (folder / "driven.toml").write_text(DRIVEN)
     return folder / f"late{offset}.toml"
