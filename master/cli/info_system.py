@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .console import number, print_fields, print_table, print_title
+from .info_frames import name_of, protection_of, show_frames, unfilled_of
 
 if TYPE_CHECKING:
     from ...cosim.plan.plan import MessagePlan, Plan
@@ -120,6 +121,8 @@ def _message(plan: MessagePlan, whole: Plan) -> dict[str, Any]:
              "sender": plan.senders[route.signal.name]}
             for route in plan.routes
         ],
+        "unfilled": unfilled_of(plan),
+        "protection": protection_of(plan),
     }  # fmt: skip # one line for each key
 
 
@@ -145,6 +148,7 @@ def show(about: dict[str, Any]) -> None:
         headers = ("message", "id", "every [s]", "delay [s]", "signal", "bits", "resolution", "range")
         rows = [row for message in about["messages"] for row in _message_rows(message)]
         print_table(headers, rows, right=("bits",))
+        show_frames(about["messages"])
     if about["replays"]:
         print_title("CAN logs of the scenario")
         of_log = ("log", "bus", "channel", "from [s]", "to [s]", "message", "frames")
@@ -209,9 +213,7 @@ def _message_rows(message: dict[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for i, signal in enumerate(message["signals"]):
         delay = f"{message['delay']:g}" if message["delay"] else ""
-        page = ", ".join(f"{name} {raw}" for name, raw in message["page"].items())
-        name = f"{message['bus']}.{message['name']}{f' ({page})' if page else ''}"
-        head = (name, f"0x{message['id']:X}", _every(message), delay)
+        head = (name_of(message), f"0x{message['id']:X}", _every(message), delay)
         unit = f" {signal['unit']}" if signal["unit"] else ""
         ends = [
             ("-inf", "inf")[j] if signal[key] is None else number(signal[key])

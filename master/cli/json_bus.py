@@ -35,6 +35,28 @@ BUS_LOAD = record(
     },
 )
 
+UNFILLED = record(
+    "A signal that neither a connection nor a protection fills.",
+    {
+        "name": text("Its name."),
+        "raw": number("The raw value that is sent."),
+        "sent": text('What that is: "not available", "start value", or "zero" without both.'),
+    },
+)
+
+PROTECTION = record(
+    "What guards its frames; null: nothing.",
+    {
+        "profile": or_null(text("AUTOSAR's E2E profile; null: none.")),
+        "function": or_null(text("A maker's own checksum as module:function; null: none.")),
+        "checksum": or_null(text("The signal of the checksum; null: none.")),
+        "counter": or_null(text("The signal of the counter; null: none.")),
+        "timeout": or_null(whole("Cycles without a frame that is taken; null: none.")),
+        "on_timeout": text('What receivers have then: "hold", "initial" or "sna".'),
+        "status": listed("The inputs that receive the status of the last frame, unit.input."),
+    },
+)
+
 REPLAY = record(
     "A CAN log that a scenario replays.",
     {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .json_bus import BUS_LOAD, REPLAY
+from .json_bus import BUS_LOAD, PROTECTION, REPLAY, UNFILLED
 from .json_parts import VALUE, by_name, flag, listed, number, or_null, record, text, whole
 
 LIST = record(
@@ -102,6 +102,8 @@ INFO_SYSTEM = record(
                             },
                         ),
                     ),
+                    "unfilled": listed("Its signals that nothing fills.", UNFILLED),
+                    "protection": or_null(PROTECTION),
                 },
             ),
         ),

@@ -16,6 +16,7 @@ from ...cosim.can.database import Signal
 from ...cosim.can.message_settings import SendType
 from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.lengths import bit_time
+from ...cosim.can.unfilled import raw_values
 from ...cosim.can.wire import tables as T
 from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
@@ -152,23 +153,24 @@ def views(arrays: Arrays, helper: Any) -> Wire:
 
 
 def _base(plan: MessagePlan) -> bytes:
-    """Return the payload with the start values of signals that nothing fills, and 0 in all others."""
+    """Return the payload of signals that nothing fills, with the page's multiplexers; 0 in all others."""
     filled = {route.signal.name for route in plan.routes}
     if plan.framing is not None and plan.framing.protection is not None:
         filled |= {signal.name for signal in plan.framing.protection.signals}
     frame = bytearray(plan.message.length)
-    for name, signal in plan.message.signals.items():
+    for name, raw in raw_values(plan.message).items():
         if name not in filled:
+            signal = plan.message.signals[name]
             start, little = place_of(signal)
-            put(frame, little, start, signal.length, *words(start_bits(signal)))
+            put(frame, little, start, signal.length, *words(raw_bits(signal, raw)))
     return bytes(frame)
 
 
-def start_bits(signal: Signal) -> int:
-    """Return the raw value that a signal starts with as a number that has its bits; negative too."""
+def raw_bits(signal: Signal, raw: float | int) -> int:
+    """Return a raw value of a signal as a number that has its bits; negative too."""
     if not signal.is_float:
-        return int(signal.start_raw)
-    return int.from_bytes(struct.pack("<f" if signal.length == 32 else "<d", signal.start_raw), "little")
+        return int(raw)
+    return int.from_bytes(struct.pack("<f" if signal.length == 32 else "<d", raw), "little")
 
 
 def _add_fallback(made: Arrays, plans: Sequence[MessagePlan], initial: Mapping[int, float]) -> None:

@@ -17,6 +17,7 @@ from typing import Any
 from ...clock import Clock, picoseconds
 from ..database import Message, Signal
 from ..transmissions import FrameLog, RawLog
+from ..unfilled import raw_values
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Frame:
 def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
     """Yield the frames of all buses in the order of time, those of one instant by arbitration; times in s.
 
-    Signals that no connection feeds are sent with their start value.
+    Signals that no connection feeds have the values of `unfilled.raw_values`.
     """
     streams = [
         _payloads(channel, log, clock) for channel, bus_log in enumerate(logs) for log in bus_log.messages
@@ -105,18 +106,21 @@ def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
     """Yield time [s], arbitration key, channel, message and payload of each transmission of one message."""
     message, order = log.message, log.message.priority
     encode = encoder(message)
-    start = {s.name: s.start_raw for s in message.signals.values()}
+    base = raw_values(message)
     before, data = None, b""
     for steps, raws in log.stretches():
         rows = zip(*(column.tolist() for column in raws.values()), strict=True)
         for k, row in zip(steps.tolist(), rows, strict=True):
             if row != before:  # a quantized value often stays
-                before, data = row, encode(start | dict(zip(raws, row, strict=True)))
+                before, data = row, encode(base | dict(zip(raws, row, strict=True)))
             yield clock.at(k), order, channel, message, data, True
 
 
 def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:
-    """Return a function from the raw values of all signals to the payload, by cantools; unused bits are 0."""
+    """Return a function from the raw values of all signals to the payload, by cantools; unused bits are 0.
+
+    Signals that no frame holds are none of them.
+    """
     from cantools.database.can import Message as CodecMessage
 
     codec = CodecMessage(
@@ -124,7 +128,7 @@ def encoder(message: Message) -> Callable[[dict[str, int | float]], bytes]:
         is_extended_frame=message.extended,
         name=message.name,
         length=message.length,
-        signals=[_codec_signal(s) for s in message.signals.values()],
+        signals=[_codec_signal(s) for s in map(message.signals.__getitem__, raw_values(message))],
         is_fd=message.fd,
     )
 
