@@ -14,6 +14,7 @@ from .style import COLORS
 from .text import pretty
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -48,8 +49,13 @@ def draw_budget(budget: Budget) -> Figure:
         unit = f" [{pretty(budget.unit)}]" if budget.unit not in ("", "1") else ""
         for panel in axes[:, 0]:
             panel.set_ylabel("\n".join(textwrap.wrap(f"{flowing(budget.metric)}{unit}", 44)))
-        handles, labels = axes[0][0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+        # one of each; not every panel has several seeds
+        found: dict[str, Artist] = {}
+        for panel in panels[:count]:
+            found.update(
+                {label: handle for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)}
+            )
+        figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=len(found))
         return figure
 
 
@@ -87,9 +93,11 @@ def _draw_points(panel: Axes, budget: Budget, series: Series, low: float, high: 
                 markeredgecolor=COLORS[3], zorder=3, label="as it is",
             )  # fmt: skip # where, then how
         inside = [v for v in point.values if low <= v <= high]
-        panel.plot(
-            [i] * len(inside), inside, marker="_", color=color, markersize=12.0, linestyle="none", zorder=3
-        )
+        if inside:
+            panel.plot(
+                [i] * len(inside), inside, marker="_", color=color, markersize=12.0, linestyle="none",
+                zorder=3, label="each seed",
+            )  # fmt: skip # where, then how
         text = _text(point)
         # not over the edge, and not over the line of the limit, nor a steep one to the next point
         under = y > low + 0.85 * (high - low) or 0.0 <= budget.limit - y < 0.1 * (high - low)

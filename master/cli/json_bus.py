@@ -156,7 +156,11 @@ BUS_TIMES = record(
                     **BUS_LOAD["properties"],
                     "counted": FRAMES,
                     "effective_delays": by_name(
-                        "By message.", by_name("From sampling to the step that uses it.", or_null(_TIMES))
+                        "From the sampling of a value to the step of its receiver that uses it, by message.",
+                        by_name(
+                            "By receiving unit.",
+                            or_null(_TIMES | {"description": "Times [s]; null: it has used no value."}),
+                        ),
                     ),
                     "period": listed(
                         "The frames of the busy period of the longest wait.",

@@ -44,7 +44,7 @@ def rows(schema: dict[str, Any], path: str = "") -> Iterator[tuple[str, str, str
         yield from rows(inner, f"{path}.{key}" if path else key)
     if isinstance(schema.get("additionalProperties"), dict):
         inner = schema["additionalProperties"]
-        if "properties" in inner:
+        if "properties" in inner or isinstance(inner.get("additionalProperties"), dict):
             yield from rows(inner, f"{path}.*" if path else "*")
     if "properties" in schema.get("items", {}):
         for key, inner in schema["items"]["properties"].items():

@@ -90,16 +90,23 @@ def _row(key: str, having: Sequence[dict[str, Any]], members: Sequence[dict[str,
     abouts = [member["properties"][key] for member in having]
     types = " or ".join(dict.fromkeys(map(type_text, abouts)))
     needed = ", needed" if _is_needed(key, members) else ""
-    kinds = [member["properties"].get("action", {}).get("const") for member in having]
-    text = abouts[0]["description"]
+    texts = list(dict.fromkeys(about["description"] for about in abouts))
     if len(members) > 1 and "const" in abouts[0]:
         each = (f"`{about['const']}`: {m['description']}" for about, m in zip(abouts, having, strict=True))
-        text = " ".join([text, *each])
-    elif len(having) < len(members):
-        text = f"For {' and '.join(f'`{kind}`' for kind in kinds)}. {text}"
+        texts = [texts[0], *each]
+    elif len(having) < len(members) or len(texts) > 1:
+        texts = [f"{_for(text, having, key)} {text}" for text in texts]
+    text = " ".join(" ".join(texts).split())
     text = re.sub(r"Default: (.*)\.$", r"Default: `\1`.", text)
     types = re.sub(r'"[^"]*"', r"`\g<0>`", _escaped(types))
     return [f"`{key}`<br>{types}{needed}", _escaped(text)]
+
+
+def _for(text: str, having: Sequence[dict[str, Any]], key: str) -> str:
+    """Return the actions for which a key has this meaning."""
+    those = [m for m in having if m["properties"][key]["description"] == text]
+    names = [f"`{m['properties']['action']['const']}`" for m in those]
+    return f"For {', '.join(names[:-1])} and {names[-1]}." if len(names) > 1 else f"For {names[0]}."
 
 
 def _escaped(text: str) -> str:

@@ -17,7 +17,7 @@ The first three are taken, the others deliver nothing. With the next right check
 `gap` has grown, so that a receiver finds back within a counter's round. The numbers are those of
 E2E_P01CheckStatusType. Profile 5 has no growing gap: any counter with a right checksum is the one to
 compare the next with. The state SYNC, which newer profiles leave to a state machine above them, is not
-modelled. Written for numba too.
+modeled. Written for numba too.
 """
 
 from __future__ import annotations

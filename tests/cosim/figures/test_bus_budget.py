@@ -37,6 +37,7 @@ def test_five_panels_stand_in_two_rows_and_each_seed_is_a_dash():
     assert len(tops) == 6 and len(set(tops)) == 2
     dashes = [line for line in figure.axes[0].get_lines() if line.get_marker() == "_"]
     assert sorted(y for line in dashes for y in line.get_ydata()) == [0.95, 0.97, 1.0]
+    assert [text.get_text() for text in figure.legends[0].get_texts()].count("each seed") == 1
 
 
 def test_same_figure_same_bytes(tmp_path):
