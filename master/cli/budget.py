@@ -33,7 +33,7 @@ def budget(
         int,
         typer.Option(
             metavar="N",
-            help="Vary timing, jitter and lost frames too, what is chance over N seeds (default: 0).",
+            help="Vary timing, jitter and lost frames too, what is chance over N seeds.",
         ),
     ] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
@@ -41,7 +41,7 @@ def budget(
     """Find how late, coarse and slow the buses may be.
 
     Bus delay, signal resolution and message cycle are stepped up, each by itself, and the system is judged by
-    the metric of its [budget] table. Writes budget.md, budget.json, a figure and budget.csv.
+    the metric of its [budget] table. Writes budget.md, budget.json, budget.csv and a figure.
     """
     from ...cosim.analysis.bus_budget import as_data
     from ...cosim.results.repeat import given_options

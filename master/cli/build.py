@@ -14,7 +14,7 @@ def build(
     names: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[NAME]...",
+            metavar="NAME...",
             help="Built-in FMUs, or Python files with models of your own; default: all built-in ones.",
             autocompletion=completion.fmus,
         ),

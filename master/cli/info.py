@@ -17,14 +17,14 @@ def info(
         str,
         typer.Argument(
             metavar="FILE|NAME",
-            help="An FMU or a system: a file, or a built-in name. Or a CAN database (.dbc).",
+            help="An FMU or a system: a file, or a built-in name. Or a CAN database (.dbc .kcd .sym .arxml).",
             autocompletion=completion.systems_and_fmus,
         ),
     ],
     message: Annotated[
         str | None,
         typer.Argument(
-            metavar="[MESSAGE|SCENARIO]",
+            metavar="MESSAGE|SCENARIO",
             help="Database: the message whose signals are shown. System: the scenario whose CAN logs are.",
         ),
     ] = None,
@@ -82,7 +82,7 @@ def _report(
     is_system = what.endswith(".toml") or what in system_names()
     if any(of_database[1:] if is_system else of_database):
         options = "--bitrate and --data-bitrate" if is_system else "MESSAGE, --bitrate and --data-bitrate"
-        raise ConfigError(f"{options} are for a CAN database (.dbc); {what} is none")
+        raise ConfigError(f"{options} are for a CAN database ({' '.join(SUFFIXES)}); {what} is none")
     if is_system:
         if any(of_fmu):
             raise ConfigError(f"--causality, --search and --strict are for an FMU; {what} is a system")

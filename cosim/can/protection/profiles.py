@@ -36,11 +36,6 @@ def modulus(profile: int) -> int:
     return 16 if profile == P2 else 15
 
 
-def checksum_bytes(profile: int) -> int:
-    """Return the bytes that the profile's checksum takes."""
-    return 2 if profile == P5 else 1
-
-
 def crc_8_table(polynomial: int) -> tuple[int, ...]:
     """Return what a register of 8 bits is after each byte, the most significant bit first."""
     return tuple(_shifted(byte, 8, polynomial) for byte in range(256))

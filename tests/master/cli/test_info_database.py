@@ -139,5 +139,5 @@ def test_json_and_options_of_others(car, evcosim):
     ):
         answer = evcosim("info", *arguments)
         assert answer.code == 2
-        assert "are for a CAN database (.dbc)" in answer.err
+        assert "are for a CAN database (.dbc .kcd .sym .arxml)" in answer.err
     assert evcosim("info", str(car), "--search", "x").code == 2

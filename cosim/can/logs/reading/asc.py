@@ -12,13 +12,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+from ...timing.lengths import FD_LENGTHS
 from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds
 
 _EVENT = re.compile(r"(\d{1,12})\.(\d{1,12})\s+(.*)")
 _BASE = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
 _ID = re.compile(r"([0-9A-Fa-f]+)(x?)", re.IGNORECASE)
 _DIRECTIONS = ("rx", "tx", "txrq")
-_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)
 
 
 def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
@@ -73,7 +73,7 @@ def _fd(words: Sequence[str], base: int, time: int, line: int) -> LoggedFrame:
     if words[at] not in ("0", "1") or words[at + 1] not in ("0", "1"):
         raise ValueError(words[at])
     length = int(words[at + 3])
-    if length not in _LENGTHS:
+    if length not in FD_LENGTHS:
         raise ValueError(length)
     data = _bytes(words[at + 4 :], length, base)
     return LoggedFrame(time, words[1], frame_id, extended, data, line, DATA)

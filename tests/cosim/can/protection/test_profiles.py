@@ -20,7 +20,6 @@ from evcosim.cosim.can.protection.profiles import (
     P2,
     P5,
     checksum,
-    checksum_bytes,
     modulus,
 )
 from support.compiled import in_machine_code
@@ -106,6 +105,5 @@ def test_registers_have_the_published_check_values() -> None:
     assert register == 0x29B1
 
 
-def test_sizes_of_counters_and_checksums() -> None:
+def test_sizes_of_counters() -> None:
     assert [modulus(p) for p in CODES.values()] == [15, 15, 15, 16, 256]
-    assert [checksum_bytes(p) for p in CODES.values()] == [1, 1, 1, 1, 2]
