@@ -142,7 +142,9 @@ class BusVariation:
                     f"bus variation: {name} = {short(value)}: it is a number from 0 to {most:g}"
                 )
         if not (_whole(self.seed) and 0 <= self.seed < _SEEDS):
-            raise ConfigError(f"bus variation: seed = {short(self.seed)}: it is a whole number from 0 on")
+            raise ConfigError(
+                f"bus variation: seed = {short(self.seed)}: it is a whole number from 0 to {_SEEDS - 1}"
+            )
         try:
             checked_resolution(self.resolution)
         except ValueError as error:

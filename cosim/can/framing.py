@@ -66,7 +66,7 @@ def framing_of(
     protection = None
     if own.e2e is not None:
         protection = _protection(message, own.e2e, connected, f"{place}.messages.{message.name}.e2e")
-    check_checksum_keys(own, f"{place}.messages.{message.name}")
+    _check_checksum_keys(own, f"{place}.messages.{message.name}")
     if own.checksum is not None:
         protection = _makers(message, own, connected, f"{place}.messages.{message.name}", folder)
     if own.status and protection is None and own.timeout is None:
@@ -85,7 +85,8 @@ def framing_of(
 def check_quantized(settings: BusSettings, place: str, needs: str = "") -> None:
     """Raise ConfigError, which starts with `place`, where values that are not quantized should make frames.
 
-    What takes time does, and what `needs` says. A protection alone changes no value, and is left out.
+    With timing = "frame" they should, and where the clause `needs` says why. A protection alone changes no
+    value: with resolution "ideal" it is left out.
     """
     needs = needs or ('timing = "frame" needs them' if settings.timing == "frame" else "")
     if settings.resolution == "ideal" and needs:
@@ -131,7 +132,7 @@ def _protection(message: Message, e2e: E2eSettings, connected: Collection[str], 
     return Protection(code, _ids(e2e, code, place), crc, counter, nibble, e2e.max_delta)
 
 
-def check_checksum_keys(own: MessageSettings, place: str) -> None:
+def _check_checksum_keys(own: MessageSettings, place: str) -> None:
     """Raise ConfigError, which starts with `place`, for keys of a checksum that do not go together."""
     if own.checksum is None:
         for key in ("checksum_signal", "checksum_counter"):

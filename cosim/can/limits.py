@@ -18,7 +18,7 @@ _DIGITS = 0.1  # raw steps: a limit that is off by less was written with few dig
 
 
 def notes_on(message: Message, signal: Signal, via: str, settings: BusSettings) -> Iterator[str]:
-    """Yield what who uses a signal on a bus should know, each with file and line."""
+    """Yield the notes for users of a signal on a bus, each with file and line."""
     line = f"line {signal.line}: " if signal.line else ""
     for note in (signal.note, limits_note(signal, settings)):
         if note:
@@ -26,7 +26,7 @@ def notes_on(message: Message, signal: Signal, via: str, settings: BusSettings) 
 
 
 def limits_note(signal: Signal, settings: BusSettings) -> str:
-    """Return that limits of a signal are no raw values, and what arrives for them; "" where they are.
+    """Return a sentence on limits that are no raw values, with what arrives for them; "" for none.
 
     The signal is one that `check_signal` passes. Where the bus wraps, limits are left out.
     """

@@ -21,10 +21,12 @@ class MessageLoad:
     """A message of a bus: `cycle` [s], payload `length` [bytes], and what its frames take.
 
     `least` and `most` are the shares of the time that frames without stuff bits and the longest ones take,
-    By `send_type` it may be sent less often: `cycle` then is the least time between two frames, and with
-    `bounded` false no minimum interval says that, but the communication step.
     `longest` [s] the time of the longest one with the interframe space, `response` [s] the longest time from
     sampling to the end of the frame under any phases of the others; None: it has no bound.
+
+    By its `send_type` it may be sent less often: `cycle` then is the least time between two frames, `least`
+    counts those that come in any case, and with `bounded` false no minimum interval says how soon the next
+    one may come, but the communication step.
     """
 
     name: str

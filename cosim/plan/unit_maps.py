@@ -13,7 +13,7 @@ from ..system.scaling import Scaling
 from ..units.conversion import conversion
 from ..units.definition import contradiction, defined
 from ..units.measure import (
-    BASE_UNITS,
+    TEMPERATURE,
     Affine,
     DifferentQuantityError,
     OpenUnitError,
@@ -25,7 +25,6 @@ from ..visible import visible_json
 
 _FACTOR = ", or `factor` with `convert = false` in its [[connect]]"
 
-_TEMPERATURE = tuple(int(base == "K") for base in BASE_UNITS)
 Definitions = Mapping[str, UnitOfMeasure]
 
 
@@ -181,7 +180,7 @@ def _note_zeros(source: End, target: End, others: Iterable[Definitions], warning
     except ConfigError:  # a name that both ends have, and nobody knows
         return
     kinds = [end.difference or unit.difference for end, unit in zip((source, target), units, strict=True)]
-    if units[0].exponents == _TEMPERATURE and kinds[0] != kinds[1]:
+    if units[0].exponents == TEMPERATURE and kinds[0] != kinds[1]:
         first, second = ("a difference" if each else "an absolute temperature" for each in kinds)
         said = f"{source} is {first} and {target} {second} (FMI: relativeQuantity)"
         _note(warnings, f"{said}: the number is taken as it is")

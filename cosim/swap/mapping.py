@@ -267,9 +267,8 @@ def _stimuli(
     for stimulus in stimuli:
         if isinstance(stimulus, CanLogEntry):
             to = {name: signal for name, signal in stimulus.to.items() if name not in absent}
-            left_out += [
-                f"the CAN log's {stimulus.to[name]} to {name}" for name in stimulus.to.keys() - to.keys()
-            ]
+            lost = [name for name in stimulus.to if name in absent]
+            left_out += [f"the CAN log's {stimulus.to[name]} to {name}" for name in lost]
             kept.append(stimulus.model_copy(update={"to": to}))
         elif stimulus.to in absent:
             left_out.append(f"the stimulus of {stimulus.to}")

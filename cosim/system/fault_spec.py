@@ -6,11 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from ..can.flaws import GREATEST
 from ..clock import LATEST
 from .toml import FiniteModel
-
-STANDARD, EXTENDED = 0x7FF, 0x1FFFFFFF
-"""The greatest identifiers."""
 
 
 class _FaultRecord(FiniteModel):
@@ -123,7 +121,7 @@ class Babble(_FaultRecord):
     node: str | None = Field(default=None, examples=["can0.EMD"])
     """The node that babbles, as "bus.node"; a fault has a bus or a node."""
 
-    id: int = Field(default=0, ge=0, le=EXTENDED)
+    id: int = Field(default=0, ge=0, le=GREATEST[True])
     """The identifier, which no message that is sent has."""
 
     extended: bool = False
@@ -139,8 +137,10 @@ class Babble(_FaultRecord):
     def _fits(self) -> Babble:
         if (self.bus is None) == (self.node is None):
             raise ValueError("'babble' has a 'bus' or a 'node', and not both")
-        if self.id > STANDARD and not self.extended:
-            raise ValueError(f"id = {self.id}: a standard one is {STANDARD} (0x7FF) at most; extended = true")
+        if self.id > GREATEST[False] and not self.extended:
+            raise ValueError(
+                f"id = {self.id}: a standard one is {GREATEST[False]} (0x7FF) at most; extended = true"
+            )
         return self
 
 

@@ -16,7 +16,7 @@ from fractions import Fraction
 
 from .annotations import annotated, objection
 from .grammar import LONGEST, Powers, parse, plain
-from .measure import BASE_UNITS, Exponents, UnitOfMeasure, UnknownUnitError
+from .measure import BASE_UNITS, TEMPERATURE, Exponents, UnitOfMeasure, UnknownUnitError
 from .names import doubt
 from .spellings import NO_UNIT, meanings
 from .symbols import Size, is_level, symbol
@@ -24,7 +24,6 @@ from .symbols import Size, is_level, symbol
 _NONE: Exponents = (0,) * len(BASE_UNITS)
 _RAD = BASE_UNITS.index("rad")
 _A_MINUTE: Powers = (("min", Fraction(-1)),)
-_TEMPERATURE: Exponents = tuple(1 if base == "K" else 0 for base in BASE_UNITS)
 _DELTA = re.compile(r"(?:[Dd]elta[ _]?|Δ[ _]?)(.+)")
 _PER = re.compile(r" per ", re.IGNORECASE)
 _SHORT = 5  # characters of a name whose capitals are tried
@@ -121,8 +120,8 @@ def _difference(name: str) -> Size | None:
         return None
     absolute = by_text(found[1])
     for unit in absolute.readings if absolute else ():
-        if unit.exponents == _TEMPERATURE and not unit.difference:
-            return Fraction(unit.factor).limit_denominator(1_000_000), _TEMPERATURE, Fraction(0)
+        if unit.exponents == TEMPERATURE and not unit.difference:
+            return Fraction(unit.factor).limit_denominator(1_000_000), TEMPERATURE, Fraction(0)
     return None
 
 

@@ -17,6 +17,8 @@ BASE_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 Exponents = tuple[int | Fraction, ...]
 """The exponents of BASE_UNITS, in their order."""
 
+TEMPERATURE: Exponents = tuple(int(base == "K") for base in BASE_UNITS)
+
 
 class UnknownUnitError(ConfigError):
     """A text that names no unit of measure."""

@@ -81,6 +81,7 @@ def frames(logs: Sequence[BusLog], clock: Clock) -> Iterator[Frame]:
 
 
 _Payload = tuple[float, int, int, Message, bytes | None, bool]
+"""Time [s], arbitration key, channel, message, payload (None: an error frame), True where a unit sent it."""
 
 
 def _time(clock: Clock, step: int, since: int) -> float:
@@ -94,7 +95,7 @@ def _errors(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
 
 
 def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
-    """Yield time [s], arbitration key, channel, message and payload of the frames of a log."""
+    """Yield the frames of a log; of one instant in the order of arbitration."""
     for instant, group in itertools.groupby(log.frames(), key=lambda frame: frame[:2]):
         step, since = instant
         time = _time(clock, step, since)
@@ -103,7 +104,7 @@ def _made(channel: int, log: FrameLog, clock: Clock) -> Iterator[_Payload]:
 
 
 def _payloads(channel: int, log: RawLog, clock: Clock) -> Iterator[_Payload]:
-    """Yield time [s], arbitration key, channel, message and payload of each transmission of one message."""
+    """Yield each transmission of one message."""
     message, order = log.message, log.message.priority
     encode = encoder(message)
     base = raw_values(message)

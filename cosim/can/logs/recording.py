@@ -10,7 +10,6 @@ import dataclasses
 import struct
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,8 +144,8 @@ def _seconds(nanoseconds: int) -> str:
     return f"{'-' if nanoseconds < 0 else ''}{whole}.{rest:09d}".rstrip("0").rstrip(".") + " s"
 
 
-def chosen_channel(recording: Recording, wanted: Any, bus: str, place: str) -> str:
-    """Return the channel of a log that is replayed: the wanted one, else the only one, or the bus' own.
+def chosen_channel(recording: Recording, wanted: int | str | None, bus: str, place: str) -> str:
+    """Return the channel of a log that is replayed: the wanted one, else the only one, else the bus' own.
 
     Raises ConfigError, which starts with `place`, with all channels where it is none of them.
     """

@@ -84,7 +84,7 @@ def test_two_variations_are_one_after_the_other():
         ({"loss": float("nan")}, "loss = nan"),
         ({"jitter": -1.0}, "jitter = -1.0: it is a number from 0 to"),
         ({"jitter": True}, "jitter = True"),
-        ({"seed": -1}, "seed = -1: it is a whole number from 0 on"),
+        ({"seed": -1}, "seed = -1: it is a whole number from 0 to 9223372036854775807"),
         ({"seed": 2**63}, "seed = 9223372036854775808"),
     ],
 )

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+from ...flaws import GREATEST
 from ...timing.lengths import FD_LENGTHS
 from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds
 
@@ -84,7 +85,7 @@ def _identifier(word: str, base: int) -> tuple[int, bool]:
     if found is None:
         raise ValueError(word)
     frame_id, extended = int(found[1], base), bool(found[2])
-    if frame_id > (0x1FFFFFFF if extended else 0x7FF):
+    if frame_id > GREATEST[extended]:
         raise ValueError(word)
     return frame_id, extended
 
