@@ -102,8 +102,7 @@ def test_frames_counters_and_bus_off_are_those_of_the_oracle(case, seed):
         for k in range(STEPS)
     }
     expected = bus.carried(payloads, STEPS, PS)
-    log = path.log_of("can0").frames
-    assert log is not None
+    (log,) = path.log_of("can0").frames
     assert [(end, m.name, data) for _, end, m, data in log.frames()] == [
         (frame.end, frame.message.name, frame.payload) for frame in expected
     ]
