@@ -26,7 +26,7 @@ from .plan import InputPlan, Link, MessagePlan
 from .sendings import Turns, other_send_types, send_times, staged
 from .slots import Slots
 from .steps import steps_in
-from .type_rules import check_boolean, check_no_text, check_types
+from .type_rules import check_boolean, check_no_text, check_types, check_whole
 from .unit_maps import Definitions, End, converts, scaled_map, with_unit
 from .unit_plan import Route
 
@@ -254,13 +254,7 @@ def _over_bus(
     ends = []
     for sink, to_receiver in zip(sinks, to_receivers, strict=True):
         receiver = _variable(work, sink)
-        if receiver.type != "Real" and not (
-            float(signal.scale).is_integer() and float(signal.offset).is_integer()
-        ):
-            raise ConfigError(
-                f"{place}: {'.'.join(sink)} is of type {receiver.type}, the signal has scale {signal.scale} "
-                f"and offset {signal.offset}"
-            )
+        check_whole(".".join(sink), receiver, signal, place)
         check_boolean(_variable(work, source), ".".join(sink), receiver, signal, settings.overflow, place)
         name = ".".join(sink)
         work.network.drive(name, InputPlan(work.slots.valid[sink], None, ""), place)
@@ -325,8 +319,8 @@ def _message(
     delay = steps_in(settings.delay, step_size, f"{where}.delay") if settings.timing == "instant" else 0
     framing = framing_of(message, settings, connected, where, str(work.system.path.parent))
     if framing is not None:
-        own = settings.of_message(name)
-        framing = dataclasses.replace(framing, status=_status_inputs(work, own.status, message, where))
+        status = status_inputs(work.network, work.system, work.interfaces, work.slots, f"{bus}.{name}")
+        framing = dataclasses.replace(framing, status=status)
     senders = work.senders[bus, name]
     after = None
     if algorithm == "gauss_seidel":
@@ -367,18 +361,20 @@ def _message(
         )
 
 
-def _status_inputs(work: _Connector, names: Sequence[str], message: Message, place: str) -> tuple[int, ...]:
-    """Return the mailboxes of the inputs that receive a message's status; those left out have none."""
-    place = f"{place}.messages.{message.name}.status"
-    found = []
-    for full in names:
-        if full.partition(".")[0] not in work.system.file.units:
-            raise ConfigError(f"{place}: there is no unit of '{full}'{nearest(full, work.interfaces)}")
-        if full.partition(".")[0] in work.interfaces:
-            unit, name = _split(full, ("input",), work.interfaces, place)
-            check_no_text(full, _variable(work, (unit, name)), f"the status of {message.name}", place)
-            work.network.drive(full, InputPlan(work.slots.valid[unit, name], None, ""), place)
-            found.append(work.network.add_mailbox(unit, name, work.slots, f"the status of {message.name}"))
+def status_inputs(
+    network: Network, system: System, interfaces: Mapping[str, UnitInterface], slots: Slots, via: str
+) -> tuple[int, ...]:
+    """Return the mailboxes of inputs that receive the status of "bus.message"; those left out have none."""
+    bus, _, message = via.partition(".")
+    place, found = f"{system.path}: buses.{bus}.messages.{message}.status", []
+    for full in system.file.buses[bus].of_message(message).status:
+        if full.partition(".")[0] not in system.file.units:
+            raise ConfigError(f"{place}: there is no unit of '{full}'{nearest(full, interfaces)}")
+        if full.partition(".")[0] in interfaces:
+            unit, name = network.input_of(full, interfaces, place)
+            check_no_text(full, interfaces[unit].variables[name], f"the status of {message}", place)
+            network.drive(full, InputPlan(slots.valid[unit, name], None, ""), place)
+            found.append(network.add_mailbox(unit, name, slots, f"the status of {message}"))
     return tuple(found)
 
 

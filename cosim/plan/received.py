@@ -17,10 +17,10 @@ from ..system.system import System
 from ..system.values import as_double, of_type
 from ..texts import Texts
 from ..units.measure import Affine
-from .connections import Network
+from .connections import Network, status_inputs
 from .plan import InputPlan
 from .slots import Slots
-from .type_rules import check_no_text
+from .type_rules import check_no_text, check_whole
 from .unit_maps import Definitions, End, converts, scaled_map, with_unit
 
 Wanted = list[tuple[Message, list[SignalRoute]]]
@@ -123,13 +123,7 @@ class Received:
             unit, name = self.network.input_of(full, self.interfaces, place)
             variable = self.interfaces[unit].variables[name]
             check_no_text(full, variable, via, place)
-            if variable.type != "Real" and not (
-                float(signal.scale).is_integer() and float(signal.offset).is_integer()
-            ):
-                raise ConfigError(
-                    f"{place}: {full} is of type {variable.type}, the signal has scale {signal.scale} and "
-                    f"offset {signal.offset}"
-                )
+            check_whole(full, variable, signal, place)
             slot = self.slots.valid[unit, name]
             self.network.drive(full, InputPlan(slot, None, ""), place)
             mailbox = self.network.add_mailbox(unit, name, self.slots, f"{via} of {entry.can_log}")
@@ -156,18 +150,6 @@ class Received:
         scaling = Scaling() if converts(on_bus, end, others) else receiver.scaling
         return scaled_map(on_bus, end, scaling, others, receiver.place, self.network.warnings)
 
-    def status_inputs(self, bus: str, message: Message) -> tuple[int, ...]:
+    def status_inputs(self, bus: str, message: str) -> tuple[int, ...]:
         """Return the mailboxes of the inputs that receive a message's status. Raises ConfigError."""
-        place = f"{self.system.path}: buses.{bus}.messages.{message.name}.status"
-        found = []
-        for full in self.system.file.buses[bus].of_message(message.name).status:
-            if full.partition(".")[0] in self.interfaces:
-                unit, name = self.network.input_of(full, self.interfaces, place)
-                check_no_text(
-                    full, self.interfaces[unit].variables[name], f"the status of {message.name}", place
-                )
-                self.network.drive(full, InputPlan(self.slots.valid[unit, name], None, ""), place)
-                found.append(
-                    self.network.add_mailbox(unit, name, self.slots, f"the status of {message.name}")
-                )
-        return tuple(found)
+        return status_inputs(self.network, self.system, self.interfaces, self.slots, f"{bus}.{message}")

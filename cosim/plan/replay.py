@@ -52,7 +52,8 @@ def with_replays(system: System, scenario: Scenario, received: Received, clock: 
         _check_matches(recording, channel, wanted, database, place)
         first = len(network.messages)
         replayed = _timed(system, entry, recording, channel, variants, first, clock)
-        made = [_message(system, entry.bus, variant, clock, received) for variant in variants.found]
+        status = {m.name: received.status_inputs(entry.bus, m.name) for m, _ in wanted}
+        made = [_message(system, entry.bus, each, clock, status) for each in variants.found]
         plan = _plan(entry.bus, replayed, made, wanted, clock, place)
         network.messages += made
         network.warnings += _notes(plan, wanted, database, sent, clock)
@@ -162,13 +163,18 @@ def _timed(
     return Replayed(recording, channel, offset, clock, system.file.buses[entry.bus].delay, numbers)
 
 
-def _message(system: System, bus: str, variant: _Variant, clock: Clock, received: Received) -> MessagePlan:
-    """Return the plan of a message, or of a page of it, whose frames come from a log."""
+def _message(
+    system: System, bus: str, variant: _Variant, clock: Clock, status: Mapping[str, tuple[int, ...]]
+) -> MessagePlan:
+    """Return the plan of a message, or of a page of it, whose frames come from a log.
+
+    `status` are the mailboxes of each message's status.
+    """
     settings, message = system.file.buses[bus], variant.message
     names = [route.signal.name for route in variant.routes]
     place, folder = f"{system.path}: buses.{bus}", str(system.path.parent)
     framing = framing_of(message, settings, names, place, folder) or Framing()
-    framing = dataclasses.replace(framing, status=received.status_inputs(bus, message))
+    framing = dataclasses.replace(framing, status=status[message.name])
     every, first = 1, 0
     if framing.watched(settings.of_message(message.name)):
         every, first = send_steps(message, clock.step, str(system.path), bus)

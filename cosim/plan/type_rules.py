@@ -37,6 +37,17 @@ def check_no_text(name: str, variable: VariableInfo, via: str, place: str) -> No
         )
 
 
+def check_whole(name: str, receiver: VariableInfo, signal: Signal, place: str) -> None:
+    """Raise ConfigError for a receiver of whole numbers of a signal that may carry others."""
+    if receiver.type != "Real" and not (
+        float(signal.scale).is_integer() and float(signal.offset).is_integer()
+    ):
+        raise ConfigError(
+            f"{place}: {name} is of type {receiver.type}, the signal has scale {signal.scale} and "
+            f"offset {signal.offset}"
+        )
+
+
 def check_boolean(
     sender: VariableInfo, name: str, receiver: VariableInfo, signal: Signal, overflow: Overflow, place: str
 ) -> None:

@@ -183,6 +183,35 @@ def test_pages_extended_identifiers_and_can_fd(tmp_path: Path, engine: Any) -> N
     assert results["ecu.acceleration_bound"].tolist()[1:] == [1.0] * 3
 
 
+def paged(folder: Path, status: str) -> Results:
+    """Return a run that hears two pages of a message, 0.3 s long, and whose timeout has a status."""
+    database = (
+        'VERSION ""\nNS_ :\nBS_:\nBU_: A B\nBO_ 256 Paged: 3 A\n'
+        ' SG_ Page M : 0|8@1+ (1,0) [0|0] "" B\n SG_ One m1 : 8|8@1+ (1,0) [0|0] "km/h" B\n'
+        ' SG_ Two m2 : 8|8@1+ (1,0) [0|0] "km/h" B\n'
+    )
+    own = f"cycle_time = 0.01\ntimeout = 3\nstatus = ['{status}']\n"
+    path = system(folder, f"[buses.can0.messages.Paged]\n{own}", database)
+    head, _, bus = path.read_text().partition("[[connect]]")
+    path.write_text(f"{head}[[connect]]{bus.partition('[[connect]]')[2]}")
+    lines = [f"({k / 100:.2f}) can0 100#0{1 + k % 2}0700" for k in range(31)]
+    (folder / "a.log").write_text("\n".join(lines))
+    to = "to = {'ecu.speed_measured' = 'Paged.One', 'ecu.speed_bound' = 'Paged.Two'}"
+    text = f"[[stimulus]]\ncan_log = 'a.log'\nbus = 'can0'\n{to}\n"
+    return simulate(path, scenario(folder, text), stop_time=0.5)
+
+
+def test_the_pages_of_a_message_of_a_log_have_one_status(tmp_path: Path) -> None:
+    status = paged(tmp_path, "ecu.acceleration_bound")["ecu.acceleration_bound"].tolist()
+    assert status == [0.0] * status.index(1.0) + [1.0] * (51 - status.index(1.0))
+    assert 32 <= status.index(1.0) <= 34  # three cycles after the last frame
+
+
+def test_a_status_of_a_message_of_a_log_names_a_unit(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"Paged\.status: there is no unit of 'ecuu\.x' \(did you mean"):
+        paged(tmp_path, "ecuu.x")
+
+
 def test_frames_of_a_log_are_received_ones_in_the_log_of_the_run(tmp_path: Path) -> None:
     text = f"{HEAD}{FULL}[[stimulus]]\ncan_log = '{candump(tmp_path, (3.0, 1), (3.0152, 2))}'\nbus = 'can0'\n"
     more = "[[connect]]\nfrom = 'ecu.throttle'\nvia = 'can0.VCU_Request.VCU_ThrottleRequest'\n"

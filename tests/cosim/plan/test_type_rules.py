@@ -9,7 +9,7 @@ import pytest
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.plan.type_rules import check_boolean, check_types
+from evcosim.cosim.plan.type_rules import check_boolean, check_types, check_whole
 
 FLAG = VariableInfo("b", "Boolean", "input")
 SENDERS = {
@@ -73,3 +73,13 @@ def test_a_direct_connection_takes_what_the_receiver_can_hold(sender: str, recei
         return
     with pytest.raises(ConfigError, match=f"here: a.y is of type {sender}, b.u of type {receiver}"):
         check_types(*ends)
+
+
+@pytest.mark.parametrize(("scale", "offset"), [(0.5, 0), (1, 0.5)])
+def test_whole_receivers_take_whole_signals(scale: float, offset: float) -> None:
+    parts = Signal("s", 0, 8, scale=scale, offset=offset)
+    check_whole("u.x", VariableInfo("x", "Real"), parts, "here")
+    check_whole("u.x", VariableInfo("x", "Integer"), Signal("s", 0, 8, scale=2, offset=-3), "here")
+    said = f"here: u.x is of type Integer, the signal has scale {scale} and offset {offset}"
+    with pytest.raises(ConfigError, match=said):
+        check_whole("u.x", VariableInfo("x", "Integer"), parts, "here")
