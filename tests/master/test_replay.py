@@ -285,7 +285,7 @@ def test_what_does_not_fit_is_refused_before_the_first_step(tmp_path: Path, key:
         ("(1.0) can0 148#R", "a.log has no frame with data"),
         ("", "a.log has no frame with data"),
         ("(1.0) a 148#0000000000000000\n(1.0) b 148#0000000000000000", "a.log has several channels, and none is named can0: a (1 frames), b (1 frames)"),
-        ("(1.0) can0 148#0000000000000000\n(0.5) can0 100#0000", "a.log: channel can0: at 2 the time goes back from 1 s to 0.5 s"),
+        ("(1.0) can0 148#0000000000000000\n(0.5) can0 100#0000", "a.log: channel can0: at line 2 the time goes back from 1 s to 0.5 s"),
         ("(1.0) can0 148#0000000000000000\n(junk", "a.log: line 2: no line of candump -L"),
     ],
 )  # fmt: skip # one line for each

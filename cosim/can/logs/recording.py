@@ -83,6 +83,7 @@ def recorded(
     `variant` returns the number with which a frame's row is kept, None for a frame that is not kept. Raises
     ConfigError where the log cannot be read or kept.
     """
+    form = format_of(path)
     store = RowStore(WIDTH, what=f"the frames of {path}", advice="a log of fewer frames needs less")
     seen: dict[str, dict[Key, Seen]] = {}
     numbers: dict[str, int] = {}
@@ -108,7 +109,7 @@ def recorded(
             first = time if first is None else min(first, time)
             last = time if last is None else max(last, time)
             if time < latest.get(channel, time) and channel not in backward:
-                backward[channel] = _backward(frame, latest[channel])
+                backward[channel] = _backward(frame, latest[channel], form.place)
             latest[channel] = time
             length = lengths.get(key)
             if length is None:
@@ -123,9 +124,8 @@ def recorded(
                 if len(rows) >= _ROOM:
                     _keep(store, rows)
     _keep(store, rows)
-    resolution = format_of(path).resolution
     return Recording(
-        path, store.table(), tuple(seen), seen, backward, first, last, others, resolution
+        path, store.table(), tuple(seen), seen, backward, first, last, others, form.resolution
     )  # fmt: skip # what was found
 
 
@@ -135,8 +135,8 @@ def _keep(store: RowStore, rows: bytearray) -> None:
     rows.clear()
 
 
-def _backward(frame: LoggedFrame, before: int) -> str:
-    return f"at {frame.place} the time goes back from {_seconds(before)} to {_seconds(frame.time)}"
+def _backward(frame: LoggedFrame, before: int, place: str) -> str:
+    return f"at {place} {frame.place} the time goes back from {_seconds(before)} to {_seconds(frame.time)}"
 
 
 def _seconds(nanoseconds: int) -> str:

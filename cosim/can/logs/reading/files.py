@@ -6,7 +6,7 @@ import contextlib
 import dataclasses
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Literal
 
 from ....errors import ConfigError
 from ....reading import require_file
@@ -17,20 +17,24 @@ from .logged import LoggedFrame
 
 @dataclasses.dataclass(frozen=True)
 class Format:
-    """A format: `reading` yields the frames of a file; times are rounded to `resolution` [ns]."""
+    """A format: `reading` yields the frames of a file; times are rounded to `resolution` [ns].
+
+    `place` is what the place of a frame counts.
+    """
 
     reading: Callable[[BinaryIO, Path], Iterator[LoggedFrame]]
     resolution: int
+    place: Literal["line", "byte", "frame"]
 
 
 FORMATS: dict[str, Format] = {
-    ".log": Format(candump.reading, 1000),
-    ".asc": Format(asc.reading, 1000),
-    ".blf": Format(blf.reading, 1),
-    ".mf4": Format(mf4.reading, 1),
-    ".pcapng": Format(pcapng.reading, 1),
-    ".trc": Format(libraries.reading_trc, 1000),
-    ".csv": Format(libraries.reading_csv, 1000),
+    ".log": Format(candump.reading, 1000, "line"),
+    ".asc": Format(asc.reading, 1000, "line"),
+    ".blf": Format(blf.reading, 1, "byte"),
+    ".mf4": Format(mf4.reading, 1, "frame"),
+    ".pcapng": Format(pcapng.reading, 1, "byte"),
+    ".trc": Format(libraries.reading_trc, 1000, "frame"),
+    ".csv": Format(libraries.reading_csv, 1000, "frame"),
 }
 
 

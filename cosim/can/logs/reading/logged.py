@@ -20,7 +20,8 @@ LATEST = 1 << 62
 class LoggedFrame(NamedTuple):
     """One frame: `time` in whole ns as the file counts it, `channel` its interface as the file names it.
 
-    `place` is the line of a text, else the byte of the file at which it, or what holds it, begins.
+    `place` is the line of a text, else the byte of the file at which it, or what holds it, begins; where a
+    library reads the file, the number of the frame, from 1 on (`files.Format.place`).
     """
 
     time: int

@@ -30,7 +30,7 @@ def test_frames_are_kept_with_time_channel_and_payload_and_all_are_counted(tmp_p
     assert (seen.frames, seen.short) == (2, 0)  # one is kept by nobody, and seen
     short = found.seen["b"][0x123, False]
     assert (short.frames, short.short, short.least) == (2, 1, 1)
-    assert found.backward == {"b": "at 4 the time goes back from 1.5 s to 1.25 s"}
+    assert found.backward == {"b": "at line 4 the time goes back from 1.5 s to 1.25 s"}
     assert found.count("a") == 4
 
 
