@@ -1,4 +1,6 @@
-"""The bus budget of a system: its own metric over delay, resolution and cycle of its buses, each by itself.
+"""The bus budget of a system: its own metric over what a bus does to signals, each by itself.
+
+Varied are delay, resolution and cycle, and if it is wanted timing, jitter and lost frames.
 
 A point is one run, or one for each of several seeds, with a variation of all buses
 (`bus_settings.BusVariation`); the nominal point, the system as its file says, is one of each series. A point

@@ -44,7 +44,7 @@ class RunOptions(TypedDict, total=False):
     """Leave the buses out: unit conversion only (default: False)."""
 
     bus: BusVariation | None
-    """Delay, resolution and cycle of all buses in this run."""
+    """Changes of all buses in this run: delay, resolution, cycle, timing, jitter and lost frames."""
 
     delay: float | None
     """Time [s] by which every message of every bus arrives later than the files say, a multiple of the

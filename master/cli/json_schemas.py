@@ -255,7 +255,7 @@ _BUDGET = record(
         "limit": number("The limit."),
         "kind": text('"max": broken above it; "min": broken below it.'),
         "series": listed(
-            "Delay, resolution and cycle.",
+            "Delay, resolution and cycle; with --seeds timing and jitter, and lost frames too.",
             record(
                 "A series.",
                 {

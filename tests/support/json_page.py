@@ -13,11 +13,12 @@ from typing import Any
 from evcosim.master.cli.json_schemas import SCHEMAS
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
-HEAD = """# What `--json` prints
+HEAD = f"""# What `--json` prints
 
-Eight verbs print JSON for programs on stdout with `--json`; warnings and errors stay on stderr, and the exit
-code is the same. A number that is not finite is `null`. `evcosim schema --json-of run` prints the JSON schema
-of one of them. A new version may add keys; the [changelog](../CHANGELOG.md) says of any other change.
+With `--json` {len(SCHEMAS)} verbs print JSON for programs on stdout; warnings and errors stay on stderr, and
+the exit code is the same. A number that is not finite is `null`. `evcosim schema --json-of run` prints the
+JSON schema of one of them. A new version may add keys; the [changelog](../CHANGELOG.md) says of any other
+change.
 
 ```sh
 evcosim run scooter --stop-time 5 --json
