@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 SLOWEST = 3600.0
 """The longest cycle time and start delay [s] that a system file gives a message."""
@@ -76,6 +76,10 @@ class MessageSettings(BaseModel):
     on_timeout: Literal["hold", "initial", "sna"] = "hold"
     """Values of the receivers after a timeout: the last ones (hold), those before the first frame (initial),
     or those of the signals' "not available" codes, where they have one (sna)."""
+
+    initial: dict[str, FiniteFloat] = Field(default={}, examples=[{"EMD_VehicleSpeed": 0.0}])
+    """Values of signals at their receivers before the first frame, and after a timeout with `on_timeout =
+    "initial"`, in the signals' units of measure; `initial` of a connection counts before it."""
 
     e2e: E2eSettings | None = None
     """Protection by counter and checksum: frames that break it are not taken."""

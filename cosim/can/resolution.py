@@ -15,7 +15,7 @@ def with_resolution(signal: Signal, resolution: Resolution) -> Signal:
     DBC's signal, of which the last raw value is one. A float signal has no resolution that a factor changes.
     """
     if resolution == "ideal":
-        low, high = _physical_range(signal)
+        low, high = physical_range(signal)
         return dataclasses.replace(
             signal, scale=1, offset=0, minimum=low, maximum=high, is_float=True, length=64,
             start_raw=signal.start_raw * signal.scale + signal.offset, not_available=None, choices={},
@@ -28,7 +28,7 @@ def with_resolution(signal: Signal, resolution: Resolution) -> Signal:
     return dataclasses.replace(signal, scale=int(scale) if whole else scale)
 
 
-def _physical_range(signal: Signal) -> tuple[float, float]:
+def physical_range(signal: Signal) -> tuple[float, float]:
     """Return the least and the greatest value that can arrive, in the signal's unit."""
     ends = sorted(float(raw * signal.scale + signal.offset) for raw in signal.raw_range)
     low = ends[0] if signal.minimum is None else max(ends[0], signal.minimum)

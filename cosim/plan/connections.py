@@ -17,11 +17,10 @@ from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, VariableInfo
 from ..system.scaling import Scaling
 from ..system.system import Algorithm, Connection, System
-from ..system.values import as_double, of_type
-from ..texts import Texts
 from ..units.definition import names_difference
 from ..units.measure import Affine
 from .buses import check_one_sender, foreign_senders, open_buses
+from .initials import initial_of
 from .plan import InputPlan, Link, MessagePlan
 from .sendings import Turns, other_send_types, send_times, staged
 from .slots import Slots
@@ -259,9 +258,10 @@ def _over_bus(
         name = ".".join(sink)
         work.network.drive(name, InputPlan(work.slots.valid[sink], None, ""), place)
         mailbox = work.network.add_mailbox(*sink, work.slots, f"{connection.source} via {connection.via}")
-        if connection.initial is not None:
-            initial = of_type(connection.initial, receiver, f"{place}: initial")
-            work.network.initial[name] = as_double(receiver, initial, f"{place}: initial", Texts())
+        via = connection.via or ""
+        initial = initial_of(connection.initial, via, to_receiver, receiver, work.system, place)
+        if initial is not None:
+            work.network.initial[name] = initial
         ends.append((mailbox, to_receiver))
     route = SignalRoute(signal=signal, source=work.slots.valid[source], to_bus=to_bus, sinks=tuple(ends))
     work.signal_routes.setdefault(key, []).append(route)

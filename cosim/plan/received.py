@@ -10,14 +10,13 @@ from ..can.channel import SignalRoute
 from ..can.database import Message, Signal
 from ..can.logs.recording import Key, key_of
 from ..errors import ConfigError, nearest
-from ..interface import UnitInterface
+from ..interface import UnitInterface, Value
 from ..system.can_log_spec import CanLogEntry
 from ..system.scaling import Scaling
 from ..system.system import System
-from ..system.values import as_double, of_type
-from ..texts import Texts
 from ..units.measure import Affine
 from .connections import Network, status_inputs
+from .initials import initial_of
 from .plan import InputPlan
 from .slots import Slots
 from .type_rules import check_no_text, check_whole
@@ -34,7 +33,7 @@ class _Receiver:
     signal: str
     to: Sequence[str]
     scaling: Scaling
-    initial: object
+    initial: Value | None
     place: str
 
 
@@ -127,10 +126,11 @@ class Received:
             slot = self.slots.valid[unit, name]
             self.network.drive(full, InputPlan(slot, None, ""), place)
             mailbox = self.network.add_mailbox(unit, name, self.slots, f"{via} of {entry.can_log}")
-            if receiver.initial is not None:
-                initial = of_type(receiver.initial, variable, f"{place}: initial")
-                self.network.initial[full] = as_double(variable, initial, f"{place}: initial", Texts())
-            sinks.append((mailbox, self._map(signal, via, entry.bus, unit, name, receiver)))
+            map_ = self._map(signal, via, entry.bus, unit, name, receiver)
+            initial = initial_of(receiver.initial, via, map_, variable, self.system, place)
+            if initial is not None:
+                self.network.initial[full] = initial
+            sinks.append((mailbox, map_))
         same = next((route for route in routes if route.signal == signal), None)
         if same is not None:
             routes.remove(same)

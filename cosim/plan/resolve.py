@@ -29,6 +29,7 @@ from .connections import Network, connect
 from .events import scheduled
 from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
+from .initials import check_initials
 from .plan import Drive, InputPlan, Plan
 from .received import Received
 from .recorded import Record
@@ -83,6 +84,7 @@ def _resolved(
     turns = _turns(system, entries, clock)
     network = connect(system, interfaces, slots, turns, clock, algorithm, ideal)
     replays = with_replays(system, scenario, Received(system, interfaces, network, slots, ideal), clock)
+    network.warnings += check_initials(system, network.databases, network.messages)
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     named, started = by_kind(options, interfaces, network)
     parameters = all_parameters(system, scenario, entries, interfaces, named)

@@ -100,6 +100,9 @@ def test_offsets_and_delays_move_the_log_and_initial_values_stand_before(tmp_pat
     assert heard(results) == [0, 2, 2, 3, 3] and results.manifest["replays"][0]["before"] == 1
     late = replay(tmp_path, log, of_system="delay = 0.01\n", stop_time=0.04)
     assert heard(late) == [0, 1, 1, 2, 2]
+    of_system = "[buses.can0.messages.EMD_Status]\ninitial = { EMD_VehicleSpeed = 7.0 }\n"
+    later = replay(tmp_path, log, keys="time_offset = 9.98", of_system=of_system, stop_time=0.03)
+    assert heard(later) == [7, 7, 1, 1]
 
 
 FAULTS = {

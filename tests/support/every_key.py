@@ -59,6 +59,8 @@ timing = "frame"
 cycle_time = 0.01
 jitter = 0.001
 timeout = 3
+on_timeout = "initial"
+initial = { EMD_VehicleSpeed = 1.0 }
 [buses.can0.messages.VCU_Request]
 send_type = "cyclic_and_on_change"
 cycle_time = 0.02
@@ -74,12 +76,12 @@ max_delta = 1
 from = "vehicle.speed"
 to = ["ecu.speed_measured"]
 via = "can0.EMD_Status.EMD_VehicleSpeed"
-initial = 0.0
 needed_where = { "ecu.gain" = 0.05 }
 [[connect]]
 from = "ecu.throttle"
 to = ["vehicle.throttle"]
 via = "can0.VCU_Request.VCU_ThrottleRequest"
+initial = 0.0
 """
     + _SHOWN
     + """[budget]
