@@ -32,9 +32,8 @@ def with_faults(plan: Plan, system: System, scenario: Scenario, varied: BusVaria
     if plan.ideal:
         return dataclasses.replace(plan, warnings=(*plan.warnings, *_without_bus(scenario)))
     losses = _losses(plan, varied) if varied is not None and varied.loss else []
-    given = [*scenario.file.faults, *losses]
-    place = str(scenario.path or "bus variation")
-    faults = planned(given, plan.messages, plan.clock.start, place)
+    faults = planned(scenario.file.faults, plan.messages, plan.clock.start, str(scenario.path))
+    faults += planned(losses, plan.messages, plan.clock.start, "bus variation: loss")
     messages = framed(plan.messages, faults)
     struck = {fault.bus for fault in faults if isinstance(fault.fault, BusOff)}
     return dataclasses.replace(

@@ -249,3 +249,8 @@ def test_nothing_to_vary():
         varied(System(Path("s.toml"), file), BusVariation(), 0.01)
     with pytest.raises(ConfigError, match=r'scooter.toml: buses.can0.resolution = "ideal": .* no frames'):
         Simulation("scooter", bus=BusVariation(resolution="ideal"), log_frames=True)
+
+
+def test_a_loss_without_frames_is_refused_as_one_of_the_variation() -> None:
+    with pytest.raises(ConfigError, match=r"^bus variation: loss: .*make no frames"):
+        simulate("scooter", "fig9", stop_time=1.0, bus=BusVariation(loss=0.1, resolution="ideal"))
