@@ -1,7 +1,7 @@
-"""Points in the numbers of a CSV file that may divide thousands, as German ones do: 1.500 is 1.5, or 1500.
+"""Points and commas in the numbers of a CSV file that may divide thousands: 1.500 is 1.5, or 1500.
 
-Where values are separated by ';' or a tab, and no number of the columns that are read shows that its point is
-a decimal one, both are possible.
+Points divide them in German numbers, commas in English ones. Where values are separated by ';' or a tab, and
+no number of the columns that are read shows that the mark is a decimal one, both are possible.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from .csv_numbers import CsvFile
 from .csv_text import number_in
 
-_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}\.\d{3}")
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
+_NAMES = {".": "point", ",": "comma"}
 
 
 def thousands_note(file: CsvFile, columns: Sequence[int]) -> str:
@@ -22,23 +23,26 @@ def thousands_note(file: CsvFile, columns: Sequence[int]) -> str:
     """
     if file.separator == ",":
         return ""
-    first, commas = None, False
+    first, elsewhere = None, set()
     for line, row in file.full_rows():
         for j, cell in enumerate(row):
             text = cell.strip()
-            if "," in text:
-                commas |= number_in(text, file.separator) is not None
-            elif j in columns and "." in text:
-                if not _GROUPED.fullmatch(text):
-                    if number_in(text, file.separator) is not None:
-                        return ""
-                elif first is None:
-                    first = (line, j, text)
+            mark = "." if "." in text else "," if "," in text else ""
+            if not mark or number_in(text, file.separator) is None:
+                continue
+            if j not in columns:
+                elsewhere.add(mark)
+            elif not _GROUPED.fullmatch(text):
+                return ""
+            elif first is None:
+                first = (line, j, text, mark)
     if first is None:
         return ""
-    line, j, text = first
-    other = "; other columns have decimal commas" if commas else ""
+    line, j, text, mark = first
+    other = "," if mark == "." else "."
+    more = f"; other columns have decimal {_NAMES[other]}s" if other in elsewhere else ""
     return (
-        f"{file.path}: line {line}, column '{file.names[j]}': {text!r} is read as {float(text):g}; where the "
-        f"point divides thousands, it is {text.replace('.', '')}: write the numbers without it{other}"
+        f"{file.path}: line {line}, column '{file.names[j]}': {text!r} is read as "
+        f"{number_in(text, file.separator):g}; where the {_NAMES[mark]} divides thousands, it is "
+        f"{text.replace(mark, '')}: write the numbers without it{more}"
     )
