@@ -6,11 +6,9 @@ import dataclasses
 import functools
 import itertools
 import math
-import re
 from collections.abc import Mapping
 
 from ..clock import Clock
-from ..csv_numbers import CsvFile
 from ..csv_thousands import thousands_note
 from ..errors import ConfigError, nearest
 from ..interface import UnitInterface, Value, VariableInfo
@@ -18,13 +16,14 @@ from ..results.results import ResultVariable
 from ..system.held_stimuli import held_stimulus
 from ..system.run_options import RunOptions
 from ..system.scenario import Scenario
-from ..system.stimuli import Rows, csv_of, stimulus
+from ..system.stimuli import csv_of, stimulus
 from ..system.system import Algorithm, Experiment, System, UnitEntry
 from ..system.values import as_double
 from ..texts import Texts
 from ..units.definition import names_difference
-from ..units.measure import Affine, DifferenceError
+from ..units.measure import Affine
 from .bus_load import bus_loads, check_load
+from .column_units import note_units
 from .connections import Network, connect
 from .events import scheduled
 from .faults import with_faults
@@ -39,8 +38,6 @@ from .steps import check_kept, steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
 from .unreached import after_stop, out_of_time
-
-_UNIT_IN_NAME = re.compile(r".*[\[(]([^][()]+)[\])]")
 
 
 def participating(system: System, scenario: Scenario) -> dict[str, UnitEntry]:
@@ -276,12 +273,14 @@ def _drives(
                 target, name=f"the stimulus of {entry.to}", unit=entry.unit, advice=advice
             )
             map_ = unit_map(given, target, (), f"{place}.unit", network.warnings)
-        elif entry.csv is not None:
-            where = "the stimulus" if scenario.path else "a stimulus of a system"
-            _note_unit_of_column(csv_of(entry, place, scenario.path), target, where, network.warnings)
         if entry.csv is not None:
             file, rows = csv_of(entry, place, scenario.path)
-            network.warnings += filter(None, [thousands_note(file, (rows.time, rows.value))])
+            columns, where = (
+                (rows.time, rows.value),
+                "the stimulus" if scenario.path else "a stimulus of a system",
+            )
+            network.warnings += note_units(file, columns, target, entry.unit, where)
+            network.warnings += filter(None, [thousands_note(file, columns)])
         slot = slots.valid[unit, name]
         network.drive(
             entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"
@@ -295,30 +294,6 @@ def _drives(
             drives.append(Drive(entry.to, slot, signal, Affine()))
     _mailboxes_of_the_rest(interfaces, network, slots)
     return tuple(drives)
-
-
-def _note_unit_of_column(column: tuple[CsvFile, Rows], target: End, where: str, warnings: list[str]) -> None:
-    """Add a warning where the name of a CSV column says another unit than its input's, as `speed [km/h]`.
-
-    `where` can a unit of measure be given.
-    """
-    file, rows = column
-    name = file.names[rows.value]
-    said = _UNIT_IN_NAME.fullmatch(name)
-    if said is None or target.bare:
-        return
-    try:
-        map_: Affine | None = unit_map(dataclasses.replace(target, unit=said[1]), target, (), "", [])
-        then = f'`unit = "{said[1]}"` in {where} converts them'
-    except ConfigError as error:
-        if not isinstance(error.__cause__, DifferenceError):
-            return  # it is no unit of measure, or of another quantity
-        map_, then = None, str(error.__cause__)
-    if map_ != Affine():
-        warnings.append(
-            f"{file.path}: column '{name}': its values are taken in [{target.unit}], the unit of "
-            f"{target.name}; {then}"
-        )
 
 
 def _mailboxes_of_the_rest(interfaces: Mapping[str, UnitInterface], network: Network, slots: Slots) -> None:

@@ -31,9 +31,9 @@ def noted(folder: Path, text: str, columns=(0, 1)) -> str:
         (HEADER.replace(";", "\t") + "0\t1.500\t\n", "'1.500' is read as 1.5"),
         (HEADER.replace(";", "\t") + "0\t1,500\t\n1\t999\t\n2\t12,750\t\n",
          "line 2, column 'speed': '1,500' is read as 1.5; where the comma divides thousands, it is 1500"),
-        (f"{HEADER}0;900;\n1;-12,750;0.25\n", "'-12,750' is read as -12.75; where the comma divides thousands, "
-                                             "it is -12750: write the numbers without it; other columns have "
-                                             "decimal points"),
+        (f"{HEADER}0;900;\n1;-12,750;0.25\n", "'-12,750' is read as -12.75; where the comma divides "
+                                             "thousands, it is -12750: write the numbers "
+                                             "without it; other columns have decimal points"),
         (f"{HEADER}999;5;\n1,000;6;0,5\n", "column 'time': '1,000' is read as 1; where the comma"),
     ],
 )  # fmt: skip # a table
