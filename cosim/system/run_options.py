@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
 from numbers import Real
 from pathlib import Path
 from typing import Any, Literal, TypedDict, cast, get_args
+
+import numpy as np
 
 from ..can.bus_settings import LONGEST_DELAY, BusVariation
 from ..clock import LATEST
@@ -100,12 +103,15 @@ def check_options(options: Mapping[str, Any]) -> None:
 
 
 def in_floats(options: RunOptions) -> RunOptions:
-    """Return options whose numbers of other types than Python's own, as a Fraction, are floats."""
+    """Return options whose numbers of other types than Python's own, as a Fraction, are floats.
+
+    A Decimal, a number of numpy and an array of no dimension are such numbers too.
+    """
     given = {name: options.get(name) for name in ("delay", "stop_time", "step_size", "tolerance")}
     numbers = {
-        name: float(value)
+        name: float(cast(float, value))
         for name, value in given.items()
-        if isinstance(value, Real) and not isinstance(value, int | float)
+        if _is_number(value) and not isinstance(value, int | float)
     }
     return cast(RunOptions, {**options, **numbers})
 
@@ -116,12 +122,20 @@ def _one_of(kind: Any) -> tuple[Callable[[Any], bool], str]:
     return lambda value: isinstance(value, str) and value in known, f"must be {' or '.join(map(repr, known))}"
 
 
+def _is_number(value: Any) -> bool:
+    """Return True for a real number of any type, also as an array of no dimension."""
+    if isinstance(value, np.ndarray):
+        return value.ndim == 0 and _is_number(value[()])
+    other = bool | np.timedelta64  # which pass for integers
+    return isinstance(value, Real | Decimal) and not isinstance(value, other)
+
+
 def _is_time(value: Any) -> bool:
-    if not isinstance(value, Real) or isinstance(value, bool):
+    if not _is_number(value):
         return False
     try:
         seconds = float(value)
-    except OverflowError:  # an integer beyond all doubles
+    except (OverflowError, ValueError):  # an integer beyond all doubles, a signaling NaN of a Decimal
         return False
     return abs(seconds) <= LATEST or not math.isfinite(seconds)  # which is refused with its place
 

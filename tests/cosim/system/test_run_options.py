@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
+import evcosim
 from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.run_options import RunOptions, check_options, in_floats
+
+ARRAYS = [np.array(0.5), np.array(0.5, np.float32), np.array(Decimal("0.5"))]
+NO_NUMBERS = [
+    *(Decimal(text) for text in ("NaN", "sNaN", "Infinity", "1e999")),
+    *(np.array(value) for value in ([0.5], True, "0.5", 0.5j, None, float("nan"), np.timedelta64(1, "s"))),
+    *(np.bool_(True), np.datetime64(1, "s"), np.timedelta64(1, "s")),
+]
 
 
 def test_the_names_that_there_are_pass() -> None:
@@ -43,12 +52,31 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 
 @pytest.mark.parametrize("name", ["delay", "stop_time", "step_size", "tolerance"])
-@pytest.mark.parametrize("value", [Fraction(1, 2), np.float32(0.5), np.float64(0.5), 0.5])
+@pytest.mark.parametrize("value", [0.5, Fraction(1, 2), Decimal("0.50"), np.float32(0.5), *ARRAYS])
 def test_numbers_of_every_type_are_floats(name: str, value: float) -> None:
     given = {name: value}
     check_options(given)
     assert in_floats(given) == {name: 0.5}  # type: ignore[arg-type] # a key that is not known before
     assert isinstance(in_floats(given)[name], float)  # type: ignore[arg-type,literal-required] # as above
+
+
+@pytest.mark.parametrize("text", ["0.01", "0.1", "0.3", "1e-3", "1.0000000000000001"])
+def test_a_decimal_is_the_float_of_its_digits(text: str) -> None:
+    assert in_floats({"step_size": Decimal(text)}) == {"step_size": float(text)}
+
+
+@pytest.mark.parametrize("name", ["delay", "step_size", "tolerance"])
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+def test_what_is_no_real_number_is_refused(name: str, value: object) -> None:
+    with pytest.raises(ConfigError, match=rf"^{name} = .*: must be a number "):
+        check_options({name: value})
+
+
+def test_a_run_takes_numbers_of_every_type() -> None:
+    usual = evcosim.simulate("scooter", stop_time=0.05, step_size=0.005)
+    for number in (Decimal, Fraction, lambda text: np.array(float(text))):
+        again = evcosim.simulate("scooter", stop_time=number("0.05"), step_size=number("0.005"))
+        assert np.array_equal(again.data, usual.data)
 
 
 def test_what_is_a_number_already_stays() -> None:
