@@ -8,12 +8,16 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim.system.scenario import scenario_names
+from evcosim.cosim.system.system import load_system, system_names
+from evcosim.master.builtin import builtin_names
 from support.hostile.cases import CASES, GROUPS
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / ".github").rglob("*.md")]
 EXAMPLE = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 
 
@@ -43,10 +47,22 @@ def test_what_the_examples_import_is_there(page):
 
 def test_the_example_of_the_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    example = EXAMPLE.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    example = EXAMPLE.findall(README)
     assert len(example) == 1
     exec(example[0], {})
     assert (tmp_path / "fig8.png").is_file()
+
+
+def test_the_table_of_systems_has_the_scenarios_that_there_are():
+    rows = re.findall(r"^\| \[`(\w+)`\]\([^|]*\| ([^|]*) \|", README, re.MULTILINE)
+    shown = {system: set(re.findall(r"`(\w+)`", names)) for system, names in rows}
+    assert shown == {name: set(scenario_names(load_system(name))) for name in system_names()}
+
+
+def test_the_table_of_fmus_has_those_that_are_built():
+    table = README.partition("| FMU | what it is |\n")[2].partition("\n\n")[0]
+    first = [row.split("|")[1] for row in table.splitlines()]
+    assert set(re.findall(r"`(\w+)`", " ".join(first))) == set(builtin_names())
 
 
 def test_the_rooms_are_those_that_lint_imports_keeps():
