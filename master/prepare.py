@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from ..cosim.can.bus_settings import BusVariation
+from ..cosim.can.framing import checksum_sources
 from ..cosim.errors import ConfigError, nearest
 from ..cosim.figures.check import check_specs
 from ..cosim.interface import UnitInterface
@@ -136,6 +137,8 @@ def _digest(system: System, scenario: Scenario, options: Mapping[str, Any]) -> s
         path = data_file(name, beside, key) if beside is not None else Path(name)
         with path.open("rb") as file:  # a CAN log may be large
             digest.update(hashlib.file_digest(file, "sha256").digest())
+    for source in checksum_sources(system.file.buses.values(), str(system.path.parent)):
+        digest.update(hashlib.sha256(source).digest())
     return digest.hexdigest()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
+from pathlib import Path
 
 from ..errors import ConfigError, nearest, short
 from .bus_settings import BusSettings
@@ -159,7 +160,24 @@ def _makers(
         if counter.signed or values < 2:
             raise ConfigError(f"{place}.checksum_counter: {counter.name} must count from 0 to 1 or more")
     maker = MakerChecksum(own.checksum or "", folder, f"{place}.checksum", f"{message.name}.{crc.name}")
+    maker.check()
     return Protection(MAKER + values, (), crc, counter, None, 1, maker)
+
+
+def checksum_sources(buses: Iterable[BusSettings], folder: str) -> list[bytes]:
+    """Return the files in the system file's `folder` whose functions are checksums of messages, read.
+
+    Raises ConfigError for one that cannot be read.
+    """
+    names = [own.checksum for bus in buses for own in bus.messages.values() if own.checksum is not None]
+    return [_read(file) for name in names if (file := MakerChecksum(name, folder, "", "").file) is not None]
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise ConfigError(f"{file}: it has a checksum, and cannot be read: {error.strerror}") from error
 
 
 def _ids(e2e: E2eSettings, code: int, place: str) -> tuple[int, ...]:

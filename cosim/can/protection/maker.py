@@ -39,6 +39,12 @@ class MakerChecksum:
         files = (base.with_suffix(".py"), base / "__init__.py")
         return next((file for file in files if file.is_file()), None)
 
+    def check(self) -> None:
+        """Raise ConfigError where there is no such module, without running any of its code."""
+        top = self.name.partition(":")[0].partition(".")[0]
+        if self.file is None and not Path(self.folder, top).is_dir() and not _installed(top):
+            raise self._missing()
+
     def loaded(self) -> Computed:
         """Import the module, and return its function with its answers checked.
 
@@ -79,14 +85,18 @@ class MakerChecksum:
             if error.name is not None and wanted.split(".")[: error.name.count(".") + 1] == error.name.split(
                 "."
             ):
-                files = [path.stem for path in sorted(Path(self.folder).glob("*.py"))]
-                raise ConfigError(
-                    f"{self.place}: there is no module '{wanted}', neither {wanted.replace('.', '/')}.py in "
-                    f"{self.folder} nor installed{nearest(wanted, files)}"
-                ) from error
+                raise self._missing() from error
             raise self._not_imported(error) from error
         except Exception as error:  # whatever the module raises
             raise self._not_imported(error) from error
+
+    def _missing(self) -> ConfigError:
+        wanted = self.name.partition(":")[0]
+        files = [path.stem for path in sorted(Path(self.folder).glob("*.py"))]
+        return ConfigError(
+            f"{self.place}: there is no module '{wanted}', neither {wanted.replace('.', '/')}.py in "
+            f"{self.folder} nor installed{nearest(wanted, files)}"
+        )
 
     def _not_imported(self, error: Exception) -> ConfigError:
         what = self.file or self.name.partition(":")[0]
@@ -99,6 +109,14 @@ class MakerChecksum:
 
     def _failed(self, where: str, reason: str) -> RunError:
         return RunError(f"the checksum {self.signal} by {self.name} of {where}: {reason}")
+
+
+def _installed(top: str) -> bool:
+    """Return True for a module or package without dots that Python finds."""
+    try:
+        return importlib.util.find_spec(top) is not None
+    except ValueError:  # it is imported already, and nobody knows from where
+        return True
 
 
 def _imported(file: Path, folder: str) -> ModuleType:

@@ -6,7 +6,7 @@ import pytest
 
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.database import Message
-from evcosim.cosim.can.framing import Framing, check_jitter, framing_of
+from evcosim.cosim.can.framing import Framing, check_jitter, checksum_sources, framing_of
 from evcosim.cosim.can.message_settings import MessageSettings
 from evcosim.cosim.errors import ConfigError
 
@@ -38,3 +38,18 @@ def test_values_that_are_not_quantized_make_no_frames():
     assert framing_of(MESSAGE, BusSettings(messages=own, resolution="ideal")) is None
     with pytest.raises(ConfigError, match=r'^s.toml: with resolution = "ideal".*timing = "frame" needs'):
         framing_of(MESSAGE, BusSettings(timing="frame", resolution="ideal"), (), "s.toml")
+
+
+def test_files_of_checksums_are_read_or_said(tmp_path, monkeypatch):
+    own = {"M": MessageSettings(checksum="mine:f"), "N": MessageSettings(checksum="math:hypot")}
+    buses = [BusSettings(messages=own)]
+    assert checksum_sources(buses, str(tmp_path)) == []
+    (tmp_path / "mine.py").write_bytes(b"def f(): pass\n")
+    assert checksum_sources(buses, str(tmp_path)) == [b"def f(): pass\n"]
+
+    def refused(path):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(type(tmp_path), "read_bytes", refused)
+    with pytest.raises(ConfigError, match=r"mine\.py: it has a checksum, and cannot be read: Permission"):
+        checksum_sources(buses, str(tmp_path))

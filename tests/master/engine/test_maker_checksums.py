@@ -9,6 +9,7 @@ import pytest
 from evcosim.cosim.can.message_settings import MessageSettings
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.cosim.system.system import System, load_system
+from evcosim.master.prepare import prepare
 from evcosim.master.simulation import Simulation
 
 SOURCE = '''
@@ -128,3 +129,13 @@ def test_what_does_not_fit_is_refused(tmp_path, own, reason):
         Simulation(system(tmp_path, **own), isolation="none").close()
     assert reason in str(error.value)
     assert "buses.can0.messages.VCU_SteerRequest" in str(error.value)
+
+
+def test_another_function_in_the_file_is_another_run_and_a_missing_file_is_said_before_one(tmp_path):
+    of = system(tmp_path, checksum="maker:nibbles", **KEYS)
+    first, again = prepare(of).digest, prepare(of).digest
+    (tmp_path / "maker.py").write_text(SOURCE.replace("8 - total", "7 - total"))
+    assert first == again != prepare(of).digest
+    (tmp_path / "maker.py").unlink()
+    with pytest.raises(ConfigError, match="there is no module 'maker'"):
+        prepare(of, runnable=False)  # as `info` does

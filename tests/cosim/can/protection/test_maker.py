@@ -101,3 +101,12 @@ def test_what_cannot_be_loaded_is_named(tmp_path, name, said):
 def test_what_a_function_does_wrong_is_named(tmp_path, name, said):
     with pytest.raises(RunError, match=rf"^the checksum M.Sum by checks:{name} of .*checks.py: {said}"):
         maker(tmp_path, f"checks:{name}").loaded()(b"\x01", 1, 0, 8)
+
+
+def test_a_missing_module_is_said_without_running_any(tmp_path):
+    for name in ("checks:xor", "math:hypot", "os.path:commonprefix", "bad:x", "__main__:x"):
+        maker(tmp_path, name).check()  # bad.py would raise an error
+    with pytest.raises(ConfigError, match=r"no module 'check'.* \(did you mean 'checks'\?\)"):
+        maker(tmp_path, "check:xor").check()
+    with pytest.raises(ConfigError, match=r"no module 'nowhere\.deep', neither nowhere/deep\.py in"):
+        maker(tmp_path, "nowhere.deep:xor").check()
