@@ -26,6 +26,7 @@ from .csv_text import (
     cut_row,
     encoding_of,
     filled,
+    is_date,
     number_in,
     opened,
     quoted_name,
@@ -232,6 +233,8 @@ class CsvFile:
         with contextlib.suppress(ValueError):
             float(text)
             kind = "a finite number"  # it is nan, infinite, or has '_' among its digits
+        if is_date(text):
+            kind = "a number but a date or a time of day: times are in s, best from the start of the run on"
         raise ConfigError(f"{place}: {text.strip()!r} is not {kind}")
 
 

@@ -268,6 +268,17 @@ def as_date(time: float) -> str:
     return ""
 
 
+_DATE = re.compile(
+    r"(\d{4}([-/.])\d\d?\2\d\d?|\d\d?([-/.])(\d\d?|[^\W\d]{3,9})\3(\d{4}|\d\d)|\d{1,3}:\d\d)(\D.*)?",
+    re.DOTALL,
+)
+
+
+def is_date(text: str) -> bool:
+    """Return True for a text that looks like a date, a time of day, or both."""
+    return _DATE.fullmatch(text.strip()) is not None
+
+
 def check_seconds(time: float, place: str) -> None:
     """Raise ConfigError, which begins with `place`, for a time that cannot be in seconds."""
     if not abs(time) <= LATEST:

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..csv_text import as_date
 from ..errors import counted
 from ..row_store import Array
 
@@ -32,7 +33,9 @@ class NotCompared:
     end: float
 
     def __str__(self) -> str:
-        span = f"at {self.begin:g} s" if self.begin == self.end else f"from {self.begin:g} to {self.end:g} s"
+        span = f"at {self.begin:.12g} s"
+        if self.begin != self.end:
+            span = f"from {self.begin:.12g} to {self.end:.12g} s"
         return f"{counted(self.points, 'point')} of the {self.side} {span}"
 
 
@@ -158,7 +161,14 @@ def _remarks(
             "more often, the last row of the other is taken"
         )
     if left:
-        spans = [f"{t[0]:g} to {t[-1]:g} s" for t in (first, second)]
+        spans = [f"{t[0]:.12g} to {t[-1]:.12g} s" for t in (first, second)]
         remarks.append(f"the first goes from {spans[0]}, the second from {spans[1]}")
+        dates = [as_date(float(t[0])) for t in (first, second)]
+        if bool(dates[0]) != bool(dates[1]):
+            side = "first" if dates[0] else "second"
+            remarks.append(
+                f"the times of the {side} look like {dates[0] or dates[1]}: write them in s from the start "
+                "of the other on"
+            )
         remarks.append(f"not compared: {', '.join(map(str, left))}")
     return remarks

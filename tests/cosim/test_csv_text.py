@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.csv_text import Header, as_date, encoding_of, number_in, read_header, time_column
+from evcosim.cosim.csv_text import Header, as_date, encoding_of, is_date, number_in, read_header, time_column
 from evcosim.cosim.errors import ConfigError
 
 
@@ -60,6 +60,22 @@ def test_a_decimal_comma_is_a_point_where_no_comma_separates(number: float) -> N
     if "." in text:
         assert number_in(text.replace(".", ","), ",") is None
     assert number_in("1,234,567", ";") is number_in("1.234,5", "\t") is number_in("1_0", ",") is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["2024-01-01 00:00:00", "2024-01-01T00:00:00.5Z", "00:00:01", " 12:30 ", "1:02:03,5", "31.12.2024",
+     "12/31/24", "04-May-2026 12:00", "2024/1/1", "01:00 PM"],
+)  # fmt: skip # a table
+def test_a_date_or_a_time_of_day(text: str) -> None:
+    assert is_date(text) and number_in(text, ";") is None
+
+
+@pytest.mark.parametrize(
+    "text", ["", "fast", "1.5", "2024", "1e5", "-3", "1.500.000", "1/2", "nan", "a:12:30", "1-2"]
+)
+def test_a_text_that_is_no_date(text: str) -> None:
+    assert not is_date(text)
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("time [ms]", "a"), ("Zeitpunkt", "a"), ("temperature", "tx")])

@@ -48,6 +48,14 @@ def test_what_is_before_and_after_is_said() -> None:
     )
 
 
+def test_times_of_one_side_that_are_dates_are_said_to_be_so() -> None:
+    epoch = [1704067200.0, 1704067201.5]
+    for times, side in (((of([0.0, 1.0], epoch)), "second"), (of(epoch, [0.0, 1.0]), "first")):
+        said = " ".join(times.remarks)
+        assert "1704067200 to 1704067201.5 s" in said and f"the times of the {side} look like seconds" in said
+    assert "look like" not in " ".join(of(epoch, [1704067300.0]).remarks)
+
+
 def test_runs_that_do_not_meet_and_empty_ones_have_no_time_in_common() -> None:
     apart = of([0.0, 1.0], [2.0])
     assert (len(apart.time), [str(each) for each in apart.not_compared]) == (
