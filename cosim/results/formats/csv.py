@@ -14,7 +14,7 @@ import numpy as np
 
 from ...clock import LATEST
 from ...csv_numbers import CsvFile
-from ...csv_text import both, check_seconds, quoted_name
+from ...csv_text import both, check_seconds, number_in, quoted_name
 from ...errors import ConfigError
 from ...row_store import Array
 from ..recording import Recording
@@ -53,10 +53,10 @@ def read(path: Path) -> Contents:
     """Read any CSV file of finite numbers of which a column is the time [s], by its name.
 
     Its variables, in the order of the other columns, are Reals without a unit of measure; true is 1 and
-    false is 0. A column without a name is left out where it is empty or counts the rows. The last line of
-    another tool's file need not end, if it is complete; one with a header as `write` makes it was cut off
-    then, maybe within its last number. Raises ConfigError naming file, line, column and value of what is
-    missing, is no finite number, or is a time before the one above it or beyond any run.
+    false is 0. A column without a name is left out where it is empty, or is the first and names the rows. The
+    last line of another tool's file need not end, if it is complete; one with a header as `write` makes it
+    was cut off then, maybe within its last number. Raises ConfigError naming file, line, column and
+    value of what is missing, is no finite number, or is a time before the one above it or beyond any run.
     """
     file = CsvFile.of(path)
     time = _time_column(file)
@@ -99,9 +99,18 @@ def _time_column(file: CsvFile) -> int:
 
 
 def _check_unnamed(file: CsvFile) -> None:
-    """Raise ConfigError for a column without a name that holds something, other than the numbers of rows."""
+    """Raise ConfigError for a column without a name that holds something, other than the names of rows."""
     for j, name in enumerate(file.names):
         texts = [] if name else file.texts(j)
-        counts = j == 0 and any(texts == [str(k + first) for k in range(len(texts))] for first in (0, 1))
-        if any(texts) and not counts:  # pandas counts the rows there from 0, R from 1
+        if any(texts) and not (j == 0 and _are_row_names(file, texts)):
             raise ConfigError(f"{file.path}: line {file.header_lines}, column {j + 1}: a name is needed")
+
+
+def _are_row_names(file: CsvFile, texts: list[str]) -> bool:
+    """Return True for the texts of the column of names of rows that pandas and R write first.
+
+    Each row has a whole number of its own, or a text: those that are left of a longer table keep theirs.
+    """
+    numbers = [number_in(text, file.separator) for text in texts]
+    kept = all(text.isdecimal() for text in texts) or all(n is None for n in numbers)
+    return kept and all(texts) and len(set(texts)) == len(texts)

@@ -85,6 +85,8 @@ BROKEN = {
     "time,x\n0,1\n0.1,fast\n": "line 3, column 'x': 'fast' is not a number",
     "time,x\n0,1\n0.1,nan\n": "line 3, column 'x': 'nan' is not a finite number",
     "time,x\n0,-inf\n": "line 2, column 'x': '-inf' is not a finite number",
+    "time,x\n0,1\n2024-01-01 00:00:00,1\n": "line 3, column 'time': '2024-01-01 00:00:00' is not a number "
+    "but a date or a time of day: times are in s, best from the start of the run on",
     "time,x\n0,1_000\n": "line 2, column 'x': '1_000' is not a finite number",
     "time,x\n0,1\n1\n": "line 3 has 1 value, the header has 2 columns",
     "time,x\n0,1,2\n1,1,2\n": "line 2 has 3 values, the header has 2 columns",
@@ -97,7 +99,11 @@ BROKEN = {
     "time,Time\n0,1\n": "line 1: columns 1 ('time') and 2 ('Time') both have the name of the time",
     "time,,x\n0,1,1\n": "line 1, column 2: a name is needed",
     "time,x,\n0,1,\n1,1,no\n": "line 1, column 3: a name is needed",
-    ",time,x\n0,0,1\n2,1,1\n": "line 1, column 1: a name is needed",
+    ",time,x\n0,0,1\n0,1,1\n": "line 1, column 1: a name is needed",
+    ",time,x\n0.5,0,1\n2,1,1\n": "line 1, column 1: a name is needed",
+    ",time,x\na,0,1\n,1,1\n": "line 1, column 1: a name is needed",
+    ",time,x\na,0,1\n2,1,1\n": "line 1, column 1: a name is needed",
+    "time,,x\n0,0,1\n2,1,1\n": "line 1, column 2: a name is needed",
     "timestamp,x\n1700000000000,1\n": "1700000000000 s is beyond the 1e+12 s of a run; it looks like "
     "milliseconds since 1970 (2023-11-14 22:13:20 UTC)",
     "x,t\n1,0\n\n1,1.7e15\n": "line 4, column 't': 1700000000000000 s is beyond the 1e+12 s of a run; it "
@@ -118,6 +124,13 @@ def test_a_broken_csv_is_refused_with_its_place(text: str, tmp_path: Path) -> No
         csv.read(path)
     assert str(refusal.value).startswith(f"{path}: ")
     assert BROKEN[text] in str(refusal.value)
+
+
+@pytest.mark.parametrize("rows", [("1", "2"), ("0", "1"), ("3", "7"), ("12", "4"), ("left", "right")])
+def test_the_names_of_rows_that_r_and_pandas_write_first_are_left_out(rows, tmp_path: Path) -> None:
+    (tmp_path / "r.csv").write_text(f'"","time","x"\n"{rows[0]}",0,1.5\n"{rows[1]}",1,2\n')
+    results = Results.read(tmp_path / "r.csv")
+    assert (results.names, results.time.tolist(), results["x"].tolist()) == (("x",), [0.0, 1.0], [1.5, 2.0])
 
 
 def test_the_time_may_stand_anywhere_and_truth_is_1_or_0(tmp_path: Path) -> None:
