@@ -95,7 +95,8 @@ class StimulusEntry(FiniteModel):
 
     time_column: str | None = None
     """The column of `csv` that holds the time in s; without it the one of a name like time, t, Time [s] or
-    timestamps. A file without such a name, or with one that two columns have, is refused."""
+    timestamps. Where several have such a name it is that named time, else the first column; a file where none
+    of these is the time, or two columns have its name, is refused."""
 
     interpolation: Interpolation = "linear"
     """Between the rows of `table` or `csv`: a straight line, or the earlier value held. An input that is not
