@@ -148,8 +148,9 @@ def compare(
     for what is held. Units of measure are converted. With `common`, a variable that one of them alone has is
     no difference. Raises ConfigError for a negative or NaN tolerance, and for an infinite `relative`.
     """
-    if not (tolerance >= 0.0 and relative >= 0.0):
-        raise ConfigError(f"a tolerance must not be negative: {tolerance!r}, relative {relative!r}")
+    for name, value in (("tolerance", tolerance), ("relative", relative)):
+        if not value >= 0.0:
+            raise ConfigError(f"{name} = {value!r}: a tolerance is a number and must not be negative")
     if math.isinf(relative):
         raise ConfigError(
             f"a relative tolerance must be finite, not {relative!r}: it is a share of the range"

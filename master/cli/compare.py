@@ -27,7 +27,9 @@ def compare(
     ] = None,
     signals: Annotated[
         list[str] | None,
-        typer.Option(metavar="PATTERN", help="Only these variables, as in 'vehicle.*'; can be given again."),
+        typer.Option(
+            metavar="PATTERN", help="Only these, as in 'vehicle.*', or not: '!ecu.*'; can be given again."
+        ),
     ] = None,
     common: Annotated[
         bool, typer.Option("--common", help="Leave out variables that one side alone has.")
@@ -76,7 +78,7 @@ def _warn_of_thousands(*paths: Path) -> None:
     from ...cosim.csv_thousands import thousands_note
     from .failures import complain
 
-    for path in paths:
+    for path in {path.resolve(): path for path in reversed(paths)}.values():
         if path.suffix.lower() == ".csv":
             file = CsvFile.of(path)
             if note := thousands_note(file, range(len(file.names))):

@@ -26,7 +26,9 @@ def plot(
     ] = None,
     signals: Annotated[
         list[str] | None,
-        typer.Option(metavar="PATTERN", help="Only these variables, as in 'vehicle.*'; can be given again."),
+        typer.Option(
+            metavar="PATTERN", help="Only these, as in 'vehicle.*', or not: '!ecu.*'; can be given again."
+        ),
     ] = None,
 ) -> None:
     """Draw results again, or chosen signals of them."""
@@ -57,17 +59,24 @@ def chosen(results: Results, patterns: list[str]) -> Results:
 
 
 def names_chosen(names: Sequence[str], patterns: list[str]) -> list[str]:
-    """Return the names that match a pattern, in their order. Raises ConfigError for one that matches none."""
+    """Return the names that match a pattern and none behind a '!', in their order.
+
+    Where all patterns have a '!', they leave out of all names. Raises ConfigError for one that matches none,
+    and where nothing is left.
+    """
     from ...cosim.errors import ConfigError, nearest
     from ...cosim.interface import fitting
 
-    found: set[str] = set()
-    for pattern in patterns:
-        fits = fitting(pattern, names)
+    found = set(names) if all(pattern.startswith("!") for pattern in patterns) else set()
+    for pattern in sorted(patterns, key=lambda p: p.startswith("!")):
+        wanted = pattern.removeprefix("!")
+        fits = fitting(wanted, names)
         if not fits:
-            near = nearest(pattern, [*names, *(f"{name.partition('.')[0]}.*" for name in names)])
+            near = nearest(wanted, [*names, *(f"{name.partition('.')[0]}.*" for name in names)])
             raise ConfigError(f"--signals {pattern}: the results have no such variable{near}")
-        found.update(fits)
+        found = found - set(fits) if pattern.startswith("!") else found | set(fits)
+    if not found:
+        raise ConfigError(f"--signals {' '.join(patterns)}: no variable is left")
     return [name for name in names if name in found]
 
 

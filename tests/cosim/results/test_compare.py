@@ -218,8 +218,12 @@ def test_numbers_at_the_end_of_the_doubles_are_compared_as_others_are(x: np.ndar
 
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan])
 def test_a_tolerance_is_a_number_from_0(tolerance: float) -> None:
-    with pytest.raises(ConfigError, match="must not be negative"):
+    with pytest.raises(
+        ConfigError, match=f"^tolerance = {tolerance}: a tolerance is .* must not be negative"
+    ):
         compare(one([1.0]), one([1.0]), tolerance)
+    with pytest.raises(ConfigError, match=f"^relative = {tolerance}: a tolerance is"):
+        compare(one([1.0]), one([1.0]), 0.0, tolerance)
 
 
 def test_a_difference_is_signed_and_in_the_unit_of_the_first() -> None:

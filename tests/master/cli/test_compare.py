@@ -89,3 +89,21 @@ def test_a_run_and_a_comparison_say_it(tmp_path, evcosim):
     assert "drive.csv: line 3, column 'throttle': '1.500' is read as 1.5; where the point" in said
     answer = evcosim("compare", str(path), str(path))
     assert answer.code == 0 and "'1.500' is read as 1.5; where" in " ".join(answer.err.split())
+
+
+def test_a_file_compared_with_itself_has_one_warning(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("time;v\n0;1.500\n1;2.000\n")
+    for other in ("a.csv", "./a.csv", str(tmp_path / "a.csv")):
+        said = evcosim("compare", "a.csv", other)
+        assert (said.code, said.err.count("warning: a.csv: line 2")) == (0, 1)
+
+
+def test_a_pattern_with_an_exclamation_mark_leaves_out(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("time,u.v,w.a,w.b\n0,0,1,1\n")
+    (tmp_path / "b.csv").write_text("time,u.v,w.a,w.b\n0,0,1,2\n")
+    codes = [
+        evcosim("compare", "a.csv", "b.csv", *(word for p in patterns for word in ("--signals", p))).code
+        for patterns in (["!w.*"], ["!w.b"], ["!u.*"], ["!w.b", "w.*"], ["w.b"], ["!*"], ["!x.*"])
+    ]
+    assert codes == [0, 0, 1, 0, 1, 2, 2]
+    assert "--signals !*: no variable is left" in evcosim("compare", "a.csv", "b.csv", "--signals", "!*").err
