@@ -16,6 +16,7 @@ from ..can.framing import Framing, framing_of
 from ..can.logs.recording import Key, Recording, chosen_channel, key_of, recorded
 from ..can.logs.replay import Replayed
 from ..can.send_steps import send_steps
+from ..can.send_types import Sending, check_send_type, send_type_of
 from ..clock import Clock
 from ..errors import ConfigError
 from ..system.can_log_spec import CanLogEntry
@@ -173,11 +174,16 @@ def _message(
     settings, message = system.file.buses[bus], variant.message
     names = [route.signal.name for route in variant.routes]
     place, folder = f"{system.path}: buses.{bus}", str(system.path.parent)
+    own = settings.of_message(message.name)
+    check_send_type(message, settings, 2 if variant.page else 1, place)
     framing = framing_of(message, settings, names, place, folder) or Framing()
     framing = dataclasses.replace(framing, status=status[message.name])
+    # pages are sent at each cycle
+    sending = Sending() if variant.page else Sending(send_type_of(message, own)[0])
     every, first = 1, 0
-    if framing.watched(settings.of_message(message.name)):
+    if sending.regular and framing.watched(own):
         every, first = send_steps(message, clock.step, str(system.path), bus)
+        every *= settings.cycle
         if settings.timing == "instant":
             first += steps_in(settings.delay, clock.step, f"{system.path}: buses.{bus}.delay")
     protection = framing.protection.signals if framing.protection is not None else []
@@ -194,6 +200,7 @@ def _message(
         after=None,
         framing=framing,
         page=variant.page,
+        sending=sending,
         replayed=True,
     )
 

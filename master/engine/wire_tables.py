@@ -130,7 +130,8 @@ def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
     for row, bus in enumerate(buses):
         own = [i for i, plan in enumerate(plans) if plan.bus == bus]
         settings = plans[own[0]].settings
-        timed, steps = plans[own[0]].timed, plans[own[0]].delay
+        # frames of a log, which may stand first, have no delay of their own: it is in their times
+        timed, steps = plans[own[0]].timed, max(plans[i].delay for i in own)
         delay = picoseconds(settings.delay) if timed else steps * picoseconds(step)
         _fill(
             made["buses"], row,

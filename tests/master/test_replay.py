@@ -16,6 +16,7 @@ from support.logged import frames_in
 from support.small_bench import DATABASE, SYSTEM
 
 FULL = "[[stimulus]]\nto = 'ecu.speed_bound'\nconstant = 30\n"
+REQUEST = "[[stimulus]]\nto = 'ecu.throttle_request'\ntable = [[0, 0], [1, 100]]\n"
 HEAD = "leave_out = ['vehicle']\n"
 SUFFIXES = {".log": 946684800.0, ".pcapng": 946684800.0, ".asc": 0.0, ".blf": 0.0}
 E2E = "[buses.can0.messages.EMD_Status]\ne2e = { profile = '1A', data_id = 7, crc = 'EMD_Crc', counter = 'EMD_Counter' }\n"  # fmt: skip # a table
@@ -325,3 +326,68 @@ def test_the_settings_of_a_run_have_the_log_in_them(tmp_path: Path) -> None:
     first = replay(tmp_path, candump(tmp_path, (0.0, 1)), stop_time=0.01)
     second = replay(tmp_path, candump(tmp_path, (0.0, 2)), stop_time=0.01)
     assert first.manifest["settings"] != second.manifest["settings"]
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+@pytest.mark.parametrize("own", ["", "timeout = 3\n"])
+def test_the_delay_of_a_bus_acts_on_what_units_send_beside_a_log(
+    tmp_path: Path, own: str, engine: Any
+) -> None:
+    """Frames of the log, whose identifier wins the bus, change nothing for those of the run."""
+    path = system(tmp_path, "delay = 0.02\n", DATABASE.replace("256", "400"))
+    text = path.read_text().replace('via = "can0.EMD_Status.EMD_VehicleSpeed"\n', "")
+    text = text.replace(
+        'to = ["vehicle.throttle"]', 'to = ["vehicle.throttle"]\nvia = "can0.VCU_Request.VCU_ThrottleRequest"'
+    )
+    path.write_text(f"{text}[buses.can0.messages.VCU_Request]\n{own}")
+    expected = simulate(path, scenario(tmp_path, REQUEST + FULL), engine=engine)
+    log = candump(tmp_path, *((k / 100, 30) for k in range(101)))
+    to = "to = { 'ecu.speed_bound' = 'EMD_Status.EMD_VehicleSpeed' }\n"
+    text = f"{REQUEST}[[stimulus]]\ncan_log = '{log}'\nbus = 'can0'\ntime_offset = 0.02\n{to}"
+    beside = simulate(path, scenario(tmp_path, text), engine=engine)
+    bound = beside["ecu.speed_bound"].tolist()
+    assert bound[2:] == [30.0] * 99  # the log has its delay as well
+    sent, got = beside["ecu.throttle"], beside["vehicle.throttle"]
+    assert len(set(sent.tolist())) > 20 and got[:5].tolist() == pytest.approx([0, 0, 0, 1.2, 2])
+    assert got[10:].tobytes() == expected["vehicle.throttle"][10:].tobytes()
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+@pytest.mark.parametrize("timing", ["instant", "frame"])
+@pytest.mark.parametrize("cycle", [2, 3])
+def test_a_watch_of_frames_of_a_log_counts_the_cycles_of_the_bus(
+    tmp_path: Path, cycle: int, timing: str, engine: Any
+) -> None:
+    of_system = f"cycle = {cycle}\ntiming = '{timing}'\n{E2E}timeout = 1\non_timeout = 'sna'\n"
+    with Simulation(system(tmp_path, of_system), scenario(tmp_path, REQUEST + FULL), log_frames=True) as run:
+        run.run()
+        run.write_can_log(tmp_path / "drive.blf")
+    text = f"{HEAD}{REQUEST}{FULL}[[stimulus]]\ncan_log = 'drive.blf'\nbus = 'can0'\ntime_offset = 0.0\n"
+    alone = simulate(tmp_path / "bench.toml", scenario(tmp_path, text), engine=engine)
+    before, found = (
+        each.manifest["frames"]["can0"]["messages"]["EMD_Status"] for each in (run.results, alone)
+    )
+    assert found.get("timeouts", 0) == before.get("timeouts", 0) == 0
+    assert found["statuses"] == before["statuses"]
+    assert heard(alone) == heard(run.results) and max(heard(alone)) > 2  # it moves
+
+
+def test_what_comes_on_a_change_has_no_cycle_in_a_log_either(tmp_path: Path) -> None:
+    log = candump(tmp_path, *((t / 100, 1 + t) for t in (0, 1, 50)))
+    of_system = "[buses.can0.messages.EMD_Status]\nsend_type = 'on_change'\n"
+    with pytest.raises(ConfigError, match=r"EMD_Status\.timeout: a message that is sent on_change does not"):
+        replay(tmp_path, log, of_system=f"{of_system}timeout = 2\n")
+    database = DATABASE.replace('BA_ "GenSigSNA"', 'BA_ "GenMsgCycleTime" BO_ 328 0;\nBA_ "GenSigSNA"', 1)
+    of_system = f"{E2E}send_type = 'on_change'\n"
+    with Simulation(
+        system(tmp_path, of_system, database), scenario(tmp_path, REQUEST + FULL), log_frames=True
+    ) as run:
+        run.run()
+        run.write_can_log(tmp_path / "drive.blf")
+    text = f"{HEAD}{REQUEST}{FULL}[[stimulus]]\ncan_log = 'drive.blf'\nbus = 'can0'\ntime_offset = 0.0\n"
+    alone = simulate(tmp_path / "bench.toml", scenario(tmp_path, text))
+    before, found = (
+        each.manifest["frames"]["can0"]["messages"]["EMD_Status"] for each in (run.results, alone)
+    )
+    assert found["statuses"] == before["statuses"] and found["statuses"]["ok"] < 20
+    assert heard(alone) == heard(run.results) and max(heard(alone)) > 2  # it moves
