@@ -20,7 +20,7 @@ from ..units.measure import (
     UnitOfMeasure,
     UnknownUnitError,
 )
-from ..units.spellings import NO_UNIT
+from ..units.spellings import says_none
 from ..visible import visible_json
 
 _FACTOR = ", or `factor` with `convert = false` in its [[connect]]"
@@ -88,7 +88,7 @@ def unit_map(
     for end in (source, target):
         if end.defines and (said := contradiction(end.definitions[end.unit])):
             _note(warnings, f"{end.name}: its FMU's definition is taken: {said}")
-        if end.unit.strip() in NO_UNIT and end.unit != "1":
+        if says_none(end.unit) and end.unit.strip("[( )]") != "1":
             _note(warnings, f"{end} names no unit of measure; it is taken as [1]")
     return map_
 
@@ -226,7 +226,7 @@ def _is_to_blame(end: End, others: Iterable[Definitions], error: ConfigError) ->
         case OpenUnitError():
             return unit is not None and (len(unit.readings) > 1 or unit.plain_rate)
         case _:
-            return bool(end.bus) and end.unit.strip() in NO_UNIT
+            return bool(end.bus) and says_none(end.unit)
 
 
 def _known(end: End, others: Iterable[Definitions]) -> UnitOfMeasure | None:

@@ -18,13 +18,15 @@ from .annotations import annotated, objection
 from .grammar import LONGEST, Powers, parse, plain
 from .measure import BASE_UNITS, TEMPERATURE, Exponents, UnitOfMeasure, UnknownUnitError
 from .names import doubt
-from .spellings import NO_UNIT, meanings
+from .spellings import meanings, says_none
 from .symbols import Size, is_level, symbol
 
 _NONE: Exponents = (0,) * len(BASE_UNITS)
 _RAD = BASE_UNITS.index("rad")
 _A_MINUTE: Powers = (("min", Fraction(-1)),)
 _DELTA = re.compile(r"(?:[Dd]elta[ _]?|Δ[ _]?)(.+)")
+_DEGREES = re.compile(r"(?i:°|(?<![^\W_])deg)(?: ?[.-] ?| )([CFK])(?![^\W_])")  # "° C", "Deg.F"
+_HYPHEN = re.compile(r"(?<=[\w)])-(?=[^\W\d])")
 _PER = re.compile(r" per ", re.IGNORECASE)
 _SHORT = 5  # characters of a name whose capitals are tried
 _FITS = 1e-3  # relative: tools write a factor with as few as four digits
@@ -51,15 +53,16 @@ def defined(
     said = name if len(name) <= LONGEST else name[:LONGEST] + "..."
     text = plain(said)
     names = [each for powers in parse(text) for each, _ in powers]
-    why = doubt([text, *names]) or next(filter(None, map(objection, [text, *names])), "") or _by_case(names)
+    why = doubt([text, *names]) or next(filter(None, map(objection, [text, *names])), "")
+    why = why or _by_case(names) or _by_hyphen(text)
     raise UnknownUnitError(f"unit of measure '{said}' is not known{why}")
 
 
 @functools.lru_cache(maxsize=4096)
 def by_text(text: str) -> UnitOfMeasure | None:
     """Return the unit that a text names, with its other readings; None where it names none."""
-    name = plain(text) if len(text) <= LONGEST else text
-    if name in NO_UNIT:
+    name = _DEGREES.sub(r"deg\1", plain(text)) if len(text) <= LONGEST else text
+    if says_none(name):
         return UnitOfMeasure(text, _NONE)
     if name.startswith("[") and name.endswith("]"):
         name = name[1:-1].strip()
@@ -102,6 +105,12 @@ def _by_case(names: Iterable[str]) -> str:
         if known:
             return f": capitals count, and {name} may be {' or '.join(known[:4])}"
     return ""
+
+
+def _by_hyphen(text: str) -> str:
+    """Return how a text is written whose hyphens may be products, as a sentence to append."""
+    product = _HYPHEN.sub(".", text)
+    return f": where '-' is a product write {product}" if product != text and by_text(product) else ""
 
 
 def names_difference(text: str) -> bool:

@@ -81,7 +81,8 @@ NAMES: dict[str, tuple[Fraction | int, str]] = {
     "atmosphere": (1, "atm"), "standard_atmosphere": (1, "atm"),
     "technical_atmosphere": (Fraction("98066.5"), "Pa"),
     "torr": (Fraction(101_325, 760), "Pa"), "barye": (Fraction(1, 10), "Pa"), "ksi": (1000, "psi"),
-    "mmH2O": (Fraction(1, 10), "cmH2O"), "conventional_inHg": (1, "inHg"), "conventional_inH2O": (1, "inH2O"),
+    "mmH2O": (Fraction(1, 10), "cmH2O"), "mH2O": (100, "cmH2O"), "cmHg": (10, "mmHg"),
+    "psf": (Fraction(1, 144), "psi"), "conventional_inHg": (1, "inHg"), "conventional_inH2O": (1, "inH2O"),
     "inHg_60F": (Fraction("3376.85"), "Pa"), "inH2O_60F": (Fraction("248.84"), "Pa"),
     "kip_per_square_inch": (1000, "psi"), "pound_force_per_square_inch": (1, "psi"),
     # energy and power
@@ -128,7 +129,7 @@ DOUBTFUL = {
     "Cal": "4.184 or 4184 J", "Calorie": "4.184 or 4184 J", "candle": "a candela, or an older one",
     "U": "a turn or a unit of enzymes", "u": "an atomic mass", "M": "molar, or a prefix",
     "P": "poise, or a prefix", "R": "röntgen, Rankine or Réaumur", "B": "a bel or a byte",
-    "b": "a barn or a bit", "D": "a debye or a day",
+    "b": "a barn or a bit", "mb": "a millibar or a millibarn", "D": "a debye or a day",
     "c": "the speed of light, or a prefix", "e": "a charge", "k": "a prefix, or Boltzmann's constant",
 }  # fmt: skip # several in a line
 """Names that are read as no unit, and what they may be."""

@@ -11,7 +11,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from evcosim.cosim.units.names import DOUBTFUL, NAMES
-from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, Row
+from evcosim.cosim.units.spellings import EXACT, NO_UNIT
+from evcosim.cosim.units.words import WORDS, Row
 from evcosim.cosim.writing import markdown_table
 
 PAGE = Path(__file__).parents[2] / "docs" / "units.md"

@@ -19,7 +19,8 @@ from evcosim.cosim.units.measure import (
     UnitOfMeasure,
     UnknownUnitError,
 )
-from evcosim.cosim.units.spellings import EXACT, WORDS
+from evcosim.cosim.units.spellings import EXACT
+from evcosim.cosim.units.words import WORDS
 
 SPEED = (0, 1, -1, 0, 0, 0, 0, 0)
 RATE, TURNING = (0, 0, -1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 0, 0, 0, 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import re
 
 import pytest
 
@@ -25,6 +26,7 @@ IN_PINT = {
     "revolution_per_second": "revolutions_per_second", "Nmm": "newton * millimeter",
     "Ncm": "newton * centimeter", "conventional_inHg": "inch_Hg", "conventional_inH2O": "249.08891 pascal",
     "inHg_60F": "inch_Hg_60F", "inH2O_60F": "inch_H2O_60F", "degRk": "degree_Rankine",
+    "psf": "lbf / ft**2", "mH2O": "100 * cmH2O",
 }  # fmt: skip # names that pint has not, or defines in other base units
 OTHERWISE = {
     "G": "standard gravity or gauss; pint defines it in units of the CGS system", "gauss": "as G",
@@ -215,6 +217,19 @@ kelvin = deg K, degrees Kelvin
 volt * ampere = VA, V A
 kilovolt * ampere = KVA, kVA, kva
 newton * millimeter = Nmm
+foot * force_pound = lbft, ftlbf, ftlbs, lbfft, LBFT
+inch * force_pound = inlb, inlbf, lbf-in, lbin, inlbs
+mmHg = mm Hg, mmHg
+cmHg = cm Hg, cmHg
+100 * cmH2O = mH2O, m H2O
+cmH2O / 10 = mm H2O, mmH2O
+force_pound / foot ** 2 = psf, lbf/ft2
+microohm = µOhm, μOhm, uOhm, µOhms
+milliohm = mOhms
+revolution / minute = rot/min, ROT/MIN
+millidegree = mdeg, millidegrees
+millidegree / second = mdeg/s, mdps
+kelvin = °K, ° K, deg.K
 """
 """A unit as pint has it, and how people write it."""
 PAIRS = [
@@ -263,3 +278,34 @@ def test_a_capital_inside_a_name_makes_another_one():
     assert by_text("microN") is None
     assert by_text("Micron").factor == by_text("MICRON").factor == 1e-6
     assert by_text("MmH2O") is None
+
+
+@pytest.mark.parametrize("letter", "CF")
+@pytest.mark.parametrize(
+    "degree", ["° ", "°", "º ", "°  ", "deg.", "Deg.", "DEG.", "Deg. ", "deg ", "deg-", "°.", "Deg", "[° "]
+)
+def test_a_degree_sign_apart_from_its_letter_is_a_scale_of_temperature(degree, letter):
+    text = degree + letter + ("]" if "[" in degree else "")
+    assert between(text, f"deg{letter}").identity and between(f"W/{degree.strip('[')}{letter}", "W/K").scale
+    assert between(text, "K") == between(f"deg{letter}", "K")
+
+
+@pytest.mark.parametrize("text", ["deg*C", "deg/C", "deg Cm", "°/s C"])
+def test_another_sign_between_them_makes_no_temperature(text):
+    with pytest.raises(ConfigError):
+        between(text, "K")
+
+
+@pytest.mark.parametrize(
+    ("text", "product"),
+    [("W/m^2-K", "W/m^2.K"), ("kg-m2", "kg.m2"), ("kN-m", "kN.m"), ("W/(m-K)", "W/(m.K)")],
+)
+def test_a_hyphen_for_a_product_is_refused_with_how_it_is_written(text, product):
+    with pytest.raises(UnknownUnitError, match=re.escape(f"where '-' is a product write {product}")):
+        defined(text)
+    assert by_text(product) is not None
+
+
+def test_in_hg_apart_is_open_as_in_one_word():
+    with pytest.raises(OpenUnitError, match="the text has several meanings"):
+        between("in Hg", "kPa")

@@ -8,8 +8,9 @@ import pytest
 
 from evcosim.cosim.units.definition import _units, by_text
 from evcosim.cosim.units.grammar import parse, plain
-from evcosim.cosim.units.spellings import EXACT, NO_UNIT, WORDS, _key, meanings
+from evcosim.cosim.units.spellings import EXACT, NO_UNIT, _key, meanings, says_none
 from evcosim.cosim.units.symbols import symbol
+from evcosim.cosim.units.words import WORDS
 
 ROWS = [*WORDS, *EXACT]
 
@@ -28,13 +29,6 @@ def test_a_spelling_means_what_the_table_says(spelling, meaning, source):
         assert [dataclasses.replace(reading, also=())] == meant
 
 
-@pytest.mark.parametrize("spelling", [spelling for spelling, _, _ in WORDS])
-def test_a_word_is_read_whatever_its_case(spelling):
-    for text in (spelling.upper(), spelling.lower(), spelling.title()):
-        if not any(text == exact for exact, _, _ in EXACT):
-            assert meanings(plain(text)) == meanings(plain(spelling)), text
-
-
 def test_no_spelling_stands_twice():
     words = [_key(spelling).casefold() for spelling, _, _ in WORDS]
     exact = [_key(spelling) for spelling, _, _ in EXACT]
@@ -43,3 +37,13 @@ def test_no_spelling_stands_twice():
 
 def test_texts_that_say_that_there_is_no_unit():
     assert all(by_text(text).bare for text in NO_UNIT)
+
+
+@pytest.mark.parametrize("text", ["[-]", "[ - ]", "(-)", "[]", "()", "[none]", "(unitless)", " - "])
+def test_no_unit_stands_in_brackets_too(text):
+    assert says_none(text) and by_text(text).bare
+
+
+@pytest.mark.parametrize("text", ["[m]", "(m)", "[", "-]", "(-", "[-)"])
+def test_brackets_around_something_else_are_no_such_text(text):
+    assert not says_none(text)

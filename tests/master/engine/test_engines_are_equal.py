@@ -9,7 +9,8 @@ from evcosim.cosim.errors import RunError
 from evcosim.cosim.system.scenario import scenario_names
 from evcosim.cosim.system.system import load_system, system_names
 from evcosim.cosim.units.conversion import between
-from evcosim.cosim.units.spellings import EXACT, WORDS
+from evcosim.cosim.units.spellings import EXACT
+from evcosim.cosim.units.words import WORDS
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.initialization import initialize
 from evcosim.master.simulation import Simulation
