@@ -30,12 +30,13 @@ def budget(
     ] = None,
     workers: WorkersOption = None,
     seeds: Annotated[
-        int,
+        int | None,
         typer.Option(
             metavar="N",
+            min=1,
             help="Vary timing, jitter and lost frames too, what is chance over N seeds.",
         ),
-    ] = 0,
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the budget as JSON.")] = False,
 ) -> int:
     """Find how late, coarse and slow the buses may be.
@@ -58,7 +59,7 @@ def budget(
             system,
             scenario,
             workers=workers,
-            seeds=seeds,
+            seeds=seeds or 0,
             progress=lambda done, total, _: show(done / total),
             **options,
         )
