@@ -17,6 +17,7 @@ from .builtin import build_models, builtin_names, model_source
 
 _TEMPLATE = DATA / "new"
 _FMU = re.compile(r'^(\s*fmu\s*=\s*)"(\w+)"', re.MULTILINE)
+_COMMANDS = re.compile(r"(?<=^```sh\n).*?(?=\n```$)", re.DOTALL | re.MULTILINE)
 _NAME = re.compile(r'^name = ".*"$', re.MULTILINE)
 
 
@@ -77,7 +78,7 @@ def _example(name: str) -> Iterator[tuple[str, str]]:
     for file in sorted(_TEMPLATE.rglob("*")):
         path = file.relative_to(_TEMPLATE).as_posix()
         if file.is_file() and path != "README_COPY.md":
-            text = file.read_text(encoding="utf-8").replace("@NAME@", name)
+            text = _aligned(file.read_text(encoding="utf-8").replace("@NAME@", name))
             yield places.get(path, path.removesuffix(".txt")), text
 
 
@@ -99,7 +100,18 @@ def _copy(name: str, system: System) -> Iterator[tuple[str, str]]:
         file_name, source = model_source(fmu)
         yield f"models/{file_name}", source
     readme = (_TEMPLATE / "README_COPY.md").read_text(encoding="utf-8")
-    yield "README.md", readme.replace("@NAME@", name).replace("@SYSTEM@", system.file.name)
+    yield "README.md", _aligned(readme.replace("@NAME@", name).replace("@SYSTEM@", system.file.name))
+
+
+def _aligned(page: str) -> str:
+    """Return a page whose commands, which names have made longer, have their comments in one column."""
+
+    def block(found: re.Match[str]) -> str:
+        lines = [line.partition("  # ") for line in found[0].splitlines()]
+        width = max((len(command.rstrip()) for command, comment, _ in lines if comment), default=0)
+        return "\n".join(f"{a.rstrip():{width}}  # {b}" if comment else a for a, comment, b in lines)
+
+    return _COMMANDS.sub(block, page)
 
 
 def _own(fmu: str) -> str:

@@ -38,6 +38,14 @@ def test_the_example_is_whole_and_does_what_it_says(example):
     assert results.manifest["units"]["vehicle"]["isolation"] == "none"
 
 
+@pytest.mark.parametrize("name", ["a", "mine", "my_car", "a_car_with_a_long_name"])
+@pytest.mark.parametrize("base", [None, "braking"])
+def test_the_comments_of_the_commands_stand_in_one_column(tmp_path, name, base):
+    new_system(tmp_path / name, base)
+    commands = (tmp_path / name / "README.md").read_text(encoding="utf-8").split("```")[1].splitlines()[1:]
+    assert len(commands) >= 2 and len({line.index("  # ") for line in commands}) == 1
+
+
 def test_the_script_of_the_example_runs(example):
     done = subprocess.run([sys.executable, "run.py"], cwd=example, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
