@@ -27,6 +27,7 @@ from .csv_text import (
     encoding_of,
     filled,
     is_date,
+    named_as_time,
     number_in,
     opened,
     quoted_name,
@@ -73,6 +74,23 @@ class CsvFile:
     def time_column(self) -> int:
         """Return the column of the time, by its name. Raises ConfigError where there is none, or several."""
         return time_column(self.names, f"{self.path}: line {self.header_lines}")
+
+    def time_note(self) -> str:
+        """Return a warning where another column has a name of the time too, with other numbers; "" if not.
+
+        Raises ConfigError as `time_column` does, and as `numbers` for a line of another length.
+        """
+        taken = self.time_column()
+        others = [j for j in named_as_time(self.names) if j != taken]
+        for line, row in self.full_rows() if others else ():
+            for j in others:
+                time, other = (number_in(row[k], self.separator) for k in (taken, j))
+                if time is not None and other is not None and time != other:
+                    return (
+                        f"{self._place(line, taken)}: {row[taken].strip()} is taken as the time, though "
+                        f"column '{self.names[j]}' has another one, {row[j].strip()}"
+                    )
+        return ""
 
     def count_lines(self) -> int:
         """Return the number of lines below the header. Raises OSError."""

@@ -234,9 +234,7 @@ def time_column(names: tuple[str, ...], place: str) -> int:
     none. Where several columns have one, it is that named `time`, else the first column. Raises ConfigError,
     which begins with `place`, where there is none, or several and neither, or one name twice.
     """
-    named = [j for j, name in enumerate(names) if _TIME.fullmatch(name.strip())]
-    if len(named) > 1:
-        named = [j for j in named if names[j].strip() != "T"] or named  # it is a temperature
+    named = named_as_time(names)
     plain = [j for j in named if names[j].strip().lower() == "time"]
     found = named if len(named) == 1 else plain or [j for j in named if j == 0]
     listed = ", ".join(repr(name) for name in names)
@@ -251,6 +249,14 @@ def time_column(names: tuple[str, ...], place: str) -> int:
         f"{place}: no column has a name of the time in s ('time', 't', 'Time [s]', 'time_s', 'timestamps', "
         f"...): {listed}"
     )
+
+
+def named_as_time(names: Sequence[str]) -> list[int]:
+    """Return the columns that have a name of the time."""
+    named = [j for j, name in enumerate(names) if _TIME.fullmatch(name.strip())]
+    if len(named) > 1:
+        named = [j for j in named if names[j].strip() != "T"] or named  # it is a temperature
+    return named
 
 
 _SINCE_1970 = {"seconds": 1.0, "milliseconds": 1e3, "microseconds": 1e6, "nanoseconds": 1e9}

@@ -280,7 +280,10 @@ def _drives(
                 "the stimulus" if scenario.path else "a stimulus of a system",
             )
             network.warnings += note_units(file, columns, target, entry.unit, where)
-            network.warnings += filter(None, [thousands_note(file, columns)])
+            notes = [thousands_note(file, columns)]
+            if entry.time_column is None and (note := file.time_note()):
+                notes.append(f"{note}; `time_column` says which is meant")
+            network.warnings += filter(None, notes)
         slot = slots.valid[unit, name]
         network.drive(
             entry.to, InputPlan(slot, None, f"a stimulus of {scenario.path or 'this run'}"), f"{place}.to"

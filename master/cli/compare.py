@@ -43,7 +43,7 @@ def compare(
     from .plot import is_page
 
     first, second = Results.read(a), Results.read(b)
-    _warn_of_thousands(a, b)
+    _warn_of_tables(a, b)
     if signals:
         first, second = _chosen(first, second, signals)
     found = comparing.compare(first, second, tolerance, relative, common)
@@ -73,7 +73,7 @@ def compare(
     return 0 if found.equal else 1
 
 
-def _warn_of_thousands(*paths: Path) -> None:
+def _warn_of_tables(*paths: Path) -> None:
     from ...cosim.csv_numbers import CsvFile
     from ...cosim.csv_thousands import thousands_note
     from .failures import complain
@@ -81,7 +81,7 @@ def _warn_of_thousands(*paths: Path) -> None:
     for path in {path.resolve(): path for path in reversed(paths)}.values():
         if path.suffix.lower() == ".csv":
             file = CsvFile.of(path)
-            if note := thousands_note(file, range(len(file.names))):
+            for note in filter(None, [thousands_note(file, range(len(file.names))), file.time_note()]):
                 complain(f"warning: {note}")
 
 

@@ -329,3 +329,22 @@ def test_a_text_may_end_with_a_full_stop_and_is_not_cut_within_a_character(tmp_p
     assert file.texts(1) == ["warm", "no more of it."]
     with pytest.raises(ConfigError, match=r"x\.csv: ends within a character of UTF-8: the file was cut off"):
         opened(path, whole + "\N{EURO SIGN}".encode()[:-1])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t [s],time,x\n0,0,1\n1,2,5\n",
+         "line 3, column 'time': 2 is taken as the time, though column 't [s]' has another one, 1"),
+        ("t;timestamp;x\n0;1704067200,5;1\n",
+         "line 2, column 't': 0 is taken as the time, though column 'timestamp' has another one, "
+         "1704067200,5"),
+        ("t [s],time,x\n0,0,1\n1.0,1,5\n", ""),
+        ("time,timestamp\n0,2024-01-01\n", ""),
+        ("time,T\n0,20\n", ""),  # a temperature
+        ("time,x\n0,20\n", ""),
+    ],
+)  # fmt: skip # a table
+def test_two_columns_that_could_be_the_time_are_a_warning_where_they_differ(tmp_path, text, said):
+    (tmp_path / "x.csv").write_text(text)
+    assert CsvFile.of(tmp_path / "x.csv").time_note() == (said and f"{tmp_path / 'x.csv'}: {said}")

@@ -117,6 +117,18 @@ def test_a_column_that_says_another_unit_than_its_input_is_a_warning(tmp_path, c
     assert (f"column '{column}': its values are taken in [km/h], the unit of ecu.speed" in warnings) == said
 
 
+def test_a_second_column_of_times_is_a_warning_unless_the_stimulus_says_which_is_meant(tmp_path):
+    (tmp_path / "v.csv").write_text("t [s],time,x\n0,0,1\n1,2,5\n")
+    entry = {"to": "ecu.speed", "csv": str(tmp_path / "v.csv"), "column": "x"}
+    said = (
+        "2 is taken as the time, though column 't [s]' has another one, 1; `time_column` says which is meant"
+    )
+    assert said in " ".join(plan([], {"stimulus": [entry]}).warnings)
+    assert "taken as the time" not in " ".join(
+        plan([], {"stimulus": [entry | {"time_column": "t [s]"}]}).warnings
+    )
+
+
 @pytest.mark.parametrize(("own", "given"), [("degC", "delta_degC"), ("K", "delta_K"), ("delta_degC", "degC")])
 def test_a_stimulus_in_a_unit_of_differences_drives_no_absolute_input(tmp_path, own, given):
     unit = MockUnit("a", [real("t", "input", unit=own)])

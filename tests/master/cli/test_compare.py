@@ -107,3 +107,12 @@ def test_a_pattern_with_an_exclamation_mark_leaves_out(evcosim, tmp_path):
     ]
     assert codes == [0, 0, 1, 0, 1, 2, 2]
     assert "--signals !*: no variable is left" in evcosim("compare", "a.csv", "b.csv", "--signals", "!*").err
+
+
+def test_two_columns_of_times_are_a_warning(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("t [s],time,x\n0,0,1\n1,2,5\n")
+    said = evcosim("compare", "a.csv", "a.csv")
+    assert (said.code, said.err.count("2 is taken as the time, though column 't [s]' has another one")) == (
+        0,
+        1,
+    )
