@@ -161,8 +161,8 @@ class Simulation:
         count = whole_steps(steps)
         if count and self._engine.k >= self._engine.ending.step:
             raise RunError(f"the run is over: {self.ended}")
-        clock, columns = self.plan.clock, len(self.plan.columns)
-        check_steps(count, self._engine.k, self.steps_left, clock, columns)
+        plan, columns = self.plan, len(self.plan.columns)
+        check_steps(count, self._engine.k, self.steps_left, plan.clock, columns, plan.framed_bus)
         self._advance(count, None)
 
     def run(self, progress: RunProgress | None = None) -> None:

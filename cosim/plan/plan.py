@@ -204,6 +204,11 @@ class Plan:
         """The buses on which frames take time."""
         return tuple(dict.fromkeys(message.bus for message in self.messages if message.timed))
 
+    @functools.cached_property
+    def framed_bus(self) -> str:
+        """The first bus that has frames, whose times count; "" where there is none."""
+        return next((message.bus for message in self.messages if message.framing is not None), "")
+
     @property
     def steps(self) -> int:
         """The number of communication steps to the stop time."""

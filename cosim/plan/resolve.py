@@ -34,7 +34,7 @@ from .received import Received
 from .recorded import Record
 from .replay import with_replays
 from .slots import Slots, allot
-from .steps import check_kept, steps_in
+from .steps import check_framed, check_kept, steps_in
 from .unit_maps import End, unit_map
 from .unit_plan import UnitPlan
 from .unreached import after_stop, out_of_time
@@ -65,7 +65,13 @@ def resolve(
     Raises ConfigError naming place, rule and values, before any unit is instantiated.
     """
     plan = _resolved(system, scenario, interfaces, options)
-    return with_faults(plan, system, scenario, options.get("bus"))
+    plan = with_faults(plan, system, scenario, options.get("bus"))
+    place = f"{_stop_time_in(system, scenario, options)} = {plan.clock.stop} s"
+    check_framed(plan.framed_bus, plan.clock.length(plan.steps), place)
+    for message in plan.messages:
+        if message.framing is not None:
+            check_framed(message.bus, message.settings.delay, f"{system.path}: buses.{message.bus}.delay")
+    return plan
 
 
 def _resolved(

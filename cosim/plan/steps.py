@@ -11,6 +11,9 @@ from ..errors import ConfigError, short
 _MOST_VALUES = 2**31
 """Values that a run records at most: 16 GiB, kept in a temporary file (`row_store`); an array of the whole
 table, as `Results.data` is, needs that much memory."""
+LONGEST_WITH_FRAMES = 4e6
+"""The longest run [s] of a bus whose frames have times: 46 days. They are whole picoseconds in 64 bits, which
+end at 9.2e6 s; delays come on top, and a fault without an end lasts for 4.6e6 s."""
 _PRINTED = 10**300  # greater integers are no floats
 
 
@@ -55,10 +58,24 @@ def whole_steps(steps: object) -> int:
     return int(steps)
 
 
-def check_steps(steps: int, done: int, left: int, clock: Clock, columns: int) -> None:
+def check_framed(bus: str, span: float, place: str) -> None:
+    """Raise ConfigError, which starts with `place`, where a bus has frames for longer than their times count.
+
+    `span` [s] is from the start of the run; "" is no bus.
+    """
+    if bus and not span <= LONGEST_WITH_FRAMES:
+        raise ConfigError(
+            f"{place}: bus {bus} has frames whose times count in picoseconds, for {LONGEST_WITH_FRAMES:g} s "
+            f"after the start at most, not {span:g} s; stop earlier, or send plain values on it: "
+            'timing = "instant", no protection, no timeout, no send type but cyclic, no fault and no log'
+        )
+
+
+def check_steps(steps: int, done: int, left: int, clock: Clock, columns: int, framed: str = "") -> None:
     """Raise ConfigError for more steps than a run may do that has `done` some, and records so many columns.
 
-    `left` of them are left to the stop time, which bounds them where the units were told it.
+    `left` of them are left to the stop time, which bounds them where the units were told it. `framed` is a
+    bus with frames, "" where there is none.
     """
     place = f"steps = {short(steps)}"
     if clock.told and steps > left:
@@ -67,5 +84,6 @@ def check_steps(steps: int, done: int, left: int, clock: Clock, columns: int) ->
             "which the units were told; without to_stop a simulation can be stepped beyond it"
         )
     check_kept(done + steps, clock.step, columns, place if not done else f"{place} after {done}")
+    check_framed(framed, clock.length(done + steps), place)
     if not clock.at(done + steps) <= LATEST:
         raise ConfigError(f"{place}: a run goes up to {LATEST:g} s")

@@ -50,9 +50,9 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
         about["messages"][sender.plan.message.name + page] = {
             "load": load,
             **{name: int(row[column]) for name, column in _COUNTS.items()},
-            "latency": _times(row, T.LATENCY_LEAST, int(row[T.CARRIED])),
+            "latency": _times(row, T.LATENCY_LEAST, T.LATENCY_HIGH, int(row[T.CARRIED])),
             **_judged(row, frames.arrays["verdicts"][i]),
-            "seen": _times(row, T.SEEN_LEAST, int(row[T.ARRIVED])),
+            "seen": _times(row, T.SEEN_LEAST, T.SEEN_HIGH, int(row[T.ARRIVED])),
         }
     for (bus, node), row in zip(frames.nodes, frames.arrays["nodes"], strict=False):
         found[bus]["nodes"][node] = {
@@ -76,9 +76,10 @@ def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, An
     return found
 
 
-def _times(row: NDArray[np.int64], least: int, count: int) -> dict[str, float] | None:
-    """Return least, mean and greatest time [s] of three columns; None without any."""
+def _times(row: NDArray[np.int64], least: int, high: int, count: int) -> dict[str, float] | None:
+    """Return least, mean and greatest time [s] of the columns of `wire.uses.note`; None without any."""
     if count == 0:
         return None
-    low, total, high = (int(row[least + i]) for i in range(3))
-    return {"min": low * _PICOSECOND, "mean": total / count * _PICOSECOND, "max": high * _PICOSECOND}
+    low, total, most = (int(row[least + i]) for i in range(3))
+    total += int(row[high]) * T.SUM
+    return {"min": low * _PICOSECOND, "mean": total / count * _PICOSECOND, "max": most * _PICOSECOND}

@@ -18,7 +18,8 @@ def delays_of_frames(frames: FramePath, row: int, steps: int) -> Delays:
     messages, uses = frames.arrays["messages"], frames.arrays["uses"]
     step, found = int(frames.arrays["state"][T.STEP_TIME]), {}
     for i, reader in enumerate(frames.receivers[row], int(messages[row, T.FIRST_USE])):
-        at, sampled, count, least, total, most = (int(n) for n in uses[i, T.USED_AT :])
+        at, sampled, count, least, total, most, high = (int(n) for n in uses[i, T.USED_AT :])
+        total += high * T.SUM
         if 0 <= at < steps:  # the last value that came was used too
             time = at * step - sampled
             least, most = (min(least, time), max(most, time)) if count else (time, time)

@@ -94,7 +94,7 @@ def _columns(fault: Fault) -> dict[int, Any]:
         case BusOff():
             return {T.FAULT_KIND: T.BUS_OFF}
         case Babble():
-            return {T.FAULT_KIND: T.BABBLE, T.AMOUNT: min(picoseconds(fault.period or 0.0), 2**61)}
+            return {T.FAULT_KIND: T.BABBLE, T.AMOUNT: min(picoseconds(fault.period or 0.0), 2**62)}
         case _:
             assert_never(fault)
 

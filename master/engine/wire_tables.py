@@ -344,7 +344,7 @@ def _under_way(made: Arrays, bus: NDArray[np.int64], plans: Sequence[MessagePlan
 
 def add_uses(made: Arrays, receivers: Sequence[Sequence[Reader]]) -> None:
     """Add the table of uses to those of the frame path; `receivers` are those of its rows of messages."""
-    rows = [[r.every, r.first, r.later, -1, 0, 0, 0, 0, 0] for own in receivers for r in own]
+    rows = [[r.every, r.first, r.later, -1, *[0] * (T.USE - 4)] for own in receivers for r in own]
     made["uses"] = np.array(rows or [[1] + [0] * (T.USE - 1)], dtype=np.int64)
     first = 0
     for i, own in enumerate(receivers):

@@ -67,8 +67,11 @@ class Replayed:
 
         A frame of a time before the start has the step -1, one that no run reaches a step that none has.
         """
-        since = np.clip(rows[:, TIME] - self.offset, -_LATEST // 1000, _LATEST // 1000) * 1000
-        since -= picoseconds(self.clock.start)
+        zero, rest = divmod(self.offset * 1000 + picoseconds(self.clock.start), 1000)  # in ns, exact
+        if abs(zero) <= _LATEST:
+            since = np.clip(rows[:, TIME] - zero, -_LATEST // 1000, _LATEST // 1000) * 1000 - rest
+        else:  # no log has such a time
+            since = np.full(len(rows), -_LATEST if zero > 0 else _LATEST, dtype=np.int64)
         seen = (since + picoseconds(self.delay)) - self.recording.resolution * 500
         clock = self.clock
         at = clock.start + seen * 1e-12

@@ -112,7 +112,7 @@ def run_bus(w: Wire, bus: int, k: int) -> int:
             if log_error(w, -2 - i, k, finish) != T.DONE:
                 return T.RAISED
             continue
-        note(m, i, T.LATENCY_LEAST, finish - m[i, T.SAMPLED], m[i, T.CARRIED])
+        note(m, i, T.LATENCY_LEAST, T.LATENCY_HIGH, finish - m[i, T.SAMPLED], m[i, T.CARRIED])
         m[i, T.CARRIED] += 1
         if log(w, i, k, finish) != T.DONE:
             return T.RAISED
@@ -212,7 +212,7 @@ def deliver(w: Wire, i: int, k: int, sampled: int, time: int) -> int:
     Return DONE or RAISED.
     """
     m = w.messages
-    note(m, i, T.SEEN_LEAST, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
+    note(m, i, T.SEEN_LEAST, T.SEEN_HIGH, k * w.state[T.STEP_TIME] - sampled, m[i, T.ARRIVED])
     m[i, T.ARRIVED] += 1
     if hit(w, T.LOSE, i, sampled) >= 0:
         m[i, T.LOST] += 1

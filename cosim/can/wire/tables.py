@@ -97,7 +97,10 @@ looked at."""
 """USES rows of `uses` from FIRST_USE on: one for each unit that receives it."""
 (CHECK_START, CHECK_BITS, CHECK_LITTLE) = range(72, 75)
 """The layout of a maker's checksum."""
-MESSAGE = 75
+(LATENCY_HIGH, SEEN_HIGH) = range(75, 77)
+"""Wholes of SUM that were taken out of LATENCY_SUM and SEEN_SUM."""
+MESSAGE = 77
+SUM = 2**62
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
 """Columns of `verdicts`, the number of frames of each message by the number of their status."""
@@ -132,11 +135,14 @@ BYTES = 64
 """Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
 the frame that waits."""
 
-(TURN_EVERY, FIRST_TURN, LATER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST) = range(9)
-USE = 9
+(TURN_EVERY, FIRST_TURN, LATER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST, USE_HIGH) = (
+    range(10)
+)
+USE = 10
 """Columns of uses: period and offset of the receiver in steps, and 1 if what arrives in its step comes after
 its turn; the turn in which the last value is used (-1: none came), and when that was sampled; the number of
-values that were used before, and least, sum and greatest time from sampling to turn."""
+values that were used before, and least, sum and greatest time from sampling to turn, and the wholes of SUM
+that were taken out of the sum."""
 
 # ---- frames under way
 

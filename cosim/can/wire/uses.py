@@ -11,14 +11,18 @@ from . import tables as T
 from .tables import Wire
 
 
-def note(m: Any, i: int, least: int, time: int, before: int) -> None:
+def note(m: Any, i: int, least: int, high: int, time: int, before: int) -> None:
     """Add a time to three columns that follow each other: the least so far, the sum, and the most.
 
-    `before` times were added already.
+    The sum is at most SUM; the column `high` counts how often that was taken out. `before` times were added
+    already.
     """
     if before == 0 or time < m[i, least]:
         m[i, least] = time
     m[i, least + 1] += time
+    if m[i, least + 1] > T.SUM:
+        m[i, least + 1] -= T.SUM
+        m[i, high] += 1
     if before == 0 or time > m[i, least + 2]:
         m[i, least + 2] = time
 
@@ -42,5 +46,5 @@ def count_use(w: Wire, row: int) -> None:
     u = w.uses
     if u[row, T.USED_AT] >= 0:
         time = u[row, T.USED_AT] * w.state[T.STEP_TIME] - u[row, T.USE_SAMPLED]
-        note(u, row, T.USE_LEAST, time, u[row, T.USE_COUNT])
+        note(u, row, T.USE_LEAST, T.USE_HIGH, time, u[row, T.USE_COUNT])
         u[row, T.USE_COUNT] += 1

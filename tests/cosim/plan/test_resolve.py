@@ -7,6 +7,7 @@ import pytest
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.units.measure import Affine
 from support.car import plan
+from support.databases import write
 from support.mocks import MockUnit, plan_of, real
 
 
@@ -144,3 +145,32 @@ def test_a_stimulus_in_a_unit_of_differences_drives_no_absolute_input(tmp_path, 
             [warming], {}, {"stimulus": [{"to": "a.t", "unit": given, "constant": 5.0}]}
         ).drives
         assert drive.map == Affine()
+
+
+def framed(folder, experiment, own, faults=(), **options):
+    units = [MockUnit("a", [real("y", "output")]), MockUnit("b", [real("x", "input")])]
+    system = {
+        "experiment": experiment,
+        "buses": {
+            "c": {"dbc": str(write(folder, 'S : 0|8@1+ (1,0) [0|0] "" X')), "cycle_time": 3600.0} | own
+        },
+        "connect": [{"from": "a.y", "to": ["b.x"], "via": "c.M.S"}],
+    }
+    return plan_of(units, system, {"fault": list(faults)}, **options)
+
+
+LOSE = {"action": "lose", "time": 0.0, "message": "c.M"}
+
+
+@pytest.mark.parametrize(
+    ("bus", "faults"),
+    [({"timing": "frame"}, ()), ({"messages": {"M": {"timeout": 2}}}, ()), ({}, [LOSE])],
+)
+def test_frames_whose_times_cannot_count_are_refused(tmp_path, bus, faults):
+    long = {"start_time": -1e7, "stop_time": -1e7 + 1112 * 3600.0, "step_size": 3600.0}
+    assert framed(tmp_path, long, {}).steps == 1112  # plain values have no times
+    assert framed(tmp_path, long | {"stop_time": -1e7 + 1111 * 3600.0}, bus, faults).framed_bus == "c"
+    with pytest.raises(
+        ConfigError, match=r"experiment\.stop_time = -5996800\.0 s: bus c has frames .* 4e\+06 s"
+    ):
+        framed(tmp_path, long, bus, faults)

@@ -90,6 +90,17 @@ def test_a_run_of_long_steps_has_a_last_time() -> None:
             check_steps(steps, done, 0, clock, 1)
 
 
+def test_a_run_with_frames_has_a_last_time_of_its_own() -> None:
+    clock = dataclasses.replace(Clock.counted(-1e7, 3600.0, 10), told=False)
+    check_steps(1111, 0, 0, clock, 1, "can0")
+    check_steps(1112, 0, 0, clock, 1)
+    for steps, done in ((1112, 0), (1, 1111)):
+        with pytest.raises(
+            ConfigError, match=r"^steps = \d+: bus can0 has frames .* for 4e\+06 s after the st"
+        ):
+            check_steps(steps, done, 0, clock, 1, "can0")
+
+
 def test_a_told_stop_time_bounds_the_steps() -> None:
     clock = Clock.counted(0.0, 0.01, 100)
     check_steps(40, 60, 40, clock, 28)

@@ -55,6 +55,15 @@ def test_offset_and_delay_move_frames_and_times_that_no_run_reaches_stay_behind_
     assert replayed([2**62], clock).steps()[1][0] > 10**8 and replayed([-(2**62)], clock).steps()[1][0] < 0
 
 
+@given(st.sampled_from([-1e12, -1e7, 1e7, 1e9]), st.integers(0, 10**6))
+def test_a_run_that_starts_long_before_or_after_0_s_has_its_frames(start: float, k: int) -> None:
+    clock = Clock.counted(start, 0.25, 10**6)
+    time = round(clock.at(k) * 10**9)
+    inside = abs(time) < 2**62  # a log has no later times
+    _, steps = replayed([min(max(time, -(2**62)), 2**62)], clock).steps()
+    assert steps[0] == k if inside else not 0 <= steps[0] < 10**6
+
+
 def test_blocks_have_the_frames_from_the_start_on() -> None:
     clock = Clock.counted(0.0, 0.01, 100)
     stream = replayed([-(10**9)] * 3000 + [k * 10**7 for k in range(3000)], clock)

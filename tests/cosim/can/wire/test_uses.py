@@ -7,7 +7,7 @@ import pytest
 
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.can.wire.tables import Wire
-from evcosim.cosim.can.wire.uses import count_use, use
+from evcosim.cosim.can.wire.uses import count_use, note, use
 
 
 @pytest.mark.parametrize(
@@ -29,3 +29,12 @@ def test_a_value_is_used_in_the_next_turn(every, first, later, arrivals, delays)
     count_use(w, 0)
     found = w.uses[0, [T.USE_COUNT, T.USE_LEAST, T.USE_SUM, T.USE_MOST]].tolist()
     assert found == [len(delays), min(delays), sum(delays), max(delays)]
+
+
+def test_a_sum_of_times_may_be_beyond_64_bits():
+    row = np.zeros((1, 4), dtype=np.int64)
+    times = [4 * 10**18, 10**18, 3 * 10**18 + 7] * 3
+    for count, time in enumerate(times):
+        note(row.data, 0, 0, 3, time, count)
+    least, total, most, high = row[0].tolist()
+    assert (least, most, total + high * T.SUM) == (10**18, 4 * 10**18, sum(times)) and 0 <= total <= T.SUM
