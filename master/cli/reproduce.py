@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -45,9 +46,15 @@ def reproduce(
     folder = output_folder(output)
     begin = time.perf_counter()
     unwritten = ""
+    said = _PapersDone({} if as_json or sys.stderr.isatty() else library.counts(names), begin)
     with progress_bar("reproducing", 0.0, 1.0, not as_json) as show:
+
+        def progress(done: int, total: int, task: str) -> None:
+            show(done / total)
+            said(task)
+
         try:
-            pages = library.reproduce(names, folder, workers, lambda done, total, _: show(done / total))
+            pages = library.reproduce(names, folder, workers, progress)
         except library.UnwrittenError as error:
             pages, unwritten = error.pages, str(error)
     seconds = time.perf_counter() - begin
@@ -59,6 +66,23 @@ def reproduce(
         complain(unwritten)
         return FAILED
     return 1 if any(page.missed for page in pages) else 0
+
+
+class _PapersDone:
+    """A line on stderr for each paper whose runs have ended, where no bar shows that the command lives."""
+
+    def __init__(self, left: dict[str, int], begin: float) -> None:
+        self.left, self.begin = left, begin
+
+    def __call__(self, task: str) -> None:
+        from .failures import complain
+
+        paper = task.partition(":")[0]
+        if paper in self.left:
+            self.left[paper] -= 1
+            if not self.left[paper]:
+                after = time.perf_counter() - self.begin
+                complain(f"{paper}: all runs have ended, after {after:.0f} s")
 
 
 def _as_data(page: Page) -> dict[str, Any]:

@@ -32,6 +32,11 @@ def load(name: str) -> Paper:
     return paper
 
 
+def counts(names: Sequence[str]) -> dict[str, int]:
+    """Return the number of runs of each paper."""
+    return {name: len(load(name).runs()) for name in names}
+
+
 def reproduce(
     names: Sequence[str], folder: Path, workers: int | None = None, progress: TaskProgress | None = None
 ) -> list[Page]:

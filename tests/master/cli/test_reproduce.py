@@ -47,6 +47,22 @@ def test_a_full_disk_hides_no_number(evcosim, monkeypatch):
     assert "in pages" not in answer.out
 
 
+def test_a_line_for_each_paper_tells_that_it_lives(evcosim, monkeypatch):
+    """On stderr, when the last run of the paper has ended; with --json stderr is for messages alone."""
+
+    def runs(names, _folder, _workers, progress):
+        left = [f"{name}: {task.name}" for name in names for task in papers.load(name).runs()]
+        for i, task in enumerate(left):
+            progress(i + 1, len(left), task)
+        return [page_of("reproduced")]
+
+    monkeypatch.setattr(papers, "reproduce", runs)
+    answer = evcosim("reproduce", "braking", "scooter", "-o", "pages")
+    said = [line.partition(" after")[0] for line in answer.err.splitlines()]
+    assert said == [f"evcosim: {paper}: all runs have ended," for paper in ("braking", "scooter")]
+    assert evcosim("reproduce", "braking", "--json", "-o", "pages").err == ""
+
+
 def test_an_unknown_paper(evcosim, tmp_path):
     refused(evcosim("reproduce", "scoter", "-o", "pages"), "no paper 'scoter' (did you mean 'scooter'?)")
     assert not (tmp_path / "pages").exists()

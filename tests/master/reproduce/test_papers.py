@@ -13,6 +13,10 @@ from evcosim.master.reproduce.page import Page
 from evcosim.master.studies.parallel import TaskError
 
 
+def test_the_number_of_runs_of_each_paper():
+    assert papers.counts(["braking"]) == {"braking": len(papers.load("braking").runs())}
+
+
 def test_a_run_that_fails_is_named(tmp_path, monkeypatch):
     paper = papers.load("lane_keeping")
     broken = dataclasses.replace(paper.runs()[0], function=float, arguments=("no road",), keywords={})
