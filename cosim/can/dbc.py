@@ -19,6 +19,7 @@ from .database import Database, Message, Signal
 from .dbc_entries import Attribute, Entries, Key, MessageEntry, SignalEntry, entries, number, whole
 from .dbc_statements import statements
 from .flaws import GREATEST, code_by_text, database_of
+from .message_settings import SLOWEST
 
 _MILLISECOND = Fraction(1, 1000)
 _EXTENDED = 1 << 31
@@ -187,10 +188,14 @@ class _Reader:
         found = self._found(key, name) if default else self.entries.attribute(key, name)
         if found is None:
             return None
-        value = number(found.value)
+        definition = self.entries.definitions.get(name)
+        text = found.value
+        if definition and definition.choices and (index := found.index(definition.choices)) is not None:
+            text = definition.choices[index] if 0 <= index < len(definition.choices) else text
+        value = number(text)
         if value is None and found.value:
             about = f"message '{self.entry.name}'{f': signal {key[1]}' if key[1] else ''}"
-            said = f'{about}: {name}: a finite number is needed, not "{found.value[:40]}"; it is left out'
+            said = f'{about}: {name}: a finite number is needed, not "{text[:40]}"; it is left out'
             self.entries.notes.append((found.line or self.entry.line, said))
         return value
 
@@ -198,9 +203,11 @@ class _Reader:
         milliseconds = self._number((self.entry.dbc_id, ""), name)
         if milliseconds is None:
             return None
-        if milliseconds < 0:
-            said = f"message '{self.entry.name}': {name}: {milliseconds} ms is no time; it is left out"
-            self.entries.notes.append((self.entry.line, said))
+        if not 0 <= milliseconds <= 1000.0 * SLOWEST:
+            rule = f"is more than {SLOWEST:g} s" if milliseconds > 0 else "is no time"
+            found = self._found((self.entry.dbc_id, ""), name)
+            said = f"message '{self.entry.name}': {name}: {milliseconds:.9g} ms {rule}; it is left out"
+            self.entries.notes.append((found.line if found and found.line else self.entry.line, said))
             return None
         return float(Fraction(str(milliseconds)) * _MILLISECOND)
 
@@ -211,9 +218,14 @@ class _Reader:
             return ""
         definition = self.entries.definitions.get(name)
         choices = list(definition.choices) if definition and definition.choices else usual
-        index = whole(found.value)
+        index = found.index(choices)
         if index is None:
             return found.value
+        if definition and not definition.choices and not usual:
+            about = f"message '{self.entry.name}': {name}"
+            said = f"{about}: the attribute is no ENUM, so that {found.value} says nothing"
+            self.entries.notes.append((found.line or self.entry.line, said))
+            return ""
         if not 0 <= index < len(choices):
             said = f"message '{self.entry.name}': {name}: {found.value} is none of its {len(choices)} choices"
             self.entries.notes.append((found.line or self.entry.line, said))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from .dbc_statements import NUMBER, STRING, Statement
 
@@ -84,10 +84,17 @@ class Definition:
 
 @dataclasses.dataclass(frozen=True)
 class Attribute:
-    """The value of an attribute, as a number's text or as a text, and its line (0: the default's)."""
+    """The value of an attribute, a number's text or (`quoted`) a text, and its line (0: the default's)."""
 
     value: str
     line: int = 0
+    quoted: bool = False
+
+    def index(self, choices: Sequence[str]) -> int | None:
+        """Return the index of its choice, by text or by number, which may be beyond them; None: none."""
+        if self.quoted and self.value in choices:
+            return choices.index(self.value)
+        return whole(self.value)
 
 
 Key = tuple[int, str]
@@ -233,11 +240,12 @@ def _definition(made: Entries, statement: Statement, match: re.Match[str]) -> No
 
 
 def _default(made: Entries, statement: Statement, match: re.Match[str]) -> None:
-    made.defaults[text_of(match[1])] = Attribute(_plain(match[2]))
+    made.defaults[text_of(match[1])] = _value_of(match[2])
 
 
-def _plain(value: str) -> str:
-    return text_of(value) if value.startswith('"') else value
+def _value_of(written: str, line: int = 0) -> Attribute:
+    quoted = written.startswith('"')
+    return Attribute(text_of(written) if quoted else written, line, quoted)
 
 
 _NOW = {
@@ -263,7 +271,7 @@ def _key(made: Entries, statement: Statement, number: str, signal: str, known: s
 
 
 def _attribute(made: Entries, statement: Statement, match: re.Match[str], known: set[Key]) -> None:
-    name, value = text_of(match["name"]), Attribute(_plain(match["value"]), statement.line)
+    name, value = text_of(match["name"]), _value_of(match["value"], statement.line)
     if name not in made.definitions:
         made.notes.append((statement.line, f"the attribute \"{name}\" is not defined: '{statement.shown}'"))
     if match["other"]:
@@ -274,7 +282,11 @@ def _attribute(made: Entries, statement: Statement, match: re.Match[str], known:
     if number is None:
         made.of_file[name] = value
     elif key := _key(made, statement, number, match["signal"] or "", known):
-        made.attributes.setdefault(key, {})[name] = value
+        own = made.attributes.setdefault(key, {})
+        if name in own and own[name].value != value.value:
+            said = f"the attribute \"{name}\" is given a second time; this one counts: '{statement.shown}'"
+            made.notes.append((statement.line, said))
+        own[name] = value
 
 
 def _comment(made: Entries, statement: Statement, match: re.Match[str], known: set[Key]) -> None:
@@ -285,18 +297,32 @@ def _comment(made: Entries, statement: Statement, match: re.Match[str], known: s
 
 def _choices(made: Entries, statement: Statement, match: re.Match[str], known: set[Key]) -> None:
     if key := _key(made, statement, match[1], match[2], known):
-        found = ((whole(number), text_of(text)) for number, text in _PAIR.findall(match[3]))
-        made.choices[key] = {raw: text for raw, text in found if raw is not None}
+        found: dict[int, str] = {}
+        made.choices[key] = found
+        for written, text in _PAIR.findall(match[3]):
+            raw = whole(written)
+            if raw is None:
+                continue
+            if found.setdefault(raw, text_of(text)) != text_of(text):
+                said = f"VAL_ of signal '{match[2]}' has two texts for {raw}; the last counts"
+                made.notes.append((statement.line, said))
+                found[raw] = text_of(text)
 
 
 def _value_type(made: Entries, statement: Statement, match: re.Match[str], known: set[Key]) -> None:
     if key := _key(made, statement, match[1], match[2], known):
-        made.floats[key] = int(match[3])
+        made.floats[key] = kind = int(match[3])
+        if kind > 2:
+            said = f"line {statement.line}: {kind} is no type of value: 0 an integer, 1 a float, 2 a double"
+            made.broken.setdefault(key, said)
 
 
 def _selector(made: Entries, statement: Statement, match: re.Match[str], known: set[Key]) -> None:
     if key := _key(made, statement, match[1], match[2], known):
         ranges = tuple((int(low), int(high)) for low, high in _RANGE.findall(match[4]))
+        if turned := [f"{low}-{high}" for low, high in ranges if low > high]:
+            said = f"line {statement.line}: the range {turned[0]} ends before it begins: '{statement.shown}'"
+            made.broken.setdefault(key, said)
         made.selectors[key] = (match[3], ranges)
 
 

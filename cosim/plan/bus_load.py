@@ -101,6 +101,11 @@ def check_load(load: BusLoad, timing: str, place: str) -> str:
             f"{place}: its messages take {load.least:.1%} of {load.bitrate} bit/s without any stuff bit: no "
             'bus carries them. A higher bitrate, longer cycles, or timing = "frame", which shows who starves'
         )
+    if load.least > 1.0:
+        return (
+            f"{place}: its messages take {load.least:.1%} of {load.bitrate} bit/s without any stuff bit: low "
+            "priorities starve"
+        )
     if load.most > 1.0:
         return (
             f"{place}: its messages take {load.least:.1%} to {load.most:.1%} of {load.bitrate} bit/s: with "

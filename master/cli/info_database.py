@@ -46,8 +46,11 @@ def described(
 
 
 def _flaws_of(database: Database, message: Message) -> list[str]:
-    lines = {message.line, *(signal.line for signal in message.signals.values())}
-    return [w for w in database.warnings if any(w.startswith(f"{database.path}: line {n}: ") for n in lines)]
+    """Return the flaws that name a message, or are about its lines or those of its signals."""
+    lines = {f"line {n}: " for n in (message.line, *(signal.line for signal in message.signals.values()))}
+    starts = tuple(f"{database.path}: {text}" for text in (*lines, *message.unread.values()))
+    named = f": message '{message.name}': "
+    return [said for said in database.warnings if said.startswith(starts) or named in said]
 
 
 def _sum(messages: list[dict[str, Any]], i: int) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from pathlib import Path
 
 import cantools
@@ -289,6 +290,53 @@ BA_ "SystemNodeLongSymbol" BU_ A "ANodeWithALongName";
 """
 
 
+@pytest.mark.parametrize(
+    "name", ["GenMsgCycleTime", "GenMsgStartDelayTime", "GenMsgDelayTime", "GenMsgCycleTimeFast"]
+)
+@pytest.mark.parametrize("value", ["1e20", "1e25", "3600001", "-1"])
+def test_a_time_that_no_message_has_is_a_flaw(tmp_path: Path, name: str, value: str) -> None:
+    tail = f'BA_DEF_ BO_ "{name}" FLOAT 0 0;\nBA_ "{name}" BO_ 1 {value};\n'
+    database = load_dbc(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" X', tail=tail))
+    message = database.messages["M"]
+    assert (
+        message.cycle_time is message.fast_cycle is None and message.start_delay == message.min_interval == 0
+    )
+    (said,) = database.warnings
+    assert re.search(
+        rf"test\.dbc: line \d+: message 'M': {name}: .* ms is (more than 3600 s|no time); it is left", said
+    )
+
+
+def test_a_range_that_ends_before_it_begins_stops_who_uses_its_signal(tmp_path: Path) -> None:
+    signals = [
+        'A M : 0|8@1+ (1,0) [0|0] "" X',
+        'X m0 : 8|8@1+ (1,0) [0|0] "" X',
+        'Y m0 : 8|8@1+ (1,0) [0|0] "" X',
+    ]
+    path = write(tmp_path, *signals, tail="SG_MUL_VAL_ 1 X A 4-4, 9-3;\nSG_MUL_VAL_ 1 Y A 5-5;\n")
+    assert "the range 9-3 ends before it begins" in refusal(path, "X")
+    database = load_dbc(path)
+    assert "X" in database.warnings[0] and not database.messages["M"].signals["Y"].problem
+
+
+@pytest.mark.parametrize(("kind", "written", "cycle"), [
+    ('ENUM "10","20"', "1", 0.02), ('ENUM "10","20"', '"10"', 0.01), ("INT 0 100", "1", 0.001),
+])  # fmt: skip # rows
+def test_the_choices_of_a_time_may_be_numbers(tmp_path: Path, kind: str, written: str, cycle: float) -> None:
+    tail = f'BA_DEF_ BO_ "GenMsgCycleTime" {kind};\nBA_ "GenMsgCycleTime" BO_ 1 {written};\n'
+    database = load_dbc(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" X', tail=tail))
+    assert (database.messages["M"].cycle_time, database.warnings) == (cycle, ())
+
+
+def test_a_send_type_that_is_no_enum_is_a_flaw(tmp_path: Path) -> None:
+    tail = 'BA_DEF_ BO_ "GenMsgSendType" INT 0 10;\nBA_ "GenMsgSendType" BO_ 1 1;\n'
+    database = load_dbc(write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" X', tail=tail))
+    assert database.messages["M"].send_type == ""
+    assert database.warnings[0].endswith(
+        "message 'M': GenMsgSendType: the attribute is no ENUM, so that 1 says nothing"
+    )
+
+
 def test_long_names_are_those_of_multiplexers_and_nodes_too(tmp_path: Path) -> None:
     path = tmp_path / "long.dbc"
     path.write_text(LONG)
@@ -310,3 +358,16 @@ def test_a_range_from_0_to_0_is_none_however_it_is_written(tmp_path: Path, low: 
     path.write_text(f'{HEAD}\nBO_ 1 M: 8 A\n SG_ S : 0|8@1+ (0.5,0) [{low}|{high}] "" B\n')
     signal = load_dbc(path).messages["M"].signals["S"]
     assert (signal.minimum, signal.maximum) == (None, None)
+
+
+def test_what_a_file_says_twice_or_undefined_is_a_flaw(tmp_path: Path) -> None:
+    own = 'BA_ "GenMsgCycleTime" BO_ 1 10;\nBA_ "GenMsgCycleTime" BO_ 1 20;\n'
+    tail = own + 'VAL_ 1 S 0 "off" 1 "on" 1 "error";\nSIG_VALTYPE_ 1 T : 9;\n'
+    signals = ['S : 0|8@1+ (1,0) [0|0] "" X', 'T : 8|8@1+ (1,0) [0|0] "" X']
+    database = load_dbc(write(tmp_path, *signals, tail=tail))
+    message = database.messages["M"]
+    assert message.cycle_time == 0.02 and message.signals["S"].choices == {0: "off", 1: "error"}
+    assert "9 is no type of value" in message.signals["T"].problem
+    rules = ["cannot be used: line", "given a second time; this one counts", "has two texts for 1; the last"]
+    assert len(database.warnings) == 3
+    assert all(rule in said for rule, said in zip(rules, database.warnings, strict=True))

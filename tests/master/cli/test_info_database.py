@@ -91,7 +91,7 @@ def test_what_cannot_be_used_and_why(car):
 
 def test_a_message_alone_has_its_own_flaws(car):
     assert described(car, "Fast")["flaws"] == []
-    assert len(described(car, "Big")["flaws"]) == 2
+    assert len(described(car, "Big")["flaws"]) == 3  # one of a signal that cannot be read
     assert len(described(car)["flaws"]) == 3
     with pytest.raises(ConfigError, match=r"car.dbc: no message 'Fats' \(did you mean 'Fast'\?\)"):
         described(car, "Fats")
@@ -141,3 +141,14 @@ def test_json_and_options_of_others(car, evcosim):
         assert answer.code == 2
         assert "are for a CAN database (.dbc .kcd .sym .arxml)" in answer.err
     assert evcosim("info", str(car), "--search", "x").code == 2
+
+
+def test_a_message_alone_has_the_flaws_of_its_lines_and_attributes(tmp_path):
+    path = tmp_path / "x.dbc"
+    tail = 'BA_DEF_ BO_ "GenMsgCycleTime" FLOAT 0 0;\nBA_ "GenMsgCycleTime" BO_ 1 1e20;\n'
+    path.write_text(
+        f'{HEAD}\nBO_ 1 M: 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] "" B\n SG_ T : x|8@1+ (1,0) [0|0] "" B\n\n'
+        f'BO_ 2 N: 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] "" B\n\n{tail}'
+    )
+    assert described(path, "M")["flaws"] == described(path)["flaws"] and len(described(path)["flaws"]) == 2
+    assert described(path, "N")["flaws"] == []
