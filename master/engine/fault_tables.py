@@ -43,7 +43,9 @@ def add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[Faul
     made["faults"] = np.zeros((max(1, len(faults)), T.FAULT_WIDTH), dtype=np.int64)
     made["odds"] = np.ones(max(1, len(faults)))
     made["state"][T.FAULTS] = len(faults)
-    for row, found in enumerate(in_order(faults)):
+    numbers = numbers_of(faults)
+    for row, i in enumerate(in_order(faults)):
+        found = faults[i]
         bus = buses.index(found.bus)
         columns = {
             T.FAULT_BUS: bus,
@@ -53,6 +55,7 @@ def add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[Faul
             T.UNTIL_TIME: found.until,
             T.LEFT: -1,
             T.EACH: 1,
+            T.FAULT_NUMBER: numbers[i],
         }
         for column, value in (columns | _columns(found.fault)).items():
             made["faults"][row, column] = value
@@ -67,15 +70,27 @@ def add_faults(made: Arrays, plans: Sequence[MessagePlan], faults: Sequence[Faul
                 made["odds"][row] = found.fault.probability
 
 
-def in_order(faults: Sequence[FaultPlan]) -> list[FaultPlan]:
-    """Return faults in the order of their rows."""
-    return sorted(faults, key=lambda fault: fault.since)
+def in_order(faults: Sequence[FaultPlan]) -> list[int]:
+    """Return the places of faults in the order of their rows."""
+    return sorted(range(len(faults)), key=lambda i: faults[i].since)
+
+
+def numbers_of(faults: Sequence[FaultPlan]) -> list[int]:
+    """Return the number by which each fault draws: no two of one action that can hit one message share it.
+
+    They count those of one action on one message, or on one node, which is odd, in the order of the file: a
+    fault more changes no draw of those on others.
+    """
+    targets = [(found.fault.action, found.bus, found.message, found.node) for found in faults]
+    return [
+        targets[:i].count(target) << 1 | bool(found.node)
+        for i, (target, found) in enumerate(zip(targets, faults, strict=True))
+    ]
 
 
 def hits_of(made: Arrays, faults: Sequence[FaultPlan]) -> dict[int, int]:
     """Return the number of frames that each fault hit, by its place in `faults`."""
-    rows = sorted(range(len(faults)), key=lambda i: faults[i].since)
-    return {i: int(made["faults"][row, T.HITS]) for row, i in enumerate(rows)}
+    return {i: int(made["faults"][row, T.HITS]) for row, i in enumerate(in_order(faults))}
 
 
 def _columns(fault: Fault) -> dict[int, Any]:

@@ -118,6 +118,22 @@ def requested(message: Sent, values: Sequence[int], idle: int) -> list[int]:
     return sent
 
 
+def struck(
+    times: Sequence[int],
+    since: int,
+    until: int,
+    every: int,
+    count: int | None,
+    by_chance: Callable[[int], bool],
+) -> list[int]:
+    """Return those of the frames sampled at `times` that a fault hits, whatever others do to them.
+
+    `by_chance` says of the n-th frame in its time, from 1 on, if the draw is for the fault.
+    """
+    met = [time for time in times if since <= time < until]
+    return [time for n, time in enumerate(met) if n % every == 0 and by_chance(n + 1)][:count]
+
+
 def stuffed_length(bits: str) -> int:
     """Return the number of bits of a text with a stuff bit after each five equal ones."""
     out = ""

@@ -1,7 +1,8 @@
 """Faults of a run, looked up when a frame is sent and when it is received.
 
 A fault hits frames that are sampled in its time, of a message or of all messages of a node: each `EVERY`-th,
-with its probability, and no more than LEFT.
+with its probability, and no more than LEFT. It counts and draws by itself: what others do to a frame changes
+neither, and a frame that several hit counts for each of them.
 """
 
 from __future__ import annotations
@@ -17,29 +18,36 @@ _FAULT = 3  # what is drawn for
 
 
 def hit(w: Wire, kind: int, i: int, now: int) -> int:
-    """Return the first fault of a kind that hits the frame of message i sampled at a time; -1: none does."""
-    return hit_from(w, 0, kind, i, now)
+    """Return the first fault of a kind that hits the frame of message i sampled at a time; -1: none does.
+
+    All that do count it.
+    """
+    found = -1
+    for row in range(w.state[T.FAULTS]):
+        if w.faults[row, T.FAULT_KIND] == kind and strikes(w, row, i, now) and found < 0:
+            found = row
+    return found
 
 
-def hit_from(w: Wire, start: int, kind: int, i: int, now: int) -> int:
-    """Return the first fault, from row `start` on, of a kind that hits a frame as `hit` does."""
+def strikes(w: Wire, row: int, i: int, now: int) -> bool:
+    """Return True if the fault of a row hits the frame of message i sampled at a time, which it counts."""
     m, f = w.messages, w.faults
-    for row in range(start, w.state[T.FAULTS]):
-        if f[row, T.FAULT_KIND] != kind or not f[row, T.SINCE_TIME] <= now < f[row, T.UNTIL_TIME]:
-            continue
-        by_key = f[row, T.FAULT_BUS] == m[i, T.BUS] and f[row, T.FAULT_KEY] == m[i, T.KEY]
-        if not by_key and f[row, T.FAULT_NODE] != m[i, T.NODE]:
-            continue
-        f[row, T.MET] += 1
-        if f[row, T.LEFT] == 0 or (f[row, T.MET] - 1) % f[row, T.EACH]:
-            continue
-        name = w.buses[m[i, T.BUS], T.NAME]
-        if drawn(f[row, T.FAULT_SEED], name, number_of(w, i), f[row, T.MET], _FAULT) < w.odds[row]:
-            f[row, T.HITS] += 1
-            if f[row, T.LEFT] > 0:
-                f[row, T.LEFT] -= 1
-            return row
-    return -1
+    if not f[row, T.SINCE_TIME] <= now < f[row, T.UNTIL_TIME]:
+        return False
+    by_key = f[row, T.FAULT_BUS] == m[i, T.BUS] and f[row, T.FAULT_KEY] == m[i, T.KEY]
+    if not by_key and f[row, T.FAULT_NODE] != m[i, T.NODE]:
+        return False
+    f[row, T.MET] += 1
+    if f[row, T.LEFT] == 0 or (f[row, T.MET] - 1) % f[row, T.EACH]:
+        return False
+    name = w.buses[m[i, T.BUS], T.NAME]
+    purpose = _FAULT | f[row, T.FAULT_KIND] << 8 | f[row, T.FAULT_NUMBER] << 16
+    if drawn(f[row, T.FAULT_SEED], name, number_of(w, i), f[row, T.MET], purpose) >= w.odds[row]:
+        return False
+    f[row, T.HITS] += 1
+    if f[row, T.LEFT] > 0:
+        f[row, T.LEFT] -= 1
+    return True
 
 
 def spoil(w: Wire, i: int, now: int, k: int) -> int:
@@ -93,8 +101,7 @@ def spoil_logged(w: Wire, i: int, now: int, k: int) -> int:
 
 def corrupt(w: Wire, i: int, now: int) -> None:
     """Flip the bits of the frame at hand, of message i, that a fault at this time flips."""
-    wrong = hit(w, T.CORRUPT, i, now)
-    while wrong >= 0:  # each has a byte of its own
-        if w.faults[wrong, T.BYTE] < w.messages[i, T.LENGTH]:
-            w.frame[w.faults[wrong, T.BYTE]] ^= w.faults[wrong, T.MASK]
-        wrong = hit_from(w, wrong + 1, T.CORRUPT, i, now)
+    for row in range(w.state[T.FAULTS]):  # each has a byte of its own
+        if w.faults[row, T.FAULT_KIND] == T.CORRUPT and strikes(w, row, i, now):
+            if w.faults[row, T.BYTE] < w.messages[i, T.LENGTH]:
+                w.frame[w.faults[row, T.BYTE]] ^= w.faults[row, T.MASK]

@@ -190,12 +190,12 @@ STATE = 4
 frame at hand arrives."""
 
 (FAULT_KIND, FAULT_BUS, FAULT_KEY, FAULT_NODE, SINCE_TIME, UNTIL_TIME, LEFT, EACH, MET, HITS) = range(10)
-(FAULT_SEED, BYTE, MASK, COUNTER_TOO, AMOUNT) = range(10, 15)
-FAULT_WIDTH = 15
+(FAULT_SEED, BYTE, MASK, COUNTER_TOO, AMOUNT, FAULT_NUMBER) = range(10, 16)
+FAULT_WIDTH = 16
 """Columns of faults: bus and key of the message, or the node; its time; frames that it may still hit (-1:
 all) and each how many-th; those that it met, and hit; its seed; what it does to a byte; 1 if the counter is
-frozen; how much later frames arrive, or the time between two that babble (0: back to back). Of BUS_OFF and
-BABBLE, MET is 1 once they have begun."""
+frozen; how much later frames arrive, or the time between two that babble (0: back to back); its number among those
+of one kind on one target, in draws. Of BUS_OFF and BABBLE, MET is 1 once they have begun."""
 LOSE, SILENCE, CORRUPT, FREEZE, LATE, BUS_OFF, BABBLE = range(7)
 
 # ---- what Python is asked for, and what comes back

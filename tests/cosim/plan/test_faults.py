@@ -195,6 +195,25 @@ def test_a_babbling_node_starves_all_others_and_fills_the_bus(tmp_path):
     assert messages["EMD_Status"]["replaced"] == 20
 
 
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_faults_at_once_count_and_draw_by_themselves(tmp_path, engine):
+    """Three losses and wrong bits of one message: 0.3 of the frames by chance each, every 3rd and 2nd."""
+    lose = 'action = "lose"\ntime = 0.0\nmessage = "can0.EMD_Status"\n'
+    wrong = lose.replace("lose", "corrupt") + "byte = 0\n"
+    given = [lose + "probability = 0.3", lose + "every = 3", lose + "every = 2\ntime = -1.0", wrong]
+    given[2] = given[2].replace("time = 0.0\n", "")
+    text = "\n[[fault]]\n".join([*given, wrong + "probability = 0.3"])
+    (tmp_path / "faults.toml").write_text(SCENARIO + text)
+    with Simulation("scooter", tmp_path / "faults.toml", engine=engine, isolation="none") as run:
+        run.step(300)
+        manifest = run.manifest()
+    found = [fault["frames"] for fault in manifest["faults"]]
+    assert found[1:4] == [100, 150, 300]
+    assert 60 < found[0] < 120 and 60 < found[4] < 120 and found[0] != found[4]
+    lost = manifest["frames"]["can0"]["messages"]["EMD_Status"]["lost"]
+    assert 200 < lost < 200 + found[0]  # the union
+
+
 def test_faults_are_in_the_manifest_with_the_frames_that_they_hit(tmp_path):
     text = """action = "lose"
 time = 0.5

@@ -11,7 +11,7 @@ from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.plan.faults import FOREVER, babblers, planned
 from evcosim.cosim.plan.plan import MessagePlan
 from evcosim.cosim.system.scenario import ScenarioFile
-from evcosim.master.engine.fault_tables import hits_of, nodes_of, owner_of
+from evcosim.master.engine.fault_tables import hits_of, nodes_of, numbers_of, owner_of
 from evcosim.master.engine.sender import Sender
 from evcosim.master.engine.wire_tables import wire_arrays
 
@@ -42,6 +42,24 @@ def test_rows_stand_in_the_order_of_their_times():
     assert made["messages"][:, T.BABBLES].tolist() == [0, 1]
     rows[:, T.HITS] = 7, 8, 9
     assert hits_of(made, faults) == {0: 9, 1: 8, 2: 7}
+
+
+def test_a_fault_more_changes_no_draw_of_those_on_others():
+    """No two faults of one action that can hit one message have one number."""
+    message = Message("test.dbc", "M", 16, senders=("N",))
+    other = Message("test.dbc", "O", 17, senders=("N",))
+    plans = [MessagePlan("can0", m, BusSettings(), (), {}, 1, 0, None) for m in (message, other)]
+    lose, by_node = ({"action": "lose", "time": 9.0, key: f"can0.{name}"}
+                     for key, name in (("message", "M"), ("node", "N")))  # fmt: skip # a table
+    corrupt = {"action": "corrupt", "time": 0.0, "byte": 1, "message": "can0.M"}
+    given = [lose, by_node, corrupt, {**lose, "time": 1.0}, {**lose, "message": "can0.O"}]
+
+    def numbers(faults):
+        faults = ScenarioFile.model_validate({"fault": faults}).faults
+        return numbers_of(planned(faults, plans, 0.0, "test.toml"))
+
+    assert numbers(given) == [0, 1, 0, 2, 0]
+    assert numbers([{**lose, "message": "can0.O"}, *given[:4]])[1:] == [0, 1, 0, 2]
 
 
 def test_the_node_behind_a_mailbox():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from evcosim.cosim.can.wire import faults
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.can.wire.protect import wipe
 from evcosim.cosim.can.wire.tables import Wire
+from support.bus_oracle import struck
 
 
 def wire(**columns: int) -> SimpleNamespace:
@@ -63,6 +65,46 @@ def test_by_chance():
     made = wire(FAULT_KEY=7, UNTIL_TIME=4010, FAULT_SEED=3)
     made.odds[0] = 0.25
     assert 900 < len(hits(made, 0, range(4010))) < 1100
+
+
+@pytest.mark.parametrize("kind", [T.LOSE, T.SILENCE, T.CORRUPT, T.FREEZE, T.LATE])
+@pytest.mark.parametrize("seed", range(4))
+def test_each_fault_counts_all_frames_whatever_others_hit(kind, seed):
+    """Faults of one kind against the oracle's, each alone: frames and credit are its own, in any order."""
+    draw = random.Random(seed)
+    made = wire()
+    made.state[T.FAULTS] = 4
+    expected = []
+    for row in range(4):
+        since, every, count = draw.randrange(20), draw.choice([1, 2, 3]), draw.choice([None, 5])
+        until = since + draw.randrange(10, 40)
+        made.faults[row, [T.FAULT_KIND, T.FAULT_KEY, T.SINCE_TIME, T.UNTIL_TIME]] = kind, 7, since, until
+        made.faults[row, [T.EACH, T.LEFT]] = every, -1 if count is None else count
+        expected.append(struck(range(60), since, until, every, count, lambda n: True))
+    if kind == T.CORRUPT:
+        made.faults[:4, T.MASK] = 1, 2, 4, 8
+        made.messages[0, T.LENGTH] = 1
+        for now in range(60):
+            made.frame[0] = 0
+            faults.corrupt(made.wire, 0, now)
+            assert made.frame[0] == sum(1 << row for row in range(4) if now in expected[row])
+    else:
+        found = [now for now in range(60) if faults.hit(made.wire, kind, 0, now) >= 0]
+        assert found == sorted(set().union(*expected))
+    assert made.faults[:4, T.HITS].tolist() == [len(frames) for frames in expected]
+
+
+def test_draws_of_two_faults_are_independent():
+    """By kind and by number, at one seed: a share of 0.3 x 0.3 of the frames is hit by both."""
+    for columns in ({T.FAULT_KIND: T.CORRUPT}, {T.FAULT_NUMBER: 1}, {T.FAULT_NUMBER: 2}):
+        made = wire(FAULT_KEY=7, UNTIL_TIME=10010)
+        made.faults[1] = made.faults[0]
+        for column, value in columns.items():
+            made.faults[1, column] = value
+        made.odds[:2] = 0.3
+        hit = [[faults.strikes(made.wire, row, 0, now) for now in range(10, 10010)] for row in (0, 1)]
+        both = [one and other for one, other in zip(*hit, strict=True)]
+        assert 800 < sum(both) < 1000
 
 
 def test_the_bits_of_the_counter_alone_are_wiped():
