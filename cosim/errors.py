@@ -79,8 +79,13 @@ class ShortageError(RunError):
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """Return ` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar."""
-    close = difflib.get_close_matches(word, list(words), n=1, cutoff=0.6)
+    """Return ` (did you mean 'x'?)` for the most similar of `words`, or nothing where none is similar.
+
+    One that differs by case alone is the most similar.
+    """
+    known = list(words)
+    same = [other for other in known if other.casefold() == word.casefold()]
+    close = same or difflib.get_close_matches(word, known, n=1, cutoff=0.6)
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 

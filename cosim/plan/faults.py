@@ -46,11 +46,16 @@ def with_faults(plan: Plan, system: System, scenario: Scenario, varied: BusVaria
 
 
 def _losses(plan: Plan, varied: BusVariation) -> list[Fault]:
-    """Return a fault for each message of a plan by which its frames are lost with a probability."""
-    names = dict.fromkeys(f"{message.bus}.{message.message.name}" for message in plan.messages)
-    loss, seed = float(varied.loss), int(varied.seed)
-    start = plan.clock.start
-    return [Lose(action="lose", time=start, message=name, probability=loss, seed=seed) for name in names]
+    """Return a fault for each message of a plan by which its frames are lost with a probability.
+
+    The seed is that of its bus, to which a variation has added its own.
+    """
+    seeds = {f"{message.bus}.{message.message.name}": message.settings.seed for message in plan.messages}
+    loss, start = float(varied.loss), plan.clock.start
+    return [
+        Lose(action="lose", time=start, message=name, probability=loss, seed=seed)
+        for name, seed in seeds.items()
+    ]
 
 
 def planned(

@@ -32,11 +32,11 @@ _FAULTY = {
 def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
     """Return the counts of the buses that carried frames, by name, after so many steps.
 
-    Of a bus on which frames take time: `load`, the share of the time that it was busy, and of each node the
-    error counters. Of each message its `load`, the numbers of frames that were sent, replaced by a newer one
-    before they were carried, carried, ended by wire errors and arrived, and least, mean and greatest time [s]
-    from the sampling to the end of the frame (`latency`) and to the communication point at which
-    receivers see it (`seen`).
+    Of a bus on which frames take time: `load`, the share of the time that it was busy (of a frame that ends
+    later, the part until then), and of each node the error counters. Of each message its `load`, the numbers
+    of frames that were sent, replaced by a newer one before they were carried, carried, ended by wire errors
+    and arrived, and least, mean and greatest time [s] from the sampling to the end of the frame (`latency`)
+    and to the communication point at which receivers see it (`seen`).
     """
     found: dict[str, dict[str, Any]] = {}
     messages, state = frames.arrays["messages"], frames.arrays["state"]
@@ -44,7 +44,9 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
     for i, sender in enumerate(frames.senders):
         row = messages[i]
         about = found.setdefault(sender.plan.bus, {"load": 0.0, "messages": {}, "nodes": {}})
-        load = float(row[T.BUSY]) / elapsed
+        bus = frames.arrays["buses"][row[T.BUS]]
+        later = max(0, int(bus[T.FREE_AT]) - elapsed) if bus[T.BEGUN_BY] == i and row[T.BUSY] else 0
+        load = float(int(row[T.BUSY]) - later) / elapsed
         about["load"] += load
         page = "".join(f" {name} = {raw}" for name, raw in sender.plan.page.items())
         about["messages"][sender.plan.message.name + page] = {

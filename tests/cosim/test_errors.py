@@ -53,6 +53,11 @@ def test_a_word_that_is_there_is_the_nearest(word: str, others: list[str]) -> No
     assert nearest(word, [*others, word]) == f" (did you mean '{word}'?)"
 
 
+def test_a_word_that_differs_by_case_alone_is_the_nearest() -> None:
+    assert nearest("can0.a", ["can0.C", "can0.A", "can0.b"]) == " (did you mean 'can0.A'?)"
+    assert nearest("A", ["a"]) == " (did you mean 'a'?)"
+
+
 def test_nothing_is_nearest_where_nothing_is_similar() -> None:
     assert nearest("speed", ["mass", "grade"]) == nearest("speed", []) == ""
 

@@ -42,7 +42,7 @@ def contend(w: Wire, bus: int, end: int) -> int:
             continue
         for byte in range(w.messages[i, T.LENGTH]):
             w.frame[byte] = w.waiting[i, byte]
-        b[bus, T.BEGUN] = now
+        b[bus, T.BEGUN], b[bus, T.BEGUN_BY] = now, i
         good = carry(w, bus, i, now)
         if not good:
             return -2 - i

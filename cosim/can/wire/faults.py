@@ -102,6 +102,7 @@ def spoil_logged(w: Wire, i: int, now: int, k: int) -> int:
 def corrupt(w: Wire, i: int, now: int) -> None:
     """Flip the bits of the frame at hand, of message i, that a fault at this time flips."""
     for row in range(w.state[T.FAULTS]):  # each has a byte of its own
-        if w.faults[row, T.FAULT_KIND] == T.CORRUPT and strikes(w, row, i, now):
-            if w.faults[row, T.BYTE] < w.messages[i, T.LENGTH]:
-                w.frame[w.faults[row, T.BYTE]] ^= w.faults[row, T.MASK]
+        at = w.faults[row, T.BYTE]
+        wrong = w.faults[row, T.FAULT_KIND] == T.CORRUPT and strikes(w, row, i, now)
+        if wrong and at < w.messages[i, T.LENGTH]:
+            w.frame[at] ^= w.faults[row, T.MASK]

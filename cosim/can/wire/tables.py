@@ -155,13 +155,13 @@ FLIGHT = PAYLOAD + BYTES
 """Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
 
 (FREE_AT, PENDING, DELAY, TIMED, FIRST_MESSAGE, MESSAGES, BIT, DATA_BIT, SEED, NAME, NOISY) = range(11)
-(BEGUN, STRIKES, OFF_NODES, TO_BABBLE) = range(11, 15)
-BUS_WIDTH = 15
+(BEGUN, STRIKES, OFF_NODES, TO_BABBLE, BEGUN_BY) = range(11, 16)
+BUS_WIDTH = 16
 """Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
 end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on, in the order in which
 they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong;
 the start of the last frame; faults to come that take a node off the bus, nodes that are, and faults to come
-that babble.
+that babble; the message of the last frame.
 Row i of `chances`, float64, has the probability that n bits on bus i are not all right in column n."""
 
 (READY_AT, ERROR_COUNT, RECEIVE_COUNT, BUS_OF, BUS_OFFS) = range(5)
@@ -194,8 +194,8 @@ frame at hand arrives."""
 FAULT_WIDTH = 16
 """Columns of faults: bus and key of the message, or the node; its time; frames that it may still hit (-1:
 all) and each how many-th; those that it met, and hit; its seed; what it does to a byte; 1 if the counter is
-frozen; how much later frames arrive, or the time between two that babble (0: back to back); its number among those
-of one kind on one target, in draws. Of BUS_OFF and BABBLE, MET is 1 once they have begun."""
+frozen; how much later frames arrive, or the time between two that babble (0: back to back); its number among
+those of one kind on one target, in draws. Of BUS_OFF and BABBLE, MET is 1 once they have begun."""
 LOSE, SILENCE, CORRUPT, FREEZE, LATE, BUS_OFF, BABBLE = range(7)
 
 # ---- what Python is asked for, and what comes back

@@ -66,6 +66,23 @@ def test_losses_by_chance_are_equal_in_both_engines_and_follow_their_seed(tmp_pa
     assert 60 < runs[1][1]["EMD_Status"]["lost"] < 120
 
 
+def test_losses_of_a_variation_follow_the_seed_of_the_bus_and_its_own(tmp_path):
+    """The sum of both counts, as with the other draws of a bus."""
+    lost = [
+        ran(tmp_path, "", system=with_seed("scooter", own), steps=200, bus=BusVariation(loss=0.3, seed=seed))[
+            0
+        ]
+        for own, seed in ((0, 0), (5, 0), (2, 3))
+    ]
+    assert not np.array_equal(lost[0][SPEED], lost[1][SPEED])
+    assert np.array_equal(lost[1][SPEED], lost[2][SPEED])
+
+
+def with_seed(name, seed):
+    """A system with a seed of its buses."""
+    return timed(name, timing="instant", seed=seed)
+
+
 @pytest.mark.parametrize("engine", ["python", "compiled"])
 def test_flipped_bits_arrive_where_nothing_protects(tmp_path, engine):
     fault = (
