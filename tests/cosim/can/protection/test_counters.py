@@ -53,6 +53,19 @@ def test_a_gap_of_the_specification() -> None:
 
 
 @PROFILES
+def test_frames_after_lost_ones_are_those_of_the_documentation(profile: int) -> None:
+    """With max_delta = 1 profile 5 takes no frame behind a lost one, the others do after any number."""
+    for lost in range(1, 14):
+        found = statuses(profile, [0, *[None] * lost, 1 + lost, 2 + lost])[-2:]
+        if profile == P5:
+            assert found == [WRONG_SEQUENCE, OK]
+        elif 2 + lost < modulus(profile):
+            assert found == [OK_SOME_LOST, OK]
+        assert statuses(P5, [0, *[None] * lost, 1 + lost], 1 + lost)[-1] == OK_SOME_LOST
+        assert statuses(P5, [0, *[None] * lost, 1 + lost], lost)[-1] == WRONG_SEQUENCE
+
+
+@PROFILES
 def test_a_frozen_frame_is_seen(profile: int) -> None:
     assert statuses(profile, [3, 4, 4, 4, 5]) == [INITIAL, OK, REPEATED, REPEATED, OK]
 
