@@ -341,3 +341,14 @@ def check_frames(system: System) -> None:
                 f'{system.path}: buses.{name}.resolution = "ideal": values that are not quantized make no '
                 "frames that could be kept"
             )
+
+
+def check_decodable(system: System) -> None:
+    """Raise ConfigError for a bus whose frames, in a log, would not mean what its database says."""
+    for name, entry in system.file.buses.items():
+        if entry.resolution not in (1.0, "ideal"):
+            raise ConfigError(
+                f"{system.path}: buses.{name}.resolution = {entry.resolution:g}: its raw values count "
+                "coarser steps than those of the database, by which whoever reads a CAN log decodes it: no "
+                "log is written with this setting; change the scale in the DBC instead"
+            )

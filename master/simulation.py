@@ -45,7 +45,7 @@ from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
 from .keeping import KeptRun, ended
 from .manifest import manifest, saturations
-from .prepare import check_frames, prepare
+from .prepare import check_decodable, check_frames, prepare
 from .unit import Unit
 from .warned import warnings_text
 
@@ -299,8 +299,10 @@ class Simulation:
         """Write the frames that crossed the buses as .log (candump), .asc, .blf, .mf4 or .pcapng.
 
         `start` is the moment of 0 s, with a time zone (default: 2000 begins in UTC). Return their number.
-        Raises ConfigError if the run did not keep them (`log_frames`) or the file cannot be written.
+        Raises ConfigError if the run did not keep them (`log_frames`), for a bus with a `resolution`, or if
+        the file cannot be written.
         """
+        check_decodable(self.system)
         return write_can_log(path, frame_logs(self), self.plan.clock, start)
 
     def manifest(self) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from .received import Received
 from .steps import steps_in
 
 _MOST = 8  # names in a sentence
+_LATEST = 4.6e9  # seconds; LATEST of the readers
 
 
 def with_replays(system: System, scenario: Scenario, received: Received, clock: Clock) -> list[ReplayPlan]:
@@ -52,11 +53,12 @@ def with_replays(system: System, scenario: Scenario, received: Received, clock: 
         database, sent = network.databases[entry.bus], received.sent(entry.bus)
         _check_matches(recording, channel, wanted, database, place)
         first = len(network.messages)
-        replayed = _timed(system, entry, recording, channel, variants, first, clock)
+        replayed = _timed(system, entry, recording, channel, variants, first, clock, place)
         status = {m.name: received.status_inputs(entry.bus, m.name) for m, _ in wanted}
         made = [_message(system, entry.bus, each, clock, status) for each in variants.found]
         plan = _plan(entry.bus, replayed, made, wanted, clock, place)
         network.messages += made
+        network.warnings += _unscaled(system, entry.bus)
         network.warnings += _notes(plan, wanted, database, sent, clock)
         plans.append(plan)
     return plans
@@ -154,14 +156,25 @@ def _timed(
     variants: _Variants,
     first: int,
     clock: Clock,
+    place: str,
 ) -> Replayed:
     """Return the frames in the run's time; those of variant i are of the message with number first + i."""
     if entry.time_offset is not None:
-        offset = int(Decimal(repr(entry.time_offset)) * 10**9)
+        offset = _nanoseconds(entry.time_offset, f"{place}.time_offset")
     else:
         offset = recording.first or 0
     numbers = first + np.arange(len(variants.found), dtype=np.int64)
     return Replayed(recording, channel, offset, clock, system.file.buses[entry.bus].delay, numbers)
+
+
+def _nanoseconds(time: float, place: str) -> int:
+    """Return a time of a log [s] in ns. Raises ConfigError, with `place`, for one that no log has."""
+    if abs(time) > _LATEST:
+        raise ConfigError(
+            f"{place} = {time:g} s: no log has such a time: it is from -{_LATEST:g} to {_LATEST:g} s, and "
+            "the year 2115 is the last one, counted from 1970; is it in ms?"
+        )
+    return int(Decimal(repr(time)) * 10**9)
 
 
 def _message(
@@ -203,6 +216,17 @@ def _message(
         sending=sending,
         replayed=True,
     )
+
+
+def _unscaled(system: System, bus: str) -> list[str]:
+    resolution = system.file.buses[bus].resolution
+    if resolution == 1.0:
+        return []
+    shown = f'"{resolution}"' if isinstance(resolution, str) else f"{resolution:g}"
+    return [
+        f"{system.path}: buses.{bus}.resolution = {shown} does not act on frames of a log, which are decoded "
+        "by the database"
+    ]
 
 
 def _check_matches(

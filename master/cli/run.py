@@ -151,6 +151,7 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
     raised, and a signal ends the process.
     """
     from ...cosim.errors import ConfigError, RunError
+    from ..prepare import check_decodable
     from ..simulation import Simulation
     from .interrupts import Interrupted, Interrupts
     from .outputs import default_folder, run_folder, suffix_of
@@ -168,6 +169,8 @@ def _run(order: Order, keeping: contextlib.ExitStack) -> tuple[FinishedRun, Inte
     )
     with contextlib.ExitStack() as running:
         running.enter_context(simulation)
+        if order.files.can_logs:
+            check_decodable(simulation.system)
         named = default_folder(simulation.system.file.name, simulation.scenario.name)
         suffix = suffix_of(order.options, order.scenario if order.output else None)
         about = simulation.manifest()

@@ -391,3 +391,27 @@ def test_what_comes_on_a_change_has_no_cycle_in_a_log_either(tmp_path: Path) -> 
     )
     assert found["statuses"] == before["statuses"] and found["statuses"]["ok"] < 20
     assert heard(alone) == heard(run.results) and max(heard(alone)) > 2  # it moves
+
+
+def test_a_resolution_of_the_bus_makes_no_log_and_changes_none(tmp_path: Path) -> None:
+    log = candump(tmp_path, (0.0, 7), (0.01, 9))
+    results = replay(tmp_path, log, of_system="resolution = 4.0\n", stop_time=0.02)
+    assert heard(results) == [7, 9, 9]
+    assert any(
+        "buses.can0.resolution = 4 does not act on frames of a log" in text
+        for text in results.manifest["warnings"]
+    )
+    with Simulation(system(tmp_path, "resolution = 4.0\n"), scenario(tmp_path, FULL), log_frames=True) as run:
+        run.run()
+        with pytest.raises(
+            ConfigError, match=r"bench\.toml: buses\.can0\.resolution = 4: .* no log is written"
+        ):
+            run.write_can_log(tmp_path / "out.log")
+    assert not (tmp_path / "out.log").exists()
+
+
+@pytest.mark.parametrize("offset", ["9.3e9", "-1e300", "1.7e12"])
+def test_an_offset_that_no_log_has_is_refused_with_its_limits(tmp_path: Path, offset: str) -> None:
+    log = candump(tmp_path, (0.0, 1))
+    with pytest.raises(ConfigError, match=r"stimulus 2\.time_offset = .*from -4\.6e\+09 to 4\.6e\+09 s"):
+        replay(tmp_path, log, keys=f"time_offset = {offset}")

@@ -10,6 +10,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.master.cli.can_logs import CanLogs
+from support.small_bench import write
 
 
 def test_a_name_goes_into_the_results_and_a_path_where_it_says(evcosim, tmp_path):
@@ -82,3 +83,11 @@ def test_without_matplotlib_a_figure_is_refused_before_the_run(evcosim, monkeypa
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     answer = evcosim("run", "scooter", "--stop-time", "0.2", "-o", "out")
     assert (answer.code, "figure and page need matplotlib" in answer.err) == (2, True)
+
+
+def test_a_bus_with_a_resolution_writes_no_log(evcosim, tmp_path):
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('"bench.dbc" }', '"bench.dbc", resolution = 4.0 }'))
+    answer = evcosim("run", str(path), "-o", "out", "--can-log", "a.log")
+    assert answer.code == 2 and "buses.can0.resolution = 4: its raw values count coarser" in answer.err
+    assert not (tmp_path / "out").exists()

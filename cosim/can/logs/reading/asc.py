@@ -14,7 +14,7 @@ from typing import BinaryIO
 
 from ...flaws import GREATEST
 from ...timing.lengths import FD_LENGTHS
-from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds
+from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds, unprintable
 
 _EVENT = re.compile(r"(\d{1,12})\.(\d{1,12})\s+(.*)")
 _BASE = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
@@ -26,6 +26,8 @@ def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
     """Yield the frames of a log. Raises ConfigError, which names the line, for one that is damaged."""
     base, relative, now = 16, False, 0
     for number, line in lines_of(file, path):
+        if unprintable(line):
+            raise damaged(path, f"line {number}", "bytes that no text has: the file is damaged")
         event = _EVENT.match(line)
         if event is None:
             if header := _BASE.match(line):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
@@ -13,6 +14,7 @@ DATA, REMOTE, ERROR = range(3)
 
 MOST_BYTES = 64
 _LONGEST_LINE = 1 << 16
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 LATEST = 1 << 62
 """Nanoseconds of the latest time that is read; the year 2116, counted from 1970."""
 
@@ -44,6 +46,11 @@ def lines_of(file: BinaryIO, path: Path) -> Iterator[tuple[int, str]]:
         if len(line) == _LONGEST_LINE:
             raise ConfigError(f"{path}: line {number} has {_LONGEST_LINE} bytes or more: no log of frames")
         yield number, line.decode("utf-8", errors="replace").strip()
+
+
+def unprintable(line: str) -> bool:
+    """Return True for a line with control characters, which damage leaves and no tool writes."""
+    return _CONTROL.search(line) is not None
 
 
 def nanoseconds(whole: str, fraction: str) -> int:

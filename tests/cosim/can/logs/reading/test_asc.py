@@ -7,6 +7,7 @@ from pathlib import Path
 import can
 import pytest
 
+from evcosim import ConfigError
 from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
 from support.log_readers import written
 from support.logged import check_reads_what_was_written, check_survives, frames_in, refused
@@ -70,3 +71,12 @@ def test_damaged_frames_are_refused_with_their_line(tmp_path: Path, line: str) -
 
 def test_damaged_logs_are_read_or_refused(tmp_path: Path) -> None:
     check_survives(tmp_path, ".asc", written(tmp_path, ".asc").read_bytes())
+
+
+@pytest.mark.parametrize(
+    "tail", [b"\0" * 40, b"\x00\xffgarbage\n", b"1.0 1 123 Rx d 1 11\x00\n", b"\x1b\x02"]
+)
+def test_bytes_that_no_text_has_are_refused_with_their_line(tmp_path: Path, tail: bytes) -> None:
+    (tmp_path / "a.asc").write_bytes(HEAD.encode() + b"1.0 1 123 Rx d 1 11\n" + tail)
+    with pytest.raises(ConfigError, match=r"a\.asc: line 5: bytes that no text has"):
+        frames_in(tmp_path / "a.asc")
