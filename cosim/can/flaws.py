@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from ..errors import short
 from .database import LONGEST, Database, Message, Signal, bits_text, raw_limits
 
 _NOT_AVAILABLE = {"sna", "notavailable", "signalnotavailable"}
@@ -113,7 +114,7 @@ def _own_flaw(message: Message, signal: Signal) -> str:
     first, last = signal.raw_type_range
     start = signal.start_raw
     if not first <= start <= last or (not signal.is_float and start != int(start)):
-        return f"the start value {start} is no raw value of {bits_text(signal)}"
+        return f"the start value {short(start)} is no raw value of {bits_text(signal)}"
     return ""
 
 

@@ -39,10 +39,10 @@ def info(
         Path | None, typer.Option(metavar="FILE", help="System: draw its units and connections (.png, .svg).")
     ] = None,
     bitrate: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Database: show the load at N bit/s.")
+        int | None, typer.Option(metavar="N", min=1, max=10**9, help="Database: show the load at N bit/s.")
     ] = None,
     data_bitrate: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Database: CAN FD payloads at N bit/s.")
+        int | None, typer.Option(metavar="N", min=1, max=10**9, help="Database: CAN FD payloads at N bit/s.")
     ] = None,
     strict: StrictOption = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,

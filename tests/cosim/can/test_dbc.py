@@ -371,3 +371,13 @@ def test_what_a_file_says_twice_or_undefined_is_a_flaw(tmp_path: Path) -> None:
     rules = ["cannot be used: line", "given a second time; this one counts", "has two texts for 1; the last"]
     assert len(database.warnings) == 3
     assert all(rule in said for rule, said in zip(rules, database.warnings, strict=True))
+
+
+def test_a_start_value_that_is_far_too_great_is_said_in_a_line(tmp_path: Path) -> None:
+    path = write(tmp_path, 'S : 0|8@1+ (1,0) [0|0] "" X', tail='BA_ "GenSigStartValue" SG_ 1 S 1e300;\n')
+    said = load_dbc(path).messages["M"].signals["S"].problem
+    assert (
+        said.startswith("the start value 1000")
+        and "... is no raw value of 8 unsigned bits" in said
+        and len(said) < 150
+    )

@@ -152,3 +152,10 @@ def test_a_message_alone_has_the_flaws_of_its_lines_and_attributes(tmp_path):
     )
     assert described(path, "M")["flaws"] == described(path)["flaws"] and len(described(path)["flaws"]) == 2
     assert described(path, "N")["flaws"] == []
+
+
+@pytest.mark.parametrize("option", ["--bitrate", "--data-bitrate"])
+def test_a_bitrate_is_one_that_a_system_may_have(evcosim, option):
+    assert evcosim("info", str(EV), option, "1000000000").code == 0
+    refused = evcosim("info", str(EV), option, "1000000001")
+    assert refused.code == 2 and "less than or equal to 1000000000" in refused.err
