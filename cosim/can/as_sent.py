@@ -16,7 +16,7 @@ def as_sent(message: Message, settings: BusSettings) -> Message:
     Its own entry in `messages` counts before the database, and that before the bus' `cycle_time` and `fd`.
     Where no setting says it, a message is a CAN FD frame if the database marks it as one or it has more than
     8 bytes; a parameter group of J1939 never is. The length becomes one that a frame can have: bytes that are
-    added are 0.
+    added are 0, and no part of what a checksum protects.
     """
     own = settings.of_message(message.name)
     cycles = (own.cycle_time, message.cycle_time, settings.cycle_time)
@@ -28,7 +28,10 @@ def as_sent(message: Message, settings: BusSettings) -> Message:
         fd=not message.j1939 and next(kind for kind in kinds if kind is not None),
         problem=message.problem or _too_long(message, own.fd, settings.fd),
     )
-    return dataclasses.replace(made, length=made.frame_length)
+    added = made.frame_length > message.length
+    return dataclasses.replace(
+        made, length=made.frame_length, own_length=message.length if added else message.own_length
+    )
 
 
 def _too_long(message: Message, *choices: bool | None) -> str:

@@ -99,7 +99,8 @@ class Signal:
 class Message:
     """One message.
 
-    `length` is in bytes, `cycle_time` (None: not sent cyclically) and `start_delay` are in s. `file` is
+    `length` is in bytes, `own_length` that without the bytes that its frame adds (0: it adds none),
+    `cycle_time` (None: not sent cyclically) and `start_delay` are in s. `file` is
     where the message stands, for error messages. `j1939` is True for a parameter group: more than 8 bytes
     are several frames then, and no CAN FD. `send_type` is the text of the attribute GenMsgSendType,
     `min_interval` and `fast_cycle` [s] the times of GenMsgDelayTime and GenMsgCycleTimeFast, and `attributes`
@@ -128,6 +129,7 @@ class Message:
     unread: dict[str, str] = dataclasses.field(default_factory=dict)
     problem: str = ""
     line: int = dataclasses.field(default=0, compare=False)
+    own_length: int = 0
 
     @property
     def multiplexed(self) -> bool:

@@ -11,7 +11,7 @@ from .bus_settings import BusSettings
 from .database import Message, Signal
 from .message_settings import E2eSettings, MessageSettings
 from .protection.maker import MakerChecksum
-from .protection.profiles import CODES, MAKER, P1C, P2, P5
+from .protection.profiles import CODES, MAKER, P1C, P2, P5, modulus
 
 
 @dataclasses.dataclass(frozen=True)
@@ -130,6 +130,11 @@ def _protection(message: Message, e2e: E2eSettings, connected: Collection[str], 
     if crc.start % 8 != (0 if crc.little_endian else 7) or (code == P5 and not crc.little_endian):
         order = "two bytes, the low one first" if code == P5 else "one byte"
         raise ConfigError(f"{place}.crc: {crc.name} begins with bit {crc.start}; it must be {order}")
+    if e2e.max_delta >= modulus(code):
+        raise ConfigError(
+            f"{place}.max_delta = {e2e.max_delta}: the counter of profile {e2e.profile} has {modulus(code)} "
+            f"values, so that no frame is more than {modulus(code) - 1} counts on; give less"
+        )
     return Protection(code, _ids(e2e, code, place), crc, counter, nibble, e2e.max_delta)
 
 

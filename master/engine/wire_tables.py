@@ -211,6 +211,7 @@ def _add_protection(
             row |= {
                 T.PROFILE: protection.profile, T.CRC_AT: protection.crc.start // 8,
                 T.CHECK_START: start, T.CHECK_LITTLE: little, T.CHECK_BITS: protection.crc.length,
+                T.COVERED: plan.message.own_length or plan.message.length,
                 T.MAX_DELTA: protection.max_delta, T.GAP: protection.max_delta,
             }  # fmt: skip # a row
             if protection.counter is not None:

@@ -34,7 +34,7 @@ def protect(w: Wire, i: int, k: int) -> int:
         return fill(w, i, k)
     if profile == P1C:
         put(w.frame, m[i, T.NIBBLE_LITTLE], m[i, T.NIBBLE_START], 4, w.ids[_IDS * i] >> 8 & 15, 0)
-    crc = checksum(profile, w.frame, 0, m[i, T.LENGTH], m[i, T.CRC_AT], counter, w.ids, _IDS * i)
+    crc = checksum(profile, w.frame, 0, m[i, T.COVERED], m[i, T.CRC_AT], counter, w.ids, _IDS * i)
     w.frame[m[i, T.CRC_AT]] = crc & 255
     if profile == P5:
         w.frame[m[i, T.CRC_AT] + 1] = crc >> 8
@@ -104,7 +104,7 @@ def is_right(w: Wire, i: int, counter: int, k: int) -> int:
         nibble = low_bits(w.frame, m[i, T.NIBBLE_LITTLE], m[i, T.NIBBLE_START], 4)
         if nibble != w.ids[_IDS * i] >> 8 & 15:
             return 0
-    crc = checksum(profile, w.frame, 0, m[i, T.LENGTH], at, counter, w.ids, _IDS * i)
+    crc = checksum(profile, w.frame, 0, m[i, T.COVERED], at, counter, w.ids, _IDS * i)
     found = w.frame[at] | w.frame[at + 1] << 8 if profile == P5 else w.frame[at]
     return 1 if found == crc else 0
 

@@ -99,7 +99,9 @@ looked at."""
 """The layout of a maker's checksum."""
 (LATENCY_HIGH, SEEN_HIGH) = range(75, 77)
 """Wholes of SUM that were taken out of LATENCY_SUM and SEEN_SUM."""
-MESSAGE = 77
+COVERED = 77
+"""The bytes that the checksum of a profile covers: without those that the frame adds to its message."""
+MESSAGE = 78
 SUM = 2**62
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41

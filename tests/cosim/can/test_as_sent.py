@@ -70,6 +70,9 @@ def test_a_frame_has_a_length_that_there_is(length) -> None:
     assert made.length in FD_LENGTHS and made.length >= length
     assert all(n < length for n in FD_LENGTHS if n < made.length)
     assert made.fd == (length > 8)
+    assert (
+        (made.own_length or made.length) == length == (as_sent(made, BusSettings()).own_length or made.length)
+    )
 
 
 def test_a_message_that_no_classic_frame_holds() -> None:

@@ -92,6 +92,7 @@ def test_what_a_receiver_says_of_a_fault(tmp_path, engine, fault, statuses):
         ({"e2e": E2E | {"profile": "2"}}, "profile 2 has 16 from 0 to 255, not 288"),
         ({"e2e": E2E | {"data_id": [1, 2]}}, "profile 1A has 1 from 0 to 65535, not [1, 2]"),
         ({"e2e": E2E | {"profile": "1C"}}, "profile 1C has a `nibble`, and no other"),
+        ({"e2e": E2E | {"max_delta": 15}}, "max_delta = 15: the counter of profile 1A has 15 values"),
         ({"e2e": E2E, "status": ["vehicle.wind"]}, "status: unit 'vehicle' has no"),
         ({"e2e": E2E, "status": ["car.wind"]}, "status: there is no unit of 'car.wind'"),
         ({"e2e": E2E, "status": ["controller.yaw_rate"]}, "controller.yaw_rate is driven already"),

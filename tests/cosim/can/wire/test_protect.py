@@ -7,7 +7,9 @@ import math
 
 import numpy as np
 import pytest
+from e2e import p01, p02, p05
 
+from evcosim.cosim.can.as_sent import as_sent
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.channel import MessageChannel, SignalRoute
 from evcosim.cosim.can.database import Message, Signal
@@ -32,7 +34,7 @@ PROFILES = {
 class Path:
     """A message of 8 bytes over a bus with a delay of one step, received in slot 1, its status in slot 2."""
 
-    def __init__(self, profile: str = "", **own: object) -> None:
+    def __init__(self, profile: str = "", length: int = 8, **own: object) -> None:
         wide = profile == "5"
         signals = [
             Signal("Crc", 0, 16 if wide else 8), Signal("Counter", 16 if wide else 8, 8 if wide else 4),
@@ -40,8 +42,9 @@ class Path:
         ]  # fmt: skip # a list
         if profile:
             own["e2e"] = {"profile": profile, "crc": "Crc", "counter": "Counter", **PROFILES[profile]}
-        message = Message("test.dbc", "M", 1, signals={s.name: s for s in signals})
         use = BusSettings(messages={"M": MessageSettings.model_validate(own)})
+        message = Message("test.dbc", "M", 1, length=length, signals={s.name: s for s in signals})
+        message = as_sent(message, use)
         framing = dataclasses.replace(framing_of(message, use), status=(2,))
         routes = (SignalRoute(VALUE, 0, Affine(), ((1, Affine(2.0)),)),)
         plan = MessagePlan("can0", message, use, routes, {}, 1, 0, None, delay=1, framing=framing)
@@ -87,6 +90,27 @@ def test_every_flipped_bit_is_seen(profile):
         assert path.step(20.0, flip)[0] == 20.0  # the value of the frame before, times 2
         assert path.memory[2] in (2.0, 64.0)
         assert path.row[T.REJECTED] == 1
+
+
+@pytest.mark.parametrize("length", [8, 9, 12, 13, 20, 33])
+@pytest.mark.parametrize("profile", PROFILES)
+def test_the_checksum_covers_the_bytes_of_the_message_alone(profile, length):
+    """Those that fill a CAN FD frame are 0, and no part of it: autosar-e2e over the message's own bytes."""
+    mode = dict(zip(("1A", "1B", "1C"), (
+        p01.E2E_P01_DATAID_BOTH, p01.E2E_P01_DATAID_ALT, p01.E2E_P01_DATAID_NIBBLE,
+    ), strict=True)).get(profile)  # fmt: skip # a table
+    path = Path(profile, length)
+    for value in range(20):
+        assert path.step(value)[0] == 2.0 * value
+    for *_, data in path.path.log_of("can0").frames[0].frames():
+        own = bytearray(data[:length])
+        assert len(data) >= length and not any(data[length:])
+        if profile == "5":
+            assert p05.e2e_p05_check(own, 0x1234)
+        elif profile == "2":
+            assert p02.e2e_p02_check(own, bytes(range(7, 23)))
+        else:
+            assert p01.e2e_p01_check(own, 0x1234, data_id_mode=mode)
 
 
 def test_a_frozen_frame_with_a_right_checksum_is_repeated():
