@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from .plan import Plan
+from .turns import turn_from
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +22,7 @@ class Reader:
 
     def turn(self, k: int) -> int:
         """Return the step in which it takes what arrives in step k."""
-        return self.first + -(-max(0, k + self.later - self.first) // self.every) * self.every
+        return turn_from(k + self.later, self.every, self.first)
 
 
 def readers(plan: Plan) -> tuple[tuple[Reader, ...], ...]:

@@ -59,6 +59,11 @@ class TurnTimes:
         return self.first + (self.clock.steps - 1 - self.first) // self.every * self.every
 
 
+def turn_from(step: int, every: int, first: int) -> int:
+    """Return the first step from `step` on at which a unit with a turn every `every` steps has one."""
+    return first + -(-max(step - first, 0) // every) * every
+
+
 def cut_short(clock: Clock, every: int, first: int = 0) -> bool:
     """Return True if the stop time, of which units are told, ends the last turn of one so often early."""
     return clock.told and (clock.steps - first) % every != 0

@@ -13,6 +13,7 @@ from ..system.fault_spec import target_of
 from ..system.scenario import Event, Scenario, StimulusEntry
 from ..system.stimuli import moves_between
 from .plan import Drive, InputPlan, MessagePlan
+from .turns import turn_from
 
 _MOST = 3  # events, and faults, that are told one by one
 
@@ -67,7 +68,7 @@ def after_stop(
     events = []
     for place, event in _events(scenario):
         unit = event.variable.partition(".")[0]
-        if (turn := _turn(clock.step_at(event.time), *turns[unit])) >= clock.steps:
+        if (turn := turn_from(clock.step_at(event.time), *turns[unit])) >= clock.steps:
             at = point(turn, clock.start, clock.step)
             late = "" if turns[unit][0] == 1 else f"{unit} has its next turn at {_seconds(at)}, and "
             events.append(f"{place} never acts: {late}{stop} comes before it has an effect")
@@ -81,11 +82,6 @@ def after_stop(
         ),
         *(said for each in messages if (said := _message(each, messages, inputs, clock, stop))),
     ]
-
-
-def _turn(step: int, every: int, first: int) -> int:
-    """Return the first step from `step` on at which a unit has its turn."""
-    return first + -(-max(step - first, 0) // every) * every
 
 
 def _message(

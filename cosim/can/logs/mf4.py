@@ -14,6 +14,10 @@ from ...errors import ConfigError
 from ..timing.lengths import fd_code
 from .frames import Frame
 
+NEEDS_LIBRARY = (
+    "MF4 logs need the library asammdf: install evcosim with its extra, pip install 'evcosim[mf4]'"
+)
+"""The error where it is not installed."""
 _BLOCK = 50_000  # frames that are kept before they go to asammdf
 _BUS, _CAN = 2, 2  # the source of a channel group: a bus, CAN
 _NAME = "CAN_DataFrame"
@@ -62,9 +66,7 @@ def check_library() -> Any:
     try:
         from asammdf import MDF
     except ImportError as error:
-        raise ConfigError(
-            "MF4 logs need the library asammdf: install evcosim with its extra, pip install 'evcosim[mf4]'"
-        ) from error
+        raise ConfigError(NEEDS_LIBRARY) from error
     return MDF
 
 

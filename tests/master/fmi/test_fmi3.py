@@ -106,4 +106,4 @@ def test_a_number_beyond_its_type_is_refused(tmp_path: Path, kind: str) -> None:
 
 
 def test_the_path_of_the_resources_ends_with_a_separator() -> None:
-    assert resources_path(Path("/tmp/a b")) == b"/tmp/a b/resources/"
+    assert resources_path(Path("/units/a b")) == b"/units/a b/resources/"

@@ -171,14 +171,14 @@ def test_the_uri_of_the_resources_is_what_the_library_decodes() -> None:
         return Fmu(Path("a.fmu"), None, entries).resources_uri(Path(folder))
 
     python = "resources/slavemodule.txt"
-    assert uri("/tmp/a b") == b"file:///tmp/a%20b/resources"
-    assert uri("/tmp/a b", python) == b"file:///tmp/a%20b/resources"
-    assert uri("/tmp/\u00fc%") == b"file:///tmp/%C3%BC%25/resources"
-    assert uri("/tmp/\u00fc%", python) == "file:///tmp/\u00fc%/resources".encode()
+    assert uri("/units/a b") == b"file:///units/a%20b/resources"
+    assert uri("/units/a b", python) == b"file:///units/a%20b/resources"
+    assert uri("/units/\u00fc%") == b"file:///units/%C3%BC%25/resources"
+    assert uri("/units/\u00fc%", python) == "file:///units/\u00fc%/resources".encode()
     with pytest.raises(
         FmuError, match=r"cannot run from the temporary folder .*'%20' in its name is read as"
     ):
-        uri("/tmp/a%20b", python)
+        uri("/units/a%20b", python)
 
 
 @pytest.mark.parametrize(

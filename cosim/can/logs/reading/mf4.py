@@ -13,6 +13,7 @@ from typing import IO, BinaryIO
 import numpy as np
 
 from ....errors import ConfigError
+from ..mf4 import NEEDS_LIBRARY
 from .logged import LoggedFrame
 from .mf4_frames import RECORD, UNREAD
 
@@ -22,10 +23,7 @@ _READ = 1000  # records that are taken at a time
 def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
     """Yield the frames of a log. Raises ConfigError for what asammdf cannot read, and where it is missing."""
     if importlib.util.find_spec("asammdf") is None:
-        raise ConfigError(
-            f"{path}: MF4 logs need the library asammdf: install evcosim with its extra, "
-            "pip install 'evcosim[mf4]'"
-        )
+        raise ConfigError(f"{path}: {NEEDS_LIBRARY}")
     with (
         tempfile.TemporaryFile(prefix="evcosim-") as said,
         subprocess.Popen(
