@@ -46,7 +46,7 @@ _EMPTY = '''\
 
 import ctypes
 
-from {identity}.evcosim.fmus.native import settle_at_exit
+from {identity}.evcosim.fmus.repairs import settle_at_exit
 from {identity}.pythonfmu.fmi2slave import Fmi2Slave
 
 ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))

@@ -52,8 +52,8 @@ import sys
 
 
 def _settle():
-    """Without an instance nobody else lets the library release its interpreter in time (native.py)."""
-    from {identity}.evcosim.fmus.native import settle_at_exit
+    """Without an instance nobody else lets the library release its interpreter in time (repairs.py)."""
+    from {identity}.evcosim.fmus.repairs import settle_at_exit
 
     settle_at_exit(os.path.dirname(os.path.abspath(__file__)), "{name}")
 

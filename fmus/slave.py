@@ -19,7 +19,7 @@ Errors. Every entry point catches whatever the model raises. pythonfmu can retur
 A sentence of the model's `notice` is a message of status Warning (category `logStatusWarning`), once for each
 instance; the step returns OK.
 
-`native` repairs defects of pythonfmu's library, so that a failing FMU never kills its importer. Messages are
+`repairs` mends defects of pythonfmu's library, so that a failing FMU never kills its importer. Messages are
 printf formats (FMI 2.0, fmi2CallbackLogger) to which the library passes no arguments: "%" is doubled. Four
 defects cannot be repaired from here. A KeyboardInterrupt that arrives before an entry point's first line is a
 failed call that nothing holds; an importer in Python should handle SIGINT itself. fmi2Reset does not clear
@@ -38,7 +38,7 @@ from typing import Any, ClassVar
 from ..models.base import Model, violations
 from .accessors import Accessors, misfit
 from .messages import Refused, SlaveError, message, told
-from .native import give_back_interrupts, hold, leave_search_path, settle_at_exit
+from .repairs import give_back_interrupts, hold, leave_search_path, settle_at_exit
 from .snapshot import Snapshot, from_bytes, to_bytes
 
 _WARNING, _ERROR = 1, 3  # fmi2Status

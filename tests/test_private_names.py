@@ -126,7 +126,7 @@ def test_python_can_s_writers_have_what_is_set():
 
 
 def test_pythonfmu_has_what_an_fmu_carries():
-    """fmus/runtime.py copies these; fmus/native.py calls a function of the library on Linux."""
+    """fmus/runtime.py copies these; fmus/repairs.py calls a function of the library on Linux."""
     from evcosim.fmus import runtime
 
     assert {"linux64/.so", "win64/.dll"} <= runtime.binaries().keys()

@@ -110,7 +110,7 @@ def test_the_archive_holds_what_is_needed_and_nothing_else(tmp_path):
         "fmus/accessors.py",
         "fmus/interface.py",
         "fmus/messages.py",
-        "fmus/native.py",
+        "fmus/repairs.py",
         "fmus/slave.py",
         "fmus/snapshot.py",
         "models/__init__.py",

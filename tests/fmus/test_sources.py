@@ -143,7 +143,7 @@ def test_a_users_own_modules_go_with_the_model(project, files, module, own, valu
         "evcosim.fmus.interface",
         "evcosim.fmus.accessors",
         "evcosim.fmus.messages",
-        "evcosim.fmus.native",
+        "evcosim.fmus.repairs",
         "evcosim.fmus.slave",
         "evcosim.fmus.snapshot",
         "evcosim.models",
