@@ -11,7 +11,7 @@ from ..system.scenario import Scenario
 from ..system.system import System, UnitEntry
 from ..system.values import as_double, checked
 from ..texts import Texts
-from .connections import Network
+from .network import Network
 
 Started = dict[str, dict[str, tuple[str, Value]]]
 """Start values that options give, by unit and variable, each with its place in messages."""

@@ -15,8 +15,8 @@ from ..system.can_log_spec import CanLogEntry
 from ..system.scaling import Scaling
 from ..system.system import System
 from ..units.measure import Affine
-from .connections import Network, status_inputs
 from .initials import initial_of
+from .network import Network, status_inputs
 from .plan import InputPlan
 from .slots import Slots
 from .type_rules import check_no_text, check_whole

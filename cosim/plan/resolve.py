@@ -24,11 +24,12 @@ from ..units.definition import names_difference
 from ..units.measure import Affine
 from .bus_load import bus_loads, check_load
 from .column_units import note_units
-from .connections import Network, connect
+from .connections import connect
 from .events import scheduled
 from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
 from .initials import check_initials
+from .network import Network
 from .plan import Drive, InputPlan, Plan
 from .received import Received
 from .recorded import Record
