@@ -135,7 +135,8 @@ class ReplayPlan:
     """A log whose frames are replayed on a bus.
 
     `counts` are the frames within the run by message; `before` and `after` are those before its start and not
-    before its stop time. `span` are the times [s] of the run at which the log begins and ends.
+    before its stop time. `span` are the times [s] of the run at which the channel of the log begins and ends,
+    and its times are rounded to `resolution` [s].
     """
 
     bus: str
@@ -143,6 +144,7 @@ class ReplayPlan:
     frames: Replayed
     counts: Mapping[str, int]
     span: tuple[float, float]
+    resolution: float
     before: int
     after: int
 
@@ -155,6 +157,7 @@ class ReplayPlan:
             "offset": self.frames.offset * 1e-9,
             "first": self.span[0],
             "last": self.span[1],
+            "resolution": self.resolution,
             "messages": dict(self.counts),
             "before": self.before,
             "after": self.after,

@@ -28,6 +28,7 @@ from .received import Received
 from .steps import steps_in
 
 _MOST = 8  # names in a sentence
+_COARSE = 0.02  # of a step; times that are rounded to more of it are told
 _LATEST = 4.6e9  # seconds; LATEST of the readers
 
 
@@ -162,7 +163,7 @@ def _timed(
     if entry.time_offset is not None:
         offset = _nanoseconds(entry.time_offset, f"{place}.time_offset")
     else:
-        offset = recording.first or 0
+        offset = recording.first
     numbers = first + np.arange(len(variants.found), dtype=np.int64)
     return Replayed(recording, channel, offset, clock, system.file.buses[entry.bus].delay, numbers)
 
@@ -272,9 +273,8 @@ def _plan(
     for number, count in enumerate(np.bincount(variants[inside], minlength=len(made)).tolist()):
         counts[made[number].message.name] += count
     path = replayed.recording.path
-    first, last = (
-        ((time or 0) - replayed.offset) * 1e-9 for time in (replayed.recording.first, replayed.recording.last)
-    )
+    of_channel = replayed.recording.spans[replayed.channel]
+    first, last = ((time - replayed.offset) * 1e-9 for time in (of_channel.first, of_channel.last))
     if not inside.any():
         raise ConfigError(
             f"{place}: none of the {len(steps)} frames that would be replayed of {path} is within the run, "
@@ -287,6 +287,7 @@ def _plan(
         frames=replayed,
         counts=counts,
         span=(first, last),
+        resolution=of_channel.resolution * 1e-9,
         before=int((steps < 0).sum()),
         after=int((steps >= clock.steps).sum()),
     )
@@ -327,6 +328,12 @@ def _notes(
                 f"{plan.path}: no frame of {plan.bus}.{message.name} is replayed: its receivers keep their "
                 "first values"
             )
+    if (share := plan.resolution / clock.step) >= _COARSE:
+        early = f"about {50 * share:.2g} % of its frames are" if share <= 1.0 else "most of its frames may be"
+        yield (
+            f"{plan.path}: its times are rounded to {plan.resolution:.3g} s, and a step takes "
+            f"{clock.step:.3g} s: {early} seen in another step than those of exact times would be"
+        )
     if (late := _ends_early(plan, clock)) > 0.0:
         yield (
             f"{plan.path} ends at {plan.span[1]:.6g} s of the run's time, {late:.3g} s before the stop time: "

@@ -151,9 +151,9 @@ def show(about: dict[str, Any]) -> None:
         show_frames(about["messages"])
     if about["replays"]:
         print_title("CAN logs of the scenario")
-        of_log = ("log", "bus", "channel", "from [s]", "to [s]", "message", "frames")
+        of_log = ("log", "bus", "channel", "from [s]", "to [s]", "exact to [s]", "message", "frames")
         rows = [row for replay in about["replays"] for row in _replay_rows(replay)]
-        print_table(of_log, rows, right=("from [s]", "to [s]", "frames"))
+        print_table(of_log, rows, right=("from [s]", "to [s]", "exact to [s]", "frames"))
     if about["scenarios"]:
         print_title("Scenarios (* the default)")
         default = about["default_scenario"]
@@ -163,7 +163,7 @@ def show(about: dict[str, Any]) -> None:
 
 
 def _replay_rows(replay: dict[str, Any]) -> list[tuple[str, ...]]:
-    span = (f"{replay['first']:.6g}", f"{replay['last']:.6g}")
+    span = (f"{replay['first']:.6g}", f"{replay['last']:.6g}", f"{replay['resolution']:.3g}")
     head = (replay["file"], replay["bus"], replay["channel"], *span)
     rows = [(name, str(count)) for name, count in replay["messages"].items()]
     return [(*(head if i == 0 else [""] * len(head)), *row) for i, row in enumerate(rows)]

@@ -415,3 +415,34 @@ def test_an_offset_that_no_log_has_is_refused_with_its_limits(tmp_path: Path, of
     log = candump(tmp_path, (0.0, 1))
     with pytest.raises(ConfigError, match=r"stimulus 2\.time_offset = .*from -4\.6e\+09 to 4\.6e\+09 s"):
         replay(tmp_path, log, keys=f"time_offset = {offset}")
+
+
+def test_the_times_that_are_said_of_a_log_are_those_of_its_channel(tmp_path: Path) -> None:
+    log = tmp_path / candump(tmp_path, *((k / 100, 1) for k in range(20)))
+    log.write_text(log.read_text() + "(900.000000) other 7FF#00\n")
+    found = replay(tmp_path, "a.log", keys="channel = 'can0'").manifest
+    assert "a.log ends at 0.19 s of the run's time" in " ".join(found["warnings"])
+    assert (found["replays"][0]["first"], found["replays"][0]["last"]) == (0.0, 0.19)
+
+
+def test_two_channels_of_a_log_count_from_its_first_frame(tmp_path: Path) -> None:
+    (tmp_path / "a.log").write_text("(5.000000) other 7FF#00\n(5.250000) can0 148#0A00000000000000\n")
+    found = replay(tmp_path, "a.log", keys="channel = 'can0'")
+    (about,) = found.manifest["replays"]
+    assert (about["offset"], about["first"], about["last"]) == (5.0, 0.25, 0.25)
+    assert next(k for k, value in enumerate(heard(found)) if value) == 25
+
+
+@pytest.mark.parametrize(
+    ("digits", "said"),
+    [(6, ""), (4, ""), (3, "rounded to 0.001 s, and a step takes 0.01 s: about 5 % of its frames are seen")],
+)
+def test_times_that_are_rounded_to_a_part_of_the_step_are_told(
+    tmp_path: Path, digits: int, said: str
+) -> None:
+    lines = [f"({k / 100:.{digits}f}) can0 148#0100000000000000" for k in range(100)]
+    (tmp_path / "a.log").write_text("\n".join(lines))
+    manifest = replay(tmp_path, "a.log").manifest
+    told = [text for text in manifest["warnings"] if "rounded to" in text]
+    assert len(told) == bool(said) and said in "".join(told)
+    assert manifest["replays"][0]["resolution"] == pytest.approx(10.0**-digits)

@@ -46,13 +46,21 @@ class Seen:
     least: int = 64
 
 
+@dataclasses.dataclass
+class Span:
+    """The times [ns] of the first and the last frame with data of a channel, exact to `resolution` [ns]."""
+
+    first: int
+    last: int
+    resolution: int
+
+
 @dataclasses.dataclass(frozen=True)
 class Recording:
     """The wanted frames of a log, and what was seen of each identifier by channel.
 
-    `first` and `last` are the times [ns] of the first and the last frame with data, of any channel; None: it
-    has none. `backward` has for a channel the first place at which its time goes back, in words. A frame's
-    time is exact to `resolution` [ns].
+    `spans` has the times of each channel. `backward` has for a channel the first place at which its time goes
+    back, in words.
     """
 
     path: Path
@@ -60,10 +68,13 @@ class Recording:
     channels: tuple[str, ...]
     seen: Mapping[str, Mapping[Key, Seen]]
     backward: Mapping[str, str]
-    first: int | None
-    last: int | None
+    spans: Mapping[str, Span]
     others: int
-    resolution: int
+
+    @property
+    def first(self) -> int:
+        """The time [ns] of the first frame with data, of any channel; 0 where there is none."""
+        return min((span.first for span in self.spans.values()), default=0)
 
     def rows(self) -> Iterator[NDArray[np.int64]]:
         """Yield some rows at a time, shape (n, WIDTH), in the order of the file."""
@@ -87,10 +98,9 @@ def recorded(
     store = RowStore(WIDTH, what=f"the frames of {path}", advice="a log of fewer frames needs less")
     seen: dict[str, dict[Key, Seen]] = {}
     numbers: dict[str, int] = {}
-    latest: dict[str, int] = {}
     backward: dict[str, str] = {}
-    first: int | None = None
-    last: int | None = None
+    spans: dict[str, Span] = {}
+    latest: dict[str, int] = {}
     others, rows = 0, bytearray()
     with logged_frames(path) as frames:
         for frame in frames:
@@ -102,13 +112,16 @@ def recorded(
             if of_channel is None:
                 of_channel = seen[channel] = {}
                 numbers[channel] = len(numbers)
+                spans[channel] = Span(time, time, frame.resolution)
+                latest[channel] = time
+            span = spans[channel]
             found = of_channel.get(key)
             if found is None:
                 found = of_channel[key] = Seen()
             found.frames += 1
-            first = time if first is None else min(first, time)
-            last = time if last is None else max(last, time)
-            if time < latest.get(channel, time) and channel not in backward:
+            span.first, span.last = min(span.first, time), max(span.last, time)
+            span.resolution = form.resolution(span.resolution, frame.resolution)
+            if time < latest[channel] and channel not in backward:
                 backward[channel] = _backward(frame, latest[channel], form.place)
             latest[channel] = time
             length = lengths.get(key)
@@ -124,9 +137,7 @@ def recorded(
                 if len(rows) >= _ROOM:
                     _keep(store, rows)
     _keep(store, rows)
-    return Recording(
-        path, store.table(), tuple(seen), seen, backward, first, last, others, form.resolution
-    )  # fmt: skip # what was found
+    return Recording(path, store.table(), tuple(seen), seen, backward, spans, others)
 
 
 def _keep(store: RowStore, rows: bytearray) -> None:

@@ -1,7 +1,8 @@
 """The frames of a log in the communication steps of a run.
 
 A frame is seen at the first communication point at or after its time, as one that ends exactly at t_j is seen
-at t_j. The times of a log are rounded, so that one counts as the point that it misses by that alone.
+at t_j. The times of a log are rounded, so that one counts as the point that it misses by that alone; of
+several, where they are rounded to more than a step, as the nearest one.
 """
 
 from __future__ import annotations
@@ -72,14 +73,16 @@ class Replayed:
             since = np.clip(rows[:, TIME] - zero, -_LATEST // 1000, _LATEST // 1000) * 1000 - rest
         else:  # no log has such a time
             since = np.full(len(rows), -_LATEST if zero > 0 else _LATEST, dtype=np.int64)
-        seen = (since + picoseconds(self.delay)) - self.recording.resolution * 500
+        resolution = self.recording.spans[self.channel].resolution * 1000  # in ps
+        slack = min(resolution, picoseconds(self.clock.step)) // 2
+        seen = (since + picoseconds(self.delay)) - slack
         clock = self.clock
         at = clock.start + seen * 1e-12
         step = np.ceil((at - clock.start) / clock.step)
         # the division rounds: the point before, or behind, may be the first that is not earlier
         step -= (clock.first + (step - 1) * clock.advance) / clock.divisor >= at
         step += (clock.first + step * clock.advance) / clock.divisor < at
-        begun = since >= -self.recording.resolution * 500
+        begun = since >= -slack
         return since, np.where(begun, np.maximum(step, 0), -1).astype(np.int64)
 
     def _frames(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -153,7 +153,7 @@ def test_a_scenario_s_logs_are_shown_with_the_frames_that_they_would_replay(evco
     scenario.write_text(f'{left_out}[[stimulus]]\ncan_log = "a.log"\nbus = "can0"\n')
     answer = evcosim("info", "scooter", str(scenario))
     assert answer.code == 0, answer.err
-    assert "a.log can0 can0 0 495 EMD_Status 2" in " ".join(answer.out.split())
+    assert "a.log can0 can0 0 495 0.01 EMD_Status 2" in " ".join(answer.out.split())
     (replay,) = json.loads(evcosim("info", "scooter", str(scenario), "--json").out)["replays"]
     assert replay["messages"]["EMD_Status"] == 2 and replay["after"] == 1
     assert json.loads(evcosim("info", "scooter", "--json").out)["replays"] == []

@@ -14,7 +14,17 @@ from typing import BinaryIO
 
 from ...flaws import GREATEST
 from ...timing.lengths import FD_LENGTHS
-from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds, unprintable
+from .logged import (
+    DATA,
+    ERROR,
+    REMOTE,
+    LoggedFrame,
+    damaged,
+    lines_of,
+    nanoseconds,
+    resolution_of,
+    unprintable,
+)
 
 _EVENT = re.compile(r"(\d{1,12})\.(\d{1,12})\s+(.*)")
 _BASE = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
@@ -41,7 +51,7 @@ def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
         except (ValueError, IndexError) as error:
             raise damaged(path, f"line {number}", f"the frame cannot be read: {line[:80]}") from error
         if frame is not None:
-            yield frame
+            yield frame._replace(resolution=resolution_of(event[2]))
 
 
 def _frame(words: Sequence[str], base: int, time: int, line: int) -> LoggedFrame | None:

@@ -27,7 +27,7 @@ _IN_CONTAINER, _ERRORS = 10, (2, 73, 104)
 _CLASSICS, _FD_MESSAGE, _FD_MESSAGE_64 = (1, 86), 100, 101
 _PLAIN, _DEFLATED = 0, 2
 _LARGEST = 16 << 20  # bytes of an object, and that a container unpacks to; Vector's have 128 kB
-_TEN_MICROSECONDS = 1
+_TEN_MICROSECONDS = 1  # of the flags: the unit of the time; else it is 1 ns
 _EXTENDED, _ID = 0x80000000, 0x1FFFFFFF
 _REMOTE, _FD_REMOTE = 0x80, 0x10
 
@@ -126,10 +126,11 @@ class _Objects:
             return
         try:
             flags, _, _, time = _TIME.unpack_from(one, _HEADER)
-            time *= 10_000 if flags == _TEN_MICROSECONDS else 1
+            resolution = 10_000 if flags == _TEN_MICROSECONDS else 1
+            time *= resolution
             if not time < LATEST:
                 raise struct.error(f"a time of {time} ns")
-            yield self._of_kind(one, header, kind, time)
+            yield self._of_kind(one, header, kind, time)._replace(resolution=resolution)
         except struct.error as error:
             raise damaged(
                 self._path, f"byte {self._place}", f"a frame (object {kind}) is damaged: {error}"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds
+from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, lines_of, nanoseconds, resolution_of
 
 _LINE = re.compile(
     r"\((\d{1,12})\.(\d{1,9})\)\s+(\S+)\s+([0-9A-Fa-f]{3}|[0-9A-Fa-f]{8})#(R[0-9A-Fa-f]?|#[0-9A-Fa-f])?"
@@ -36,5 +36,6 @@ def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
         if len(data) > (64 if mark and mark[0] == "#" else 8):
             raise damaged(path, f"line {number}", f"a frame of {len(data)} bytes")
         yield LoggedFrame(
-            nanoseconds(whole, fraction), channel, key & _ID, len(frame_id) == 8, data, number, kind
-        )
+            nanoseconds(whole, fraction), channel, key & _ID, len(frame_id) == 8, data, number, kind,
+            resolution_of(fraction),
+        )  # fmt: skip # the fields of a frame

@@ -1,4 +1,4 @@
-"""The formats of logs that are read, by suffix, and how exact their times are."""
+"""The formats of logs that are read, by suffix."""
 
 from __future__ import annotations
 
@@ -17,24 +17,25 @@ from .logged import LoggedFrame
 
 @dataclasses.dataclass(frozen=True)
 class Format:
-    """A format: `reading` yields the frames of a file; times are rounded to `resolution` [ns].
+    """A format: `reading` yields the frames of a file.
 
-    `place` is what the place of a frame counts.
+    `place` is what the place of a frame counts. Of the resolutions of its frames `resolution` is that of the
+    log: the finest one of a text, where a number may end before its zeros, else the coarsest one.
     """
 
     reading: Callable[[BinaryIO, Path], Iterator[LoggedFrame]]
-    resolution: int
     place: Literal["line", "byte", "frame"]
+    resolution: Callable[[int, int], int] = max
 
 
 FORMATS: dict[str, Format] = {
-    ".log": Format(candump.reading, 1000, "line"),
-    ".asc": Format(asc.reading, 1000, "line"),
-    ".blf": Format(blf.reading, 1, "byte"),
-    ".mf4": Format(mf4.reading, 1, "frame"),
-    ".pcapng": Format(pcapng.reading, 1, "byte"),
-    ".trc": Format(libraries.reading_trc, 1000, "frame"),
-    ".csv": Format(libraries.reading_csv, 1000, "frame"),
+    ".log": Format(candump.reading, "line", min),
+    ".asc": Format(asc.reading, "line", min),
+    ".blf": Format(blf.reading, "byte"),
+    ".mf4": Format(mf4.reading, "frame"),
+    ".pcapng": Format(pcapng.reading, "byte"),
+    ".trc": Format(libraries.reading_trc, "frame", min),
+    ".csv": Format(libraries.reading_csv, "frame", min),
 }
 
 

@@ -23,7 +23,8 @@ class LoggedFrame(NamedTuple):
     """One frame: `time` in whole ns as the file counts it, `channel` its interface as the file names it.
 
     `place` is the line of a text, else the byte of the file at which it, or what holds it, begins; where a
-    library reads the file, the number of the frame, from 1 on (`files.Format.place`).
+    library reads the file, the number of the frame, from 1 on (`files.Format.place`). The time is given to
+    `resolution` ns.
     """
 
     time: int
@@ -33,6 +34,7 @@ class LoggedFrame(NamedTuple):
     data: bytes
     place: int
     kind: int = DATA
+    resolution: int = 1
 
 
 def lines_of(file: BinaryIO, path: Path) -> Iterator[tuple[int, str]]:
@@ -56,6 +58,11 @@ def unprintable(line: str) -> bool:
 def nanoseconds(whole: str, fraction: str) -> int:
     """Return seconds that are written as `whole`.`fraction` in whole nanoseconds, the rest cut off."""
     return int(whole[-20:]) * 10**9 + int(fraction[:9].ljust(9, "0"))
+
+
+def resolution_of(fraction: str) -> int:
+    """Return the nanoseconds to which seconds are given that have these digits behind the point."""
+    return int(10 ** max(0, 9 - len(fraction)))
 
 
 def damaged(path: Path, place: str, problem: str) -> ConfigError:

@@ -49,13 +49,13 @@ def _frames(records: IO[bytes]) -> Iterator[LoggedFrame]:
         rows = np.frombuffer(data, dtype=RECORD, count=whole)
         payloads = rows["data"].tobytes()
         fields = [rows[name].tolist() for name in RECORD.names[:-1]]  # type: ignore[index] # they have names
-        for i, (time, place, key, channel, extended, kind, length, end) in enumerate(
+        for i, (time, place, key, channel, resolution, extended, kind, length, end) in enumerate(
             zip(*fields, strict=True)
         ):
             if end:
                 return
             payload = payloads[64 * i : 64 * i + length]
-            yield LoggedFrame(time, str(channel), key, bool(extended), payload, place, kind)
+            yield LoggedFrame(time, str(channel), key, bool(extended), payload, place, kind, resolution)
 
 
 def _unread(path: Path, code: int, said: str) -> ConfigError:

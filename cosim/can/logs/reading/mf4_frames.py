@@ -21,7 +21,8 @@ from .logged import DATA, ERROR, LATEST, MOST_BYTES, REMOTE, LoggedFrame
 
 RECORD = np.dtype(
     [
-        ("time", "<i8"), ("place", "<i8"), ("id", "<u4"), ("channel", "<u4"), ("extended", "u1"),
+        ("time", "<i8"), ("place", "<i8"), ("id", "<u4"), ("channel", "<u4"),
+        ("resolution", "<u4"), ("extended", "u1"),
         ("kind", "u1"), ("length", "u1"), ("end", "u1"), ("data", f"({MOST_BYTES},)u1"),
     ]
 )  # fmt: skip # the fields of a frame
@@ -33,6 +34,7 @@ UNREAD = 3
 
 _KINDS = {"CAN_DataFrame": DATA, "CAN_RemoteFrame": REMOTE, "CAN_ErrorFrame": ERROR}
 _ID, _EXTENDED = 0x1FFFFFFF, 0x80000000
+_INTEGERS = 3  # the greatest type of data that is an integer
 _MEMORY = 8 << 30  # bytes of address space
 
 
@@ -52,6 +54,7 @@ def frames_of(path: Path, stretch: int = STRETCH) -> Iterator[LoggedFrame]:
 
 def _frames(mdf: Any, group: int, name: str, stretch: int) -> Iterator[LoggedFrame]:
     """Yield the frames of one group of channels, a stretch at a time."""
+    resolution = _resolution(mdf, group)
     for start in range(0, mdf.groups[group].channel_group.cycles_nr, stretch):
         found = mdf.get(name, group, record_offset=start, record_count=stretch, raw=True)
         for time, channel, key, extended, data, number in _rows(found, name, start):
@@ -59,7 +62,21 @@ def _frames(mdf: Any, group: int, name: str, stretch: int) -> Iterator[LoggedFra
                 raise ValueError(f"frame {number + 1} of group {group + 1}: its time is {time} s")
             far = extended or bool(key & _EXTENDED)
             place = number + 1
-            yield LoggedFrame(round(time * 1e9), str(channel), key & _ID, far, data, place, _KINDS[name])
+            yield LoggedFrame(
+                round(time * 1e9), str(channel), key & _ID, far, data, place, _KINDS[name], resolution
+            )
+
+
+def _resolution(mdf: Any, group: int) -> int:
+    """Return the nanoseconds that one unit of a group's times is, 1 where they are doubles."""
+    number = mdf.masters_db.get(group)
+    if number is None:
+        return 1
+    master = mdf.groups[group].channels[number]
+    unit = getattr(master.conversion, "a", None)  # of a linear one
+    if master.data_type > _INTEGERS or not isinstance(unit, float) or not 0.0 < unit < 1.0:
+        return 1
+    return max(1, round(unit * 1e9))
 
 
 def _rows(found: Any, name: str, start: int) -> list[tuple[float, int, int, bool, bytes, int]]:
@@ -94,8 +111,9 @@ def records_of(frames: Iterator[LoggedFrame], out: BinaryIO) -> None:
     count = 0
     for frame in frames:
         rows[count] = (
-            frame.time, frame.place, frame.frame_id, int(frame.channel), frame.extended, frame.kind,
-            len(frame.data), 0, np.frombuffer(frame.data.ljust(MOST_BYTES, b"\0"), dtype=np.uint8),
+            frame.time, frame.place, frame.frame_id, int(frame.channel), frame.resolution, frame.extended,
+            frame.kind, len(frame.data), 0,
+            np.frombuffer(frame.data.ljust(MOST_BYTES, b"\0"), dtype=np.uint8),
         )  # fmt: skip # a record
         count += 1
         if count == STRETCH:

@@ -98,4 +98,5 @@ def _frame(body: bytes, order: str, interfaces: list[_Interface], place: int) ->
     data = packet[8 : 8 + length] if kind == DATA else b""
     if kind == DATA and (length > MOST_BYTES or len(data) < length):
         raise ValueError(f"a frame of {length} bytes, of which {len(data)} are there")
-    return LoggedFrame(time, interface.name, key & _ID, bool(key & _EXTENDED), data, place, kind)
+    resolution = max(1, 10**9 // interface.parts)
+    return LoggedFrame(time, interface.name, key & _ID, bool(key & _EXTENDED), data, place, kind, resolution)

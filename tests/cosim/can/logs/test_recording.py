@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evcosim.cosim.can.logs.recording import CHANNEL, TIME, VARIANT, chosen_channel, recorded
+from evcosim.cosim.can.logs.recording import CHANNEL, TIME, VARIANT, Span, chosen_channel, recorded
 from evcosim.cosim.errors import ConfigError
 
 LOG = (
@@ -25,7 +25,11 @@ def test_frames_are_kept_with_time_channel_and_payload_and_all_are_counted(tmp_p
     rows = [row for part in found.rows() for row in part.tolist()]
     assert [(row[TIME], row[CHANNEL], row[VARIANT]) for row in rows] == [(10**9, 0, 5), (1_250_000_000, 1, 5)]
     assert rows[0][3] == 0xBBAA and rows[0][4:] == [0] * 7
-    assert (found.first, found.last, found.others) == (10**9, 2_500_000_000, 1)
+    assert found.spans == {
+        "a": Span(10**9, 2_500_000_000, 10**8),
+        "b": Span(1_250_000_000, 1_500_000_000, 10**7),
+    }
+    assert (found.first, found.others) == (10**9, 1)
     seen = found.seen["a"][0x123, False]
     assert (seen.frames, seen.short) == (2, 0)  # one is kept by nobody, and seen
     short = found.seen["b"][0x123, False]

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evcosim.cosim.can.logs.recording import WIDTH, Recording
+from evcosim.cosim.can.logs.recording import WIDTH, Recording, Span
 from evcosim.cosim.can.logs.replay import Replayed
 from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.clock import Clock
@@ -24,7 +24,8 @@ def replayed(
     rows[:, 0] = times
     rows[:, 3] = np.arange(len(times))
     table = MemoryTable(rows.view(np.float64))
-    recording = Recording(Path("x"), table, ("a",), {}, {}, None, None, 0, resolution)
+    spans = {"a": Span(min(times), max(times), resolution)}
+    recording = Recording(Path("x"), table, ("a",), {}, {}, spans, 0)
     return Replayed(recording, "a", offset, clock, delay, np.array([7]))
 
 
@@ -41,11 +42,21 @@ def test_a_frame_is_seen_at_the_first_point_at_or_after_its_time(
         assert (k < 0) == (time < start * 1e9 - 0.5)
 
 
-@given(st.integers(0, 10**6), st.sampled_from([0.01, 0.001, 1 / 60, 1 / 3]), st.sampled_from([1, 1000]))
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from([0.01, 0.001, 1 / 60, 1 / 3]),
+    st.sampled_from([1, 1000, 10_000, 100_000]),
+)
 def test_a_communication_point_that_a_log_rounds_is_that_point(k: int, step: float, resolution: int) -> None:
     clock = Clock.counted(0.0, step, 2 * 10**6)
     time = round(clock.at(k) * 1e9 / resolution) * resolution
     assert replayed([time], clock, resolution=resolution).steps()[1].tolist() == [k]
+
+
+def test_times_that_are_rounded_to_more_than_a_step_are_seen_at_the_nearest_point() -> None:
+    clock = Clock.counted(0.0, 0.01, 1000)
+    times = [500_000_000, 504_000_000, 506_000_000]
+    assert replayed(times, clock, resolution=10**8).steps()[1].tolist() == [50, 50, 51]
 
 
 def test_offset_and_delay_move_frames_and_times_that_no_run_reaches_stay_behind_all() -> None:

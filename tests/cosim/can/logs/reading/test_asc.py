@@ -80,3 +80,8 @@ def test_bytes_that_no_text_has_are_refused_with_their_line(tmp_path: Path, tail
     (tmp_path / "a.asc").write_bytes(HEAD.encode() + b"1.0 1 123 Rx d 1 11\n" + tail)
     with pytest.raises(ConfigError, match=r"a\.asc: line 5: bytes that no text has"):
         frames_in(tmp_path / "a.asc")
+
+
+def test_a_time_is_as_exact_as_its_digits(tmp_path: Path) -> None:
+    text = "base hex timestamps relative\n 0.01 1 123 Rx d 0\n 0.0100 1 123 Rx d 0\n 0.1 1 ErrorFrame\n"
+    assert [f.resolution for f in frames_in(tmp_path / "a.asc", text)] == [10**7, 10**5, 10**8]

@@ -123,3 +123,11 @@ def test_damaged_compressed_bytes_are_refused(tmp_path: Path) -> None:
 def test_flipped_bits_are_read_or_refused(tmp_path: Path) -> None:
     check_survives(tmp_path, ".blf", written(tmp_path, ".blf").read_bytes())
     check_survives(tmp_path, ".blf", HEADER + contained(one(1, CLASSIC) * 20, method=0))
+
+
+def test_the_unit_of_times_is_that_of_the_flags(tmp_path: Path) -> None:
+    content = HEADER + one(1, CLASSIC, flags=1) + one(1, CLASSIC, flags=2)
+    assert [(f.time, f.resolution) for f in frames_in(tmp_path / "a.blf", content)] == [
+        (50_000, 10_000),
+        (5, 1),
+    ]

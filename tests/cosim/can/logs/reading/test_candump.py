@@ -44,3 +44,8 @@ def test_a_classic_frame_has_eight_bytes_at_most(tmp_path: Path) -> None:
 
 def test_damaged_logs_are_read_or_refused(tmp_path: Path) -> None:
     check_survives(tmp_path, ".log", written(tmp_path, ".log").read_bytes())
+
+
+def test_a_time_is_as_exact_as_its_digits(tmp_path: Path) -> None:
+    text = "(1.5) a 123#\n(1.000001) a 123#\n(1.123456789) a 123#\n"
+    assert [f.resolution for f in frames_in(tmp_path / "a.log", text)] == [10**8, 1000, 1]

@@ -52,3 +52,19 @@ def test_damaged_logs_are_read_or_refused(tmp_path: Path, suffix: str) -> None:
 def test_what_is_no_frame_is_refused(tmp_path: Path, line: str, said: str) -> None:
     head = "timestamp,arbitration_id,extended,remote,error,dlc,data\n"
     assert refused(tmp_path / "a.csv", head + line + "\n").startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "resolution"),
+    [
+        ("a.trc", "     1)     1841 0001 8 00 00 00 00 00 00 00 00\n", 10**6),
+        ("b.trc", ";$FILEVERSION=1.1\n;$STARTTIME=0\n     1)     1059.9  Rx         0300  1  00\n", 10**5),
+        ("a.csv", "timestamp,arbitration_id,extended,remote,error,dlc,data\n1.25,0x1,0,0,0,1,YQ==\n", 10**7),
+        ("b.csv", "head\n1700000000.1234567,0x1,0,0,0,1,YQ==\n", 238),
+        ("c.csv", "head\n3,0x1,0,0,0,1,YQ==\n", 10**9),
+    ],
+)
+def test_the_digits_of_times_are_known_and_what_a_double_leaves_of_them(
+    tmp_path: Path, name: str, text: str, resolution: int
+) -> None:
+    assert [f.resolution for f in frames_in(tmp_path / name, text)] == [resolution]

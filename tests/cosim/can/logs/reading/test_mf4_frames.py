@@ -7,6 +7,7 @@ from pathlib import Path
 
 import can
 import numpy as np
+import pytest
 
 from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE, LoggedFrame
 from evcosim.cosim.can.logs.reading.mf4_frames import RECORD, frames_of, records_of
@@ -40,3 +41,21 @@ def test_records_end_with_one_that_says_so() -> None:
     ]
     assert fields == [-5, 7, 0x123, 3, 1, REMOTE, 3, 0]
     assert row["data"].tobytes() == b"abc".ljust(64, b"\0") and last["end"] == 1
+
+
+@pytest.mark.parametrize(("unit", "resolution"), [(1e-5, 10_000), (1e-9, 1), (1e-10, 1)])
+def test_times_that_count_units_are_as_exact_as_these(tmp_path: Path, unit: float, resolution: int) -> None:
+    need_module("asammdf")
+    from asammdf import MDF, Signal
+    from asammdf.blocks.v4_blocks import ChannelConversion
+
+    path = tmp_path / "a.mf4"
+    fields = [("ID", "<u4"), ("DataLength", "u1"), ("DataBytes", "(1,)u1")]
+    samples = np.array([(0x123, 1, [7])], [(f"CAN_DataFrame.{name}", kind) for name, kind in fields])
+    with MDF(version="4.10") as mdf:
+        mdf.append(Signal(name="CAN_DataFrame", samples=samples, timestamps=np.array([25], dtype="<u8")))
+        times = mdf.groups[0].channels[mdf.masters_db[0]]
+        times.conversion = ChannelConversion(conversion_type=1, a=unit, b=0.0)
+        mdf.save(path)
+    (frame,) = frames_of(path)
+    assert (frame.time, frame.resolution, frame.data) == (round(25e9 * unit), resolution, b"\x07")

@@ -52,6 +52,14 @@ def test_units_of_time_and_offsets(tmp_path: Path) -> None:
     assert frame.time == 100 * 10**9 + 3 * 10**9 // 1024
 
 
+@pytest.mark.parametrize(
+    ("power", "resolution"), [(3, 10**6), (6, 1000), (9, 1), (12, 1), (128 + 10, 976_562)]
+)
+def test_times_are_as_exact_as_the_unit_of_the_interface(tmp_path: Path, power: int, resolution: int) -> None:
+    content = capture("<", 227, [FRAME], struct.pack("<HHBxxx", 9, 1, power))
+    assert [f.resolution for f in frames_in(tmp_path / "a.pcapng", content)] == [resolution]
+
+
 def test_other_links_are_passed_over(tmp_path: Path) -> None:
     assert frames_in(tmp_path / "a.pcapng", capture("<", 1, [FRAME])) == []
 
