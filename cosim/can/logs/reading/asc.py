@@ -51,7 +51,7 @@ def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
         except (ValueError, IndexError) as error:
             raise damaged(path, f"line {number}", f"the frame cannot be read: {line[:80]}") from error
         if frame is not None:
-            yield frame._replace(resolution=resolution_of(event[2]))
+            yield LoggedFrame(*frame[:-1], resolution_of(event[2]))
 
 
 def _frame(words: Sequence[str], base: int, time: int, line: int) -> LoggedFrame | None:

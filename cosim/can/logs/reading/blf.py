@@ -130,7 +130,7 @@ class _Objects:
             time *= resolution
             if not time < LATEST:
                 raise struct.error(f"a time of {time} ns")
-            yield self._of_kind(one, header, kind, time)._replace(resolution=resolution)
+            yield LoggedFrame(*self._of_kind(one, header, kind, time)[:-1], resolution)
         except struct.error as error:
             raise damaged(
                 self._path, f"byte {self._place}", f"a frame (object {kind}) is damaged: {error}"
