@@ -17,25 +17,31 @@ from .resolution import with_resolution
 _DIGITS = 0.1  # raw steps: a limit that is off by less was written with few digits
 
 
-def notes_on(message: Message, signal: Signal, via: str, settings: BusSettings) -> Iterator[str]:
-    """Yield the notes for users of a signal on a bus, each with file and line."""
+def notes_on(
+    message: Message, signal: Signal, via: str, settings: BusSettings, replayed: bool = False
+) -> Iterator[str]:
+    """Yield the notes for users of a signal on a bus, each with file and line; as in `limits_note`."""
     line = f"line {signal.line}: " if signal.line else ""
-    for note in (signal.note, limits_note(signal, settings)):
+    for note in (signal.note, limits_note(signal, settings, replayed)):
         if note:
             yield f"{message.file}: {line}{via}: {note}"
 
 
-def limits_note(signal: Signal, settings: BusSettings) -> str:
+def limits_note(signal: Signal, settings: BusSettings, replayed: bool = False) -> str:
     """Return a sentence on limits that are no raw values, with what arrives for them; "" for none.
 
-    The signal is one that `check_signal` passes. Where the bus wraps, limits are left out.
+    The signal is one that `check_signal` passes. Where the bus wraps, limits are left out. Frames that are
+    `replayed` from a log have what their bytes say, whatever the bus does with others.
     """
-    if signal.is_float or wraps(settings):
+    if signal.is_float or (wraps(settings) and not replayed):
         return ""
     written = (signal.minimum, signal.maximum)
     limits = [limit for limit in written if limit is not None and math.isfinite(limit)]
-    arriving = [(limit, _arriving(signal, settings, limit)) for limit in limits if not _is_raw(signal, limit)]
+    beyond = [limit for limit in limits if not _is_raw(signal, limit)]
+    arriving = [(limit, _arriving(signal, settings, limit)) for limit in beyond]
     said = [f"{found} for {limit:.9g}" for limit, found in arriving if found != f"{limit:.9g} arrives"]
+    if replayed:
+        said = [f"no frame of a log has {limit:.9g}" for limit in beyond]
     if not said:
         return ""
     means = " to ".join(f"{_raw(signal, limit):.9g}" for limit in limits)

@@ -102,3 +102,8 @@ class MessageSettings(BaseModel):
 
     status_optional: bool = False
     """Leave an input of `status` out, with a warning, where the unit's FMU does not have it."""
+
+    @property
+    def protected(self) -> bool:
+        """True where its frames have a checksum that receivers judge."""
+        return self.e2e is not None or self.checksum is not None

@@ -15,22 +15,23 @@ from ..system.system import Connection
 from ..units.definition import names_difference
 from ..units.measure import Affine
 from .buses import check_one_sender
-from .initials import initial_of
-from .network import Connecting
-from .plan import InputPlan
-from .type_rules import check_boolean, check_whole
+from .network import Carried, Connecting, Ends
 from .unit_maps import End, converts, with_unit
 
 
-def find_signal(work: Connecting, via: str, place: str) -> tuple[Message, Signal]:
-    """Return message and signal of "bus.message.signal". Raises ConfigError when there is none."""
+def find_signal(ends: Ends, via: str, place: str, replayed: bool = False) -> tuple[Message, Signal]:
+    """Return message and signal of "bus.message.signal"; what to know of it goes to the network's warnings.
+
+    `replayed`: its frames come from a log. Raises ConfigError when there is none.
+    """
     bus, message_name, signal_name = via.split(".", 2)  # some long names of signals have a dot
-    if bus not in work.network.databases:
-        raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, work.network.databases)}")
-    settings, known = work.system.file.buses[bus], work.network.warnings
-    message = as_sent(work.network.databases[bus].require(message_name, place), settings)
+    databases, known = ends.network.databases, ends.network.warnings
+    if bus not in databases:
+        raise ConfigError(f"{place}: there is no bus '{bus}'{nearest(bus, databases)}")
+    settings = ends.system.file.buses[bus]
+    message = as_sent(databases[bus].require(message_name, place), settings)
     signal = message.require(signal_name, place)
-    known += [note for note in notes_on(message, signal, via, settings) if note not in known]
+    known += [note for note in notes_on(message, signal, via, settings, replayed) if note not in known]
     return message, with_unit(signal, settings.units)
 
 
@@ -86,20 +87,12 @@ def over_bus(
     senders[signal.name] = connection.source
     to_bus, to_receivers = bus_maps(work, connection, source, sinks, signal, place)
     signal = _coarser(work, bus, message, signal, [source, *sinks], place)
-    settings = work.system.file.buses[bus]
-    ends = []
-    for sink, to_receiver in zip(sinks, to_receivers, strict=True):
-        receiver = work.variable(sink)
-        check_whole(".".join(sink), receiver, signal, place)
-        check_boolean(work.variable(source), ".".join(sink), receiver, signal, settings.overflow, place)
-        name = ".".join(sink)
-        work.network.drive(name, InputPlan(work.slots.valid[sink], None, ""), place)
-        mailbox = work.network.add_mailbox(*sink, work.slots, f"{connection.source} via {connection.via}")
-        via = connection.via or ""
-        initial = initial_of(connection.initial, via, to_receiver, receiver, work.system, place)
-        if initial is not None:
-            work.network.initial[name] = initial
-        ends.append((mailbox, to_receiver))
+    via = connection.via or ""
+    carried = Carried(signal, via, f"{connection.source} via {via}", work.variable(source))
+    ends = [
+        work.receive(sink, carried, map_, connection.initial, place)
+        for sink, map_ in zip(sinks, to_receivers, strict=True)
+    ]
     route = SignalRoute(signal=signal, source=work.slots.valid[source], to_bus=to_bus, sinks=tuple(ends))
     work.signal_routes.setdefault(key, []).append(route)
 

@@ -10,7 +10,7 @@ from ..can.channel import SignalRoute
 from ..can.framing import bare_framing, check_jitter, framing_of
 from ..can.pages import pages
 from ..system.system import Algorithm
-from .network import Connecting, status_inputs
+from .network import Connecting
 from .plan import MessagePlan
 from .sendings import send_times, staged
 from .steps import steps_in
@@ -36,7 +36,7 @@ def message_plans(
     delay = steps_in(settings.delay, step_size, f"{where}.delay") if settings.timing == "instant" else 0
     framing = framing_of(message, settings, connected, where, str(work.system.path.parent))
     if framing is not None:
-        status = status_inputs(work.network, work.system, work.interfaces, work.slots, f"{bus}.{name}")
+        status = work.status_inputs(f"{bus}.{name}")
         framing = dataclasses.replace(framing, status=status)
     senders = work.senders[bus, name]
     after = None

@@ -6,16 +6,17 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 
 from ..can.channel import SignalRoute
-from ..can.database import Database
+from ..can.database import Database, Signal
 from ..errors import ConfigError, nearest
-from ..interface import UnitInterface, VariableInfo
+from ..interface import UnitInterface, Value, VariableInfo
 from ..system.scaling import Scaling
 from ..system.system import System
 from ..units.measure import Affine
+from .initials import initial_of
 from .plan import InputPlan, Link, MessagePlan
 from .sendings import Turns
 from .slots import Slots
-from .type_rules import check_no_text
+from .type_rules import check_boolean, check_status, check_whole
 from .unit_maps import Definitions, End, scaled_map
 from .unit_plan import Route
 
@@ -64,22 +65,27 @@ def split_name(
     return unit, variable
 
 
-@dataclasses.dataclass
-class Connecting:
-    """The arguments of `connect` and what it has found so far, for what resolves them.
+@dataclasses.dataclass(frozen=True)
+class Carried:
+    """A signal as inputs receive it: `via` is "bus.message.signal", `driver` what is said to drive them.
 
-    By (bus, message): `senders` are the sending variables by signal, `signal_routes` the routes of the
-    signals.
+    `sender` is the variable behind it; None: its frames come from a log.
     """
+
+    signal: Signal
+    via: str
+    driver: str
+    sender: VariableInfo | None = None
+
+
+@dataclasses.dataclass
+class Ends:
+    """The variables of the units of a run as ends of connections, which become the `network`."""
 
     system: System
     interfaces: Mapping[str, UnitInterface]
     slots: Slots
     network: Network
-    turns: Turns
-    ideal: bool
-    senders: dict[tuple[str, str], dict[str, str]] = dataclasses.field(default_factory=dict)
-    signal_routes: dict[tuple[str, str], list[SignalRoute]] = dataclasses.field(default_factory=dict)
 
     def variable(self, name: tuple[str, str]) -> VariableInfo:
         """Return the variable (unit, name)."""
@@ -99,19 +105,54 @@ class Connecting:
         """The units of measure of all units."""
         return [interface.units_of_measure for interface in self.interfaces.values()]
 
+    def receive(
+        self, sink: tuple[str, str], carried: Carried, map_: Affine, initial: Value | None, place: str
+    ) -> tuple[int, Affine]:
+        """Let a signal drive an input, with what its connection says of its `initial` value.
 
-def status_inputs(
-    network: Network, system: System, interfaces: Mapping[str, UnitInterface], slots: Slots, via: str
-) -> tuple[int, ...]:
-    """Return the mailboxes of inputs that receive the status of "bus.message"; those left out have none."""
-    bus, _, message = via.partition(".")
-    place, found = f"{system.path}: buses.{bus}.messages.{message}.status", []
-    for full in system.file.buses[bus].of_message(message).status:
-        if full.partition(".")[0] not in system.file.units:
-            raise ConfigError(f"{place}: there is no unit of '{full}'{nearest(full, interfaces)}")
-        if full.partition(".")[0] in interfaces:
-            unit, name = network.input_of(full, interfaces, place)
-            check_no_text(full, interfaces[unit].variables[name], f"the status of {message}", place)
-            network.drive(full, InputPlan(slots.valid[unit, name], None, ""), place)
-            found.append(network.add_mailbox(unit, name, slots, f"the status of {message}"))
-    return tuple(found)
+        Return the input's mailbox with `map_`, from the signal's unit to the input's. Raises ConfigError,
+        which starts with `place`, for an input that is driven already, or does not take the signal's values.
+        """
+        name, receiver = ".".join(sink), self.variable(sink)
+        overflow = self.system.file.buses[carried.via.partition(".")[0]].overflow
+        check_whole(name, receiver, carried.signal, place)
+        check_boolean(carried.sender, name, receiver, carried.signal, overflow, place)
+        self.network.drive(name, InputPlan(self.slots.valid[sink], None, ""), place)
+        mailbox = self.network.add_mailbox(*sink, self.slots, carried.driver)
+        value = initial_of(initial, carried.via, map_, receiver, self.system, place)
+        if value is not None:
+            self.network.initial[name] = value
+        return mailbox, map_
+
+    def status_inputs(self, via: str) -> tuple[int, ...]:
+        """Return the mailboxes of inputs that receive the status of "bus.message".
+
+        Those of units that were left out have none. Raises ConfigError for an input that there is not, that
+        is driven already, or that takes no such number.
+        """
+        bus, _, message = via.partition(".")
+        own = self.system.file.buses[bus].of_message(message)
+        place, found = f"{self.system.path}: buses.{bus}.messages.{message}.status", []
+        for full in own.status:
+            if full.partition(".")[0] not in self.system.file.units:
+                raise ConfigError(f"{place}: there is no unit of '{full}'{nearest(full, self.interfaces)}")
+            if full.partition(".")[0] in self.interfaces:
+                sink = self.network.input_of(full, self.interfaces, place)
+                check_status(full, self.variable(sink), message, own.protected, place)
+                self.network.drive(full, InputPlan(self.slots.valid[sink], None, ""), place)
+                found.append(self.network.add_mailbox(*sink, self.slots, f"the status of {message}"))
+        return tuple(found)
+
+
+@dataclasses.dataclass
+class Connecting(Ends):
+    """The arguments of `connect` and what it has found so far, for what resolves them.
+
+    By (bus, message): `senders` are the sending variables by signal, `signal_routes` the routes of the
+    signals.
+    """
+
+    turns: Turns
+    ideal: bool
+    senders: dict[tuple[str, str], dict[str, str]] = dataclasses.field(default_factory=dict)
+    signal_routes: dict[tuple[str, str], list[SignalRoute]] = dataclasses.field(default_factory=dict)

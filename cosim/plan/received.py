@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-from ..can.as_sent import as_sent
 from ..can.channel import SignalRoute
-from ..can.database import Message, Signal
+from ..can.database import Message
 from ..can.logs.recording import Key, key_of
 from ..errors import ConfigError, nearest
-from ..interface import UnitInterface, Value
+from ..interface import Value
 from ..system.can_log_spec import CanLogEntry
 from ..system.scaling import Scaling
-from ..system.system import System
 from ..units.measure import Affine
-from .initials import initial_of
-from .network import Network, status_inputs
-from .plan import InputPlan
-from .slots import Slots
-from .type_rules import check_no_text, check_whole
-from .unit_maps import Definitions, End, converts, scaled_map, with_unit
+from .bus_connections import find_signal
+from .network import Carried, Ends
+from .type_rules import check_no_text
+from .unit_maps import End, converts
 
 Wanted = list[tuple[Message, list[SignalRoute]]]
 """Messages, each with the routes from its signals to their receivers."""
@@ -38,16 +34,12 @@ class _Receiver:
 
 
 @dataclasses.dataclass
-class Received:
+class Received(Ends):
     """The receivers of frames that no unit of a run sends; `network` has what the units send.
 
     `ideal`: there are no buses.
     """
 
-    system: System
-    interfaces: Mapping[str, UnitInterface]
-    network: Network
-    slots: Slots
     ideal: bool
 
     def sent(self, bus: str) -> dict[Key, str]:
@@ -78,17 +70,18 @@ class Received:
         routes: dict[str, list[SignalRoute]] = {}
         messages: dict[str, Message] = {}
         for receiver in (*self._of_file(entry, place), *self._of_connections(entry.bus)):
-            name, _, signal_name = receiver.signal.partition(".")
+            name = receiver.signal.partition(".")[0]
             if name in taken and receiver.place.startswith(place):
                 raise ConfigError(
                     f"{receiver.place}: {entry.bus}.{name} is sent by a unit of this run already"
                 )
             if name in taken or (entry.messages is not None and name not in entry.messages):
                 continue
-            message = as_sent(database.require(name, receiver.place), buses[entry.bus])
-            signal = with_unit(message.require(signal_name, receiver.place), buses[entry.bus].units)
-            messages[name] = message
-            self._drive(entry, receiver, signal, routes.setdefault(name, []))
+            via = f"{entry.bus}.{receiver.signal}"
+            messages[name], signal = find_signal(self, via, receiver.place, replayed=True)
+            self._drive(
+                Carried(signal, via, f"{via} of {entry.can_log}"), receiver, routes.setdefault(name, [])
+            )
         wanted = [(messages[name], found) for name, found in routes.items() if found]
         if not wanted:
             raise ConfigError(
@@ -113,43 +106,26 @@ class Received:
             if to:
                 yield _Receiver(signal, to, connection, connection.initial, place)
 
-    def _drive(
-        self, entry: CanLogEntry, receiver: _Receiver, signal: Signal, routes: list[SignalRoute]
-    ) -> None:
+    def _drive(self, carried: Carried, receiver: _Receiver, routes: list[SignalRoute]) -> None:
         """Let a signal drive the inputs of a receiver, and add its route. Raises ConfigError."""
-        via, place, sinks = f"{entry.bus}.{receiver.signal}", receiver.place, []
+        sinks = []
         for full in receiver.to:
-            unit, name = self.network.input_of(full, self.interfaces, place)
-            variable = self.interfaces[unit].variables[name]
-            check_no_text(full, variable, via, place)
-            check_whole(full, variable, signal, place)
-            slot = self.slots.valid[unit, name]
-            self.network.drive(full, InputPlan(slot, None, ""), place)
-            mailbox = self.network.add_mailbox(unit, name, self.slots, f"{via} of {entry.can_log}")
-            map_ = self._map(signal, via, entry.bus, unit, name, receiver)
-            initial = initial_of(receiver.initial, via, map_, variable, self.system, place)
-            if initial is not None:
-                self.network.initial[full] = initial
-            sinks.append((mailbox, map_))
-        same = next((route for route in routes if route.signal == signal), None)
+            sink = self.network.input_of(full, self.interfaces, receiver.place)
+            check_no_text(full, self.variable(sink), carried.via, receiver.place)
+            map_ = self._map(carried, sink, receiver)
+            sinks.append(self.receive(sink, carried, map_, receiver.initial, receiver.place))
+        same = next((route for route in routes if route.signal == carried.signal), None)
         if same is not None:
             routes.remove(same)
             sinks = [*same.sinks, *sinks]
-        routes.append(SignalRoute(signal=signal, source=0, to_bus=Affine(), sinks=tuple(sinks)))
+        routes.append(SignalRoute(signal=carried.signal, source=0, to_bus=Affine(), sinks=tuple(sinks)))
 
-    def _map(self, signal: Signal, via: str, bus: str, unit: str, name: str, receiver: _Receiver) -> Affine:
+    def _map(self, carried: Carried, sink: tuple[str, str], receiver: _Receiver) -> Affine:
         """Return the map from a signal's unit to an input's.
 
         A factor of the connection stands here where the units of measure do not convert, else at the sender.
         """
-        interface = self.interfaces[unit]
-        variable = interface.variables[name]
-        on_bus = End(via, signal.unit, bus=bus, difference=variable.difference)
-        end = End(f"{unit}.{name}", variable.unit, interface.units_of_measure, variable.difference)
-        others: list[Definitions] = [each.units_of_measure for each in self.interfaces.values()]
-        scaling = Scaling() if converts(on_bus, end, others) else receiver.scaling
-        return scaled_map(on_bus, end, scaling, others, receiver.place, self.network.warnings)
-
-    def status_inputs(self, bus: str, message: str) -> tuple[int, ...]:
-        """Return the mailboxes of the inputs that receive a message's status. Raises ConfigError."""
-        return status_inputs(self.network, self.system, self.interfaces, self.slots, f"{bus}.{message}")
+        end, bus = self.end(sink), carried.via.partition(".")[0]
+        on_bus = End(carried.via, carried.signal.unit, bus=bus, difference=end.difference)
+        scaling = Scaling() if converts(on_bus, end, self.definitions) else receiver.scaling
+        return self.map(on_bus, end, scaling, receiver.place)

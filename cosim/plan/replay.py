@@ -55,7 +55,7 @@ def with_replays(system: System, scenario: Scenario, received: Received, clock: 
         _check_matches(recording, channel, wanted, database, place)
         first = len(network.messages)
         replayed = _timed(system, entry, recording, channel, variants, first, clock, place)
-        status = {m.name: received.status_inputs(entry.bus, m.name) for m, _ in wanted}
+        status = {m.name: received.status_inputs(f"{entry.bus}.{m.name}") for m, _ in wanted}
         made = [_message(system, entry.bus, each, clock, status) for each in variants.found]
         plan = _plan(entry.bus, replayed, made, wanted, clock, place)
         network.messages += made

@@ -87,7 +87,7 @@ def _resolved(
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     turns = _turns(system, entries, clock)
     network = connect(system, interfaces, slots, turns, clock, algorithm, ideal)
-    replays = with_replays(system, scenario, Received(system, interfaces, network, slots, ideal), clock)
+    replays = with_replays(system, scenario, Received(system, interfaces, slots, network, ideal), clock)
     network.warnings += check_initials(system, network.databases, network.messages)
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     named, started = by_kind(options, interfaces, network)

@@ -69,6 +69,13 @@ def test_the_settings_of_the_bus_decide_what_arrives():
     assert limits_note(signal, BusSettings(overflow="wrap")) == ""  # limits are left out
 
 
+@pytest.mark.parametrize("overflow", ["saturate", "wrap", "error"])
+def test_frames_of_a_log_have_no_such_limit_whatever_the_bus_does(overflow):
+    said = limits_note(of(0.6, 1000), BusSettings(overflow=overflow), replayed=True)
+    assert said.endswith("raw values 0 to 255: no frame of a log has 0.6, and no frame of a log has 1000")
+    assert limits_note(of(0, 255), BusSettings(overflow=overflow), replayed=True) == ""
+
+
 @given(
     st.integers(1, 16), st.booleans(), st.sampled_from([1, 2, 0.1, 0.5, -1, -0.25]),
     st.sampled_from([0, -40, 0.5]),

@@ -9,7 +9,7 @@ import pytest
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
-from evcosim.cosim.plan.type_rules import check_boolean, check_types, check_whole
+from evcosim.cosim.plan.type_rules import check_boolean, check_status, check_types, check_whole
 
 FLAG = VariableInfo("b", "Boolean", "input")
 SENDERS = {
@@ -39,20 +39,32 @@ BYTE = Signal("s", 0, 8)
         ("Real", dataclasses.replace(BIT, signed=True), "saturate", False),
         ("Real", dataclasses.replace(BIT, signed=True, scale=-1), "saturate", True),
         ("Real", dataclasses.replace(BIT, offset=1), "saturate", False),
+        ("a log", BIT, "wrap", True),
+        ("a log", BYTE, "saturate", False),
+        ("a log", dataclasses.replace(BYTE, minimum=0, maximum=1), "wrap", True),
     ],
 )  # fmt: skip # one case a line
 def test_a_boolean_receives_only_0_and_1_over_a_bus(sender, signal, overflow, fits) -> None:
     if fits:
-        check_boolean(SENDERS[sender], "a.b", FLAG, signal, overflow, "here")
+        check_boolean(SENDERS.get(sender), "a.b", FLAG, signal, overflow, "here")
         return
     with pytest.raises(
-        ConfigError, match=r"here: a.b is a Boolean, 0 or 1, and the signal carries numbers from"
+        ConfigError, match=r"here: a.b is a Boolean, 0 or 1, and the signal s carries numbers from"
     ):
-        check_boolean(SENDERS[sender], "a.b", FLAG, signal, overflow, "here")
+        check_boolean(SENDERS.get(sender), "a.b", FLAG, signal, overflow, "here")
 
 
 def test_other_receivers_take_any_number() -> None:
     check_boolean(SENDERS["Real"], "a.n", VariableInfo("n", "Integer", "input"), BYTE, "saturate", "here")
+
+
+def test_a_boolean_takes_the_status_of_a_timeout_alone() -> None:
+    check_status("a.b", FLAG, "M", False, "here")
+    check_status("a.n", VariableInfo("n", "Integer", "input"), "M", True, "here")
+    with pytest.raises(ConfigError, match=r"here: a.b is a Boolean, 0 or 1, and the status of M is a number"):
+        check_status("a.b", FLAG, "M", True, "here")
+    with pytest.raises(ConfigError, match=r"here: a.t is a String, and the status of M is a number, which"):
+        check_status("a.t", VariableInfo("t", "String", "input"), "M", False, "here")
 
 
 TAKEN = {
