@@ -123,6 +123,8 @@ class NoisyBus:
             moments = [free, *(s[0] for s in samplings[:1]), *(n.ready for n in self.nodes.values())]
             moments += [n.off.back(self.on_air, self.rates.bit) for n in self.nodes.values() if n.off]
             now = min((moment for moment in moments if moment > now), default=steps * step)
+        if broken is not None:  # what has begun before the end is counted to its end
+            broken.message.replaced += broken.message.waiting is not None
         return found
 
     def _may_send(self, message: Sent, now: int) -> bool:

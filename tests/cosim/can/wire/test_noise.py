@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from evcosim.cosim.can.bus_settings import BusSettings
@@ -25,6 +25,20 @@ from support.noisy_oracle import NoisyBus, Rates, fd_times
 STEPS, STEP, PS = 60, 1e-3, 10**9
 
 
+def message(name: str, identifier: int, length: int, sender: str, extended: bool, fd: bool) -> Message:
+    """A message with one signal in the first of its bytes, six at most."""
+    signals = {"S": Signal("S", 0, min(8 * length, 48))} if length else {}
+    return Message("t.dbc", name, identifier, extended, length, senders=(sender,), signals=signals, fd=fd)
+
+
+LAST_ONE_BREAKS = (
+    [message("M0", 144 << 18, 64, "A", True, True), message("M1", 145, 1, "B", False, False)],
+    [(1, 0), (1, 0)],
+    BusSettings(timing="frame", bitrate=125_000, bit_error_rate=1e-3),
+)
+"""A bus on which an error ends the frame that has it at the end, while a newer one of its message waits."""
+
+
 @st.composite
 def noisy_buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], BusSettings]:
     """Messages, classic and of CAN FD, of two or five nodes, with cycles and first steps; a noisy bus."""
@@ -36,14 +50,8 @@ def noisy_buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], 
     for i, (number, extended) in enumerate(ids):
         wide = fd and draw(st.booleans())
         length = draw(st.sampled_from([0, 5, 8, 12, 16, 20, 24, 32, 48, 64] if wide else [1, 4, 6, 8]))
-        signals = {"S": Signal("S", 0, min(8 * length, 48))} if length else {}
         identifier = number << 18 | draw(st.integers(0, 2**18 - 1)) if extended else number
-        sender = "ABCDE"[i % nodes]
-        messages.append(
-            Message(
-                "t.dbc", f"M{i}", identifier, extended, length, senders=(sender,), signals=signals, fd=wide
-            )
-        )
+        messages.append(message(f"M{i}", identifier, length, "ABCDE"[i % nodes], extended, wide))
     times = [(draw(st.integers(1, 4)), draw(st.integers(0, 3))) for _ in messages]
     use = BusSettings(
         timing="frame",
@@ -57,6 +65,7 @@ def noisy_buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], 
 
 @settings(deadline=None, max_examples=120)
 @given(noisy_buses(), st.integers(0, 2**32))
+@example(LAST_ONE_BREAKS, 0)
 def test_frames_counters_and_bus_off_are_those_of_the_oracle(case, seed):
     messages, times, use = case
     count = len(messages)
