@@ -196,8 +196,8 @@ def _recipe(name: str, module: str, file: Path, experiment: Experiment, version:
 
 @functools.cache
 def _own_code(folder: Path) -> dict[str, bytes]:
-    """Return every module of this package by its path: all of them may decide on the bytes of an FMU."""
-    files = sorted(folder.rglob("*.py"))
+    """Return every module that may decide on the bytes of an FMU of Python, by its path: all but `native`."""
+    files = sorted(file for file in folder.rglob("*.py") if folder / "native" not in file.parents)
     return {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
 
 

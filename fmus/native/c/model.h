@@ -6,61 +6,50 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "python_arithmetic.h"
-
-enum { MODEL_TEXT = 1024 };
-
-/* Why a function of the model failed: Python's exception, its text, and where it was raised. */
-typedef struct {
-  py_failure python; /* what a function of python_arithmetic.h has left */
-  const char *exception;
-  const char *file;
-  int line;
-  char text[MODEL_TEXT];
-} model_failure;
+#include "failure.h"
 
 /* One variable that FMI sees; its value reference is its place in the table. */
 typedef struct {
-  const char *name;
-  const char *unit;
-  char type;      /* 'r' Real, 'i' Integer, 'b' Boolean, 'e' Enumeration */
-  char causality; /* 'p' parameter, 'i' input, 't' independent (the time), 'o' output */
-  size_t offset;  /* in the struct of its causality; reals are double, the others int64_t, truth values bool */
-  double start;
-  const double *minimum, *maximum; /* NULL where there is none */
-  const char *minimum_text, *maximum_text; /* as Python shows them */
-  const int32_t *items;            /* values of an enumeration */
-  size_t item_count;
-  const char *items_text; /* "0 known_speed, 1 estimated_speed" */
+    const char *name;
+    const char *unit;
+    char type;      /* 'r' Real, 'i' Integer, 'b' Boolean, 'e' Enumeration */
+    char causality; /* 'p' parameter, 'i' input, 't' independent (the time), 'o' output */
+    size_t offset;  /* in the struct of its causality; reals are double, the others int64_t, truth values bool */
+    double start;
+    const double *minimum, *maximum; /* NULL where there is none */
+    const char *minimum_text, *maximum_text; /* as Python shows them */
+    const int32_t *items;            /* values of an enumeration */
+    size_t item_count;
+    const char *items_text; /* "0 known_speed, 1 estimated_speed" */
 } model_variable;
 
 /* `count` numbers one after the other in a record of the model that a saved state keeps. */
 typedef struct {
-  char type; /* 'r' double, 'i' int64_t, 'b' bool */
-  size_t offset;
-  size_t count;
+    char type; /* 'r' double, 'i' int64_t, 'b' bool */
+    size_t offset;
+    size_t count;
 } model_field;
 
 /* A model: sizes of its records, its variables, its functions. A function returns false where it fails, and
    leaves `failure`. `memory` is what its remembered calls keep. */
 typedef struct {
-  const char *name;
-  const char *identity; /* of the FMU: a saved state belongs to it */
-  bool sampled, feeds_through, timed;
-  size_t parameters_size, inputs_size, state_size, outputs_size, memory_size;
-  const model_variable *variables;
-  size_t variable_count;
-  const model_field *state_fields;
-  size_t state_field_count;
-  bool (*initial)(void *p, const void *u, void *memory, void *x, model_failure *failure);
-  bool (*step)(void *p, const void *x, const void *u, double dt, void *memory, void *next,
+    const char *name;
+    const char *identity; /* of the FMU: a saved state belongs to it */
+    bool sampled, feeds_through, timed;
+    size_t parameters_size, inputs_size, state_size, outputs_size, memory_size;
+    const model_variable *variables;
+    size_t variable_count;
+    const model_field *state_fields;
+    size_t state_field_count;
+    bool (*initial)(void *p, const void *u, void *memory, void *x, model_failure *failure);
+    bool (*step)(void *p, const void *x, const void *u, double dt, void *memory, void *next,
                model_failure *failure);
-  bool (*outputs)(void *p, const void *x, const void *u, void *memory, void *y, model_failure *failure);
-  /* NULL where the model has none; `text` is "" where there is nothing to say */
-  bool (*notice)(void *p, const void *x, const void *next, const void *u, void *memory, char *text,
+    bool (*outputs)(void *p, const void *x, const void *u, void *memory, void *y, model_failure *failure);
+    /* NULL where the model has none; `text` is "" where there is nothing to say */
+    bool (*notice)(void *p, const void *x, const void *next, const void *u, void *memory, char *text,
                  size_t size, model_failure *failure);
-  /* the parameters have changed: nothing that was derived from them is known any more */
-  void (*forget)(void *p, void *memory);
+    /* the parameters have changed: nothing that was derived from them is known any more */
+    void (*forget)(void *p, void *memory);
 } model_description;
 
 extern const model_description model;

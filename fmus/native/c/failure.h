@@ -1,0 +1,43 @@
+/* Texts of failures and of a model's sentences: put together from pieces, in the words of Python. */
+#ifndef EVCOSIM_FAILURE_H
+#define EVCOSIM_FAILURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "python_arithmetic.h"
+
+enum { MODEL_TEXT = 1024 };
+
+/* Why a function of the model failed: Python's exception, its text, and where it was raised. */
+typedef struct {
+    py_failure python; /* what a function of python_arithmetic.h has left */
+    const char *exception;
+    const char *file;
+    int line;
+    char text[MODEL_TEXT];
+} model_failure;
+
+/* A text that grows; what is beyond its size is cut off. */
+typedef struct {
+    char *at;
+    size_t size, length;
+} model_text;
+
+/* Begin an empty text in `size` bytes at `at`; size is at least 1. */
+model_text model_begin(char *at, size_t size);
+
+/* Add a piece, or a number by a format of Python: "" is str(), "!r" is repr(). */
+void model_put(model_text *text, const char *piece);
+void model_put_real(model_text *text, double value, const char *format);
+void model_put_integer(model_text *text, int64_t value, const char *format);
+void model_put_boolean(model_text *text, bool value, const char *format);
+
+/* Keep where a function of python_arithmetic.h failed. Return false, for the caller to return. */
+bool model_raised(model_failure *failure, const char *file, int line);
+
+/* Keep an exception whose text is in failure->text, and where it was raised. Return false. */
+bool model_raise(model_failure *failure, const char *exception, const char *file, int line);
+
+#endif

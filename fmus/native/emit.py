@@ -1,0 +1,70 @@
+"""A lowered model as one file of readable C99: its types, its tables, its functions, its description.
+
+Each function of Python is a function of C, with the same names, its equation numbers as comments, and the
+place in Python's source that it comes from. Compile it with -ffp-contract=off: a product that is fused with
+a sum has other last bits than Python's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...models.base import Model, variables
+from . import ir
+from .emit_description import description
+from .emit_expressions import constant
+from .emit_functions import Functions, comment, memory
+from .emit_types import c_name, definition, parts, type_name
+from .values import Type
+
+
+def c_source(model: type[Model], program: ir.Program, identity: str) -> str:
+    """Return model.c of a model: `program` is what it was lowered to, `identity` that of its FMU."""
+    functions = Functions(program)
+    pieces = [
+        f"/* {program.name}: {comment(program.about)}\n\n   Made by evcosim of the model in Python. */",
+        '#include <string.h>\n\n#include "model.h"\n',
+        *_types(model, program),
+        *(
+            f"static const {type_name(t.type)} {c_name(t.name)} = {constant(t.value)};\n"
+            for t in program.tables
+        ),
+        memory(program),
+        "\n".join(f"{head};" for head in functions.heads()) + "\n",
+        *functions.texts(),
+        *description(model, program, identity, functions.failing, functions.with_memory),
+    ]
+    return "\n".join(piece for piece in pieces if piece)
+
+
+def _types(model: type[Model], program: ir.Program) -> Iterator[str]:
+    """Return the definitions of all types, each before those that use it."""
+    records = {
+        program.parameters.name: model.Parameters,
+        program.inputs.name: model.Inputs,
+        program.state.name: model.State,
+        program.outputs_type.name: model.Outputs,
+    }
+    wanted: list[Type] = [
+        *program.types,
+        program.inputs,
+        program.state,
+        program.outputs_type,
+        program.parameters,
+    ]
+    for function in program.functions:
+        wanted += [x.type for x in (*function.arguments, *function.locals)]
+        wanted += [function.returns] if function.returns else []
+    wanted += [table.type for table in program.tables]
+    defined: set[str] = set()
+    for type_ in wanted:
+        for part in parts(type_):
+            if (name := type_name(part)) not in defined:
+                defined.add(name)
+                yield definition(part, _meanings(records[name]) if name in records else None)
+
+
+def _meanings(record: type) -> dict[str, str]:
+    """Return description and unit of each variable of a record, as a comment."""
+    texts = {v.name: f"{v.description} [{v.unit}]" if v.unit else v.description for v in variables(record)}
+    return {name: comment(text) for name, text in texts.items()}

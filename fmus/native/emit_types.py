@@ -1,0 +1,140 @@
+"""The types of a program in C: names, definitions, and the places of the numbers within them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from .values import (
+    COMPLEX,
+    INTEGER,
+    REAL,
+    ArrayType,
+    EnumType,
+    ListType,
+    ParametersType,
+    Scalar,
+    StructType,
+    Type,
+)
+
+_LANGUAGE = """
+auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+bool true false assert errno offsetof isnan isinf isfinite signbit NULL NAN INFINITY
+"""
+_OWN = "model failure memory result said variables state_fields forget"
+_LIBRARY = """
+abort abs acos acosh asin asinh atan atan2 atanh atexit atof atoi atol bsearch calloc cbrt ceil clearerr
+copysign cos cosh div erf erfc exit exp exp2 expm1 fabs fclose fdim feof ferror fflush fgetc fgets floor fma
+fmax fmin fmod fopen fprintf fputc fputs fread free freopen frexp fscanf fseek ftell fwrite getc getchar
+getenv gets hypot ilogb labs ldexp ldiv lgamma llabs log log10 log1p log2 logb lrint lround main malloc
+memchr memcmp memcpy memmove memset modf nan nearbyint nextafter perror pow printf putc putchar puts qsort
+raise rand realloc remainder remove remquo rename rewind rint round scalbn scanf setbuf sin sinh snprintf
+sprintf sqrt srand sscanf strcat strchr strcmp strcpy strlen strncat strncmp strncpy strstr strtod strtol
+system tan tanh tgamma tmpfile trunc ungetc vprintf
+"""
+_TAKEN = frozenset(f"{_LANGUAGE} {_OWN} {_LIBRARY}".split())
+"""Names that mean something else in a file of C: the language, its library, the frame of our own."""
+
+
+def c_name(name: str) -> str:
+    """Return a name of Python as one of C; a name that is taken there gets a `_`."""
+    return f"{name}_" if name in _TAKEN or name.startswith(("py_", "model_")) else name
+
+
+def type_name(type_: Type) -> str:
+    """Return the name of a type in C."""
+    match type_:
+        case Scalar():
+            return type_.value
+        case EnumType():
+            return "int64_t"
+        case StructType() | ParametersType():
+            return c_name(type_.name)
+        case ArrayType():
+            return f"{_stem(type_.item)}_x{type_.length}"
+        case ListType():
+            return f"{_stem(type_.item)}_list_{type_.capacity}"
+
+
+def _stem(item: Type) -> str:
+    short = {REAL: "real", INTEGER: "integer", COMPLEX: "complex"}
+    return short.get(item, type_name(item)) if isinstance(item, Scalar) else type_name(item)
+
+
+def argument(type_: Type, name: str) -> str:
+    """Return the declaration of an argument: lists and parameters are handed on by address."""
+    star = "*" if isinstance(type_, ListType | ParametersType) else ""
+    return f"{type_name(type_)} {star}{name}"
+
+
+def parts(type_: Type) -> Iterator[Type]:
+    """Return the types within a type and then itself, in the order in which C defines them."""
+    match type_:
+        case StructType():
+            for _, item in type_.fields:
+                yield from parts(item)
+        case ParametersType():
+            for _, item in type_.fields:
+                yield from parts(item)
+            for item, _ in type_.derived.values():
+                yield from parts(item)
+        case ArrayType() | ListType():
+            yield from parts(type_.item)
+        case _:
+            return
+    yield type_
+
+
+def definition(type_: Type, comments: dict[str, str] | None = None) -> str:
+    """Return the definition of a type; `comments` stand beside the fields of these names."""
+    comments = comments or {}
+    match type_:
+        case ArrayType():
+            lines = [f"{type_name(type_.item)} at[{type_.length}];"]
+        case ListType():
+            lines = ["int64_t length;", f"{type_name(type_.item)} at[{type_.capacity}];"]
+        case StructType() | ParametersType():
+            lines = [
+                f"{type_name(item)} {c_name(name)};"
+                + (f" /* {comments[name]} */" if name in comments else "")
+                for name, item in type_.fields
+            ]
+            if isinstance(type_, ParametersType):
+                for name, (item, _) in type_.derived.items():
+                    lines += [f"bool {name}_known;", f"{type_name(item)} {c_name(name)};"]
+        case _:
+            raise TypeError(f"{type_} needs no definition")
+    inner = "".join(f"    {line}\n" for line in lines or ["char nothing;"])
+    about = f"/* {type_.about} */\n" if isinstance(type_, StructType) and type_.about else ""
+    return f"{about}typedef struct {{\n{inner}}} {type_name(type_)};\n"
+
+
+def numbers(type_: Type, place: str) -> Iterator[tuple[str, str, int]]:
+    """Return where the numbers of a value are: letter of the kind ("r", "i", "b"), place in C, and count."""
+    match type_:
+        case StructType():
+            for name, item in type_.fields:
+                yield from numbers(item, f"{place}.{c_name(name)}" if place else c_name(name))
+        case ListType():
+            yield "i", f"{place}.length", 1
+            yield from _items(type_.item, f"{place}.at", type_.capacity)
+        case ArrayType():
+            yield from _items(type_.item, f"{place}.at", type_.length)
+        case ParametersType():
+            raise TypeError("a state holds no parameters")
+        case _:
+            kind, count = _KINDS.get(type_, ("i", 1)) if isinstance(type_, Scalar) else ("i", 1)
+            yield kind, place, count
+
+
+_KINDS = {REAL: ("r", 1), COMPLEX: ("r", 2), INTEGER: ("i", 1), Scalar.BOOLEAN: ("b", 1)}
+
+
+def _items(item: Type, place: str, count: int) -> Iterator[tuple[str, str, int]]:
+    if isinstance(item, Scalar | EnumType):
+        for kind, _, each in numbers(item, place):
+            yield kind, place, each * count
+        return
+    for k in range(count):
+        yield from numbers(item, f"{place}[{k}]")
