@@ -141,7 +141,7 @@ def _protection(message: Message, e2e: E2eSettings, connected: Collection[str], 
 def _check_checksum_keys(own: MessageSettings, place: str) -> None:
     """Raise ConfigError, which starts with `place`, for keys of a checksum that do not go together."""
     if own.checksum is None:
-        for key in ("checksum_signal", "checksum_counter"):
+        for key in ("checksum_signal", "checksum_counter", "checksum_max_delta"):
             if getattr(own, key) is not None:
                 raise ConfigError(f'{place}.{key}: it needs `checksum`, the function: "module:function"')
     elif own.e2e is not None:
@@ -161,12 +161,27 @@ def _makers(
             raise ConfigError(f"{place}.checksum_counter: {counter.name} is the checksum's signal")
         values = 1 << counter.length
         if counter.maximum is not None and counter.scale == 1 and counter.offset == 0:
-            values = min(values, int(counter.maximum) + 1)
+            values = int(min(values, counter.maximum + 1))
         if counter.signed or values < 2:
             raise ConfigError(f"{place}.checksum_counter: {counter.name} must count from 0 to 1 or more")
+    delta = _checked_delta(own.checksum_max_delta, counter, values, f"{place}.checksum_max_delta")
     maker = MakerChecksum(own.checksum or "", folder, f"{place}.checksum", f"{message.name}.{crc.name}")
     maker.check()
-    return Protection(MAKER + values, (), crc, counter, None, 1, maker)
+    return Protection(MAKER + values, (), crc, counter, None, delta, maker)
+
+
+def _checked_delta(delta: int | None, counter: Signal | None, values: int, place: str) -> int:
+    """Return the greatest step of a maker's counter with so many values. Raises ConfigError."""
+    if delta is None:
+        return 1
+    if counter is None:
+        raise ConfigError(f"{place} = {delta}: it needs a `checksum_counter`, whose steps it bounds")
+    if delta >= values:
+        raise ConfigError(
+            f"{place} = {delta}: {counter.name} has {values} values, so that no frame is more than "
+            f"{values - 1} counts on; give less"
+        )
+    return delta
 
 
 def checksum_sources(buses: Iterable[BusSettings], folder: str) -> list[bytes]:

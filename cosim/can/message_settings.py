@@ -95,6 +95,10 @@ class MessageSettings(BaseModel):
     checksum_counter: str | None = None
     """The signal of the counter, 16 bits at most, from 0 to its maximum; without it frames have none."""
 
+    checksum_max_delta: int | None = Field(default=None, ge=1, le=2**16 - 1)
+    """Steps of that counter from one frame that is taken to the next, one more for each cycle without; 1
+    where it is not given."""
+
     status: list[str] = []
     """Inputs that receive the status of the last frame, as "unit.input": with `e2e` 0 ok, 1 no new data,
     2 wrong CRC, 4 the first one, 8 repeated, 32 some lost, 64 wrong sequence; with `timeout`

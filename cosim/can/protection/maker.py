@@ -8,12 +8,13 @@ import hashlib
 import importlib
 import importlib.util
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from ...errors import ConfigError, RunError, nearest, short
+from .module_names import bound_names, installed
 
 Computed = Callable[[bytes, int, int, int], int]
 """A function (payload, identifier, counter, bits of the checksum's signal) -> checksum."""
@@ -40,10 +41,26 @@ class MakerChecksum:
         return next((file for file in files if file.is_file()), None)
 
     def check(self) -> None:
-        """Raise ConfigError where there is no such module, without running any of its code."""
-        top = self.name.partition(":")[0].partition(".")[0]
-        if self.file is None and not Path(self.folder, top).is_dir() and not _installed(top):
-            raise self._missing()
+        """Raise ConfigError where there is no such module or function, without running any code of either.
+
+        A module that may bind names while it runs, or that is no Python, may have any function.
+        """
+        wanted, _, name = self.name.partition(":")
+        file = self.file
+        if file is None:
+            there, file = installed(wanted)
+            if not there:
+                raise self._missing()
+        if file is None:
+            return
+        try:
+            names = bound_names(file.read_bytes(), str(file))
+        except OSError as error:
+            raise ConfigError(f"{self.place}: {file} cannot be read: {error.strerror}") from error
+        except (SyntaxError, ValueError) as error:
+            raise self._not_imported(error) from error
+        if names is not None and name not in names:
+            raise self._lacking(str(file), name, names)
 
     def loaded(self) -> Computed:
         """Import the module, and return its function with its answers checked.
@@ -56,7 +73,7 @@ class MakerChecksum:
         function = getattr(module, name, None)
         if function is None:
             public = [known for known, value in vars(module).items() if callable(value)]
-            raise ConfigError(f"{self.place}: {self._where(module)} has no '{name}'{nearest(name, public)}")
+            raise self._lacking(self._where(module), name, public)
         if not callable(function):
             raise ConfigError(f"{self.place}: {name} of {self._where(module)} is no function")
         where = self._where(module)
@@ -98,6 +115,9 @@ class MakerChecksum:
             f"{self.folder} nor installed{nearest(wanted, files)}"
         )
 
+    def _lacking(self, where: str, name: str, known: Iterable[str]) -> ConfigError:
+        return ConfigError(f"{self.place}: {where} has no '{name}'{nearest(name, known)}")
+
     def _not_imported(self, error: Exception) -> ConfigError:
         what = self.file or self.name.partition(":")[0]
         return ConfigError(
@@ -109,14 +129,6 @@ class MakerChecksum:
 
     def _failed(self, where: str, reason: str) -> RunError:
         return RunError(f"the checksum {self.signal} by {self.name} of {where}: {reason}")
-
-
-def _installed(top: str) -> bool:
-    """Return True for a module or package without dots that Python finds."""
-    try:
-        return importlib.util.find_spec(top) is not None
-    except ValueError:  # it is imported already, and nobody knows from where
-        return True
 
 
 def _imported(file: Path, folder: str) -> ModuleType:
@@ -148,7 +160,7 @@ def _beside(folder: str) -> Iterator[None]:
 
 def _line(error: BaseException) -> str:
     """Return the innermost place of an error's traceback in words."""
-    trace: Any = error.__traceback__
+    trace: Any = None if isinstance(error, SyntaxError) else error.__traceback__  # it says the line itself
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
     if trace is None:

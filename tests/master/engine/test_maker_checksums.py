@@ -92,6 +92,21 @@ def test_what_a_receiver_says_of_a_fault(tmp_path, engine, fault, keys, statuses
     assert {name: counted["statuses"].get(name, 0) for name in statuses} == statuses
 
 
+@pytest.mark.parametrize(("delta", "wrong"), [({}, True), ({"checksum_max_delta": 4}, False)])
+def test_max_delta_bounds_the_steps_of_a_makers_counter(tmp_path, delta, wrong):
+    # sent on change it has no cycle, and nobody counts those without a frame
+    of = system(tmp_path, checksum="maker:nibbles", **KEYS, send_type="on_change", **delta)
+    moving = (
+        'action = "lose"\ncount = 3\n'
+        '[[stimulus]]\nto = "controller.displacement_reference"\nramp = { slope = 0.5 }'
+    )
+    found = [ran(tmp_path, engine, of, moving) for engine in ("python", "compiled")]
+    assert found[0] == found[1]
+    statuses = found[0][2]["statuses"]
+    assert ("wrong_sequence" in statuses) == wrong
+    assert ("ok_some_lost" in statuses) != wrong
+
+
 @pytest.mark.parametrize("engine", ["python", "compiled"])
 def test_an_error_of_the_function_ends_the_run_by_name(tmp_path, engine):
     said = (
@@ -115,6 +130,15 @@ def test_an_error_of_the_function_ends_the_run_by_name(tmp_path, engine):
         (
             {"checksum": "maker:nibbles", **KEYS, "checksum_counter": "VCU_SteerRequestCrc"},
             "VCU_SteerRequestCrc is the checksum's signal",
+        ),
+        ({"checksum_max_delta": 2}, "checksum_max_delta: it needs `checksum`, the function"),
+        (
+            {"checksum": "maker:nibbles", **ALONE, "checksum_max_delta": 2},
+            "checksum_max_delta = 2: it needs a `checksum_counter`, whose steps it bounds",
+        ),
+        (
+            {"checksum": "maker:nibbles", **KEYS, "checksum_max_delta": 15},
+            "checksum_max_delta = 15: VCU_SteerRequestCounter has 15 values, so that no frame",
         ),
         ({"checksum": "maker:nibble", **KEYS}, "maker.py has no 'nibble' (did you mean 'nibbles'"),
         ({"checksum": "makers:nibbles", **KEYS}, "there is no module 'makers'"),

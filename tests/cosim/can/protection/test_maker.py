@@ -103,10 +103,28 @@ def test_what_a_function_does_wrong_is_named(tmp_path, name, said):
         maker(tmp_path, f"checks:{name}").loaded()(b"\x01", 1, 0, 8)
 
 
-def test_a_missing_module_is_said_without_running_any(tmp_path):
-    for name in ("checks:xor", "math:hypot", "os.path:commonprefix", "bad:x", "__main__:x"):
+def test_what_is_missing_is_said_without_running_any_code(tmp_path):
+    for name in ("checks:xor", "checks:number", "math:hypot", "os.path:commonprefix", "bad:x", "__main__:x"):
         maker(tmp_path, name).check()  # bad.py would raise an error
     with pytest.raises(ConfigError, match=r"no module 'check'.* \(did you mean 'checks'\?\)"):
         maker(tmp_path, "check:xor").check()
     with pytest.raises(ConfigError, match=r"no module 'nowhere\.deep', neither nowhere/deep\.py in"):
         maker(tmp_path, "nowhere.deep:xor").check()
+    with pytest.raises(ConfigError, match=r"M.checksum: .*bad\.py has no 'y'"):
+        maker(tmp_path, "bad:y").check()
+    with pytest.raises(ConfigError, match=r"zlib_crc\.py has no 'crc' \(did you mean 'crc8'\?\)"):
+        (tmp_path / "zlib_crc.py").write_text("def crc8(payload, identifier, counter): return 0\n")
+        maker(tmp_path, "zlib_crc:crc").check()
+    with pytest.raises(ConfigError, match=r"colorsys\.py has no 'crc'"):  # an installed one
+        maker(tmp_path, "colorsys:crc").check()
+    (tmp_path / "inner").mkdir()
+    with pytest.raises(ConfigError, match=r"no module 'inner.sums', neither inner/sums\.py in"):
+        maker(tmp_path, "inner.sums:f").check()
+
+
+def test_a_module_that_is_no_python_is_said_alike_before_a_run_and_in_one(tmp_path):
+    (tmp_path / "odd.py").write_text("def f(:\n")
+    said = r"M.checksum: .*odd\.py cannot be imported: SyntaxError: invalid syntax \(odd\.py, line 1\)$"
+    for act in (MakerChecksum.check, MakerChecksum.loaded):
+        with pytest.raises(ConfigError, match=said):
+            act(maker(tmp_path, "odd:f"))
