@@ -18,8 +18,11 @@ from .emit_types import c_name, definition, parts, type_name
 from .values import Type
 
 
-def c_source(model: type[Model], program: ir.Program, identity: str) -> str:
-    """Return model.c of a model: `program` is what it was lowered to, `identity` that of its FMU."""
+def c_source(model: type[Model], program: ir.Program, identity: str, token: str) -> str:
+    """Return model.c of a model, of the program that it was lowered to.
+
+    `identity` is that of its FMU, to which saved states belong, and `token` the guid of its description.
+    """
     functions = Functions(program)
     pieces = [
         f"/* {program.name}: {comment(program.about)}\n\n   Made by evcosim of the model in Python. */",
@@ -32,7 +35,7 @@ def c_source(model: type[Model], program: ir.Program, identity: str) -> str:
         memory(program),
         "\n".join(f"{head};" for head in functions.heads()) + "\n",
         *functions.texts(),
-        *description(model, program, identity, functions.failing, functions.with_memory),
+        *description(model, program, identity, token, functions.failing, functions.with_memory),
     ]
     return "\n".join(piece for piece in pieces if piece)
 

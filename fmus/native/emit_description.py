@@ -11,7 +11,7 @@ from . import ir
 from .emit_blocks import quoted
 from .emit_expressions import literal
 from .emit_types import c_name, numbers, type_name
-from .values import REAL, Type
+from .values import BOOLEAN, INTEGER, REAL, EnumType, Scalar, Type
 
 _CAUSALITY = {"parameter": "p", "input": "i", "independent": "t", "output": "o"}
 _KIND = {"Real": "r", "Integer": "i", "Boolean": "b", "Enumeration": "e"}
@@ -21,6 +21,7 @@ def description(
     model: type[Model],
     program: ir.Program,
     identity: str,
+    token: str,
     failing: Set[str],
     with_memory: Set[str],
 ) -> Iterator[str]:
@@ -33,7 +34,7 @@ def description(
     yield _state_fields(program)
     frames = _Frames(model, program, failing, with_memory)
     yield from frames.functions(has_memory)
-    yield _model(model, program, identity, has_memory)
+    yield _model(model, program, identity, token, has_memory)
 
 
 # -- variables -----------------------------------------------------------------------------------------------
@@ -73,13 +74,23 @@ def _items(v: Declared, reference: int, to: list[str]) -> list[str]:
 
 
 def _state_fields(program: ir.Program) -> str:
-    name = type_name(program.state)
-    rows = [
-        f"    {{'{kind}', offsetof({name}, {place}), {n}}}," for kind, place, n in numbers(program.state, "")
-    ]
+    name, tables, rows = type_name(program.state), dict[str, str](), list[str]()
+    for row in numbers(program.state, ""):
+        items = ["NULL", "0"]
+        if isinstance(row.type, EnumType):
+            table = f"items_of_{row.type.enumeration.__name__}"
+            values = [str(int(item)) for item in row.type.enumeration]
+            tables[table] = f"static const int32_t {table}[] = {{{', '.join(values)}}};"
+            items = [table, str(len(values))]
+        kind = _FIELD.get(row.type, "e") if isinstance(row.type, Scalar) else "e"
+        place = f"offsetof({name}, {row.place})"
+        rows.append(f"    {{'{kind}', {place}, {row.length}, {row.stride}, ALL_IN_USE, {', '.join(items)}}},")
     if not rows:
         return ""
-    return "\n".join(["static const model_field state_fields[] = {", *rows, "};\n"])
+    return "\n".join([*tables.values(), "static const model_field state_fields[] = {", *rows, "};\n"])
+
+
+_FIELD = {REAL: "r", INTEGER: "i", BOOLEAN: "b"}
 
 
 # -- frames: the functions of a model with the arguments that instance.c has ---------------------------------
@@ -138,7 +149,7 @@ class _Frames:
         )
 
 
-def _model(model: type[Model], program: ir.Program, identity: str, has_memory: bool) -> str:
+def _model(model: type[Model], program: ir.Program, identity: str, token: str, has_memory: bool) -> str:
     """Return the definition of `model`."""
     records: list[Type] = [program.parameters, program.inputs, program.state, program.outputs_type]
     sizes = [f"sizeof({type_name(record)})" for record in records]
@@ -147,6 +158,7 @@ def _model(model: type[Model], program: ir.Program, identity: str, has_memory: b
     rows = [
         quoted(program.name),
         quoted(identity),
+        quoted(token),
         ", ".join(flags),
         ", ".join([*sizes, "sizeof(Memory)" if has_memory else "0"]),
         "variables, sizeof variables / sizeof *variables" if exposed(model) else "NULL, 0",

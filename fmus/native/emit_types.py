@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from .values import (
     COMPLEX,
@@ -110,31 +111,38 @@ def definition(type_: Type, comments: dict[str, str] | None = None) -> str:
     return f"{about}typedef struct {{\n{inner}}} {type_name(type_)};\n"
 
 
-def numbers(type_: Type, place: str) -> Iterator[tuple[str, str, int]]:
-    """Return where the numbers of a value are: letter of the kind ("r", "i", "b"), place in C, and count."""
+class Row(NamedTuple):
+    """Numbers of a record of which each is `stride` bytes after the one before; places and sizes are C's."""
+
+    type: Type
+    place: str
+    length: int
+    stride: str
+
+
+def numbers(type_: Type, place: str) -> Iterator[Row]:
+    """Return where the numbers of a state are, each once, in the order of their declaration."""
     match type_:
         case StructType():
             for name, item in type_.fields:
                 yield from numbers(item, f"{place}.{c_name(name)}" if place else c_name(name))
-        case ListType():
-            yield "i", f"{place}.length", 1
-            yield from _items(type_.item, f"{place}.at", type_.capacity)
         case ArrayType():
-            yield from _items(type_.item, f"{place}.at", type_.length)
-        case ParametersType():
-            raise TypeError("a state holds no parameters")
+            yield from _items(type_, place)
+        case ListType() | ParametersType():
+            raise TypeError(f"{place}: a state holds neither lists nor parameters")
+        case Scalar.COMPLEX:
+            for part in ("real", "imag"):
+                yield Row(REAL, f"{place}.{part}", 1, "sizeof(double)")
         case _:
-            kind, count = _KINDS.get(type_, ("i", 1)) if isinstance(type_, Scalar) else ("i", 1)
-            yield kind, place, count
+            yield Row(type_, place, 1, f"sizeof({type_name(type_)})")
 
 
-_KINDS = {REAL: ("r", 1), COMPLEX: ("r", 2), INTEGER: ("i", 1), Scalar.BOOLEAN: ("b", 1)}
-
-
-def _items(item: Type, place: str, count: int) -> Iterator[tuple[str, str, int]]:
-    if isinstance(item, Scalar | EnumType):
-        for kind, _, each in numbers(item, place):
-            yield kind, place, each * count
+def _items(array: ArrayType, place: str) -> Iterator[Row]:
+    """Return the numbers of an array: one row for each number of an item, where items have single numbers."""
+    rows = list(numbers(array.item, f"{place}.at[0]"))
+    if all(row.length == 1 for row in rows):
+        for row in rows:
+            yield row._replace(length=array.length, stride=f"sizeof({type_name(array.item)})")
         return
-    for k in range(count):
-        yield from numbers(item, f"{place}[{k}]")
+    for k in range(array.length):
+        yield from numbers(array.item, f"{place}.at[{k}]")
