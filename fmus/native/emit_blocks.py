@@ -323,15 +323,17 @@ def _texts(text: ir.Text, to: str, scope: Scope) -> list[str]:
         if isinstance(piece, str):
             lines.append(f"model_put({to}, {quoted(piece)});")
         else:
-            value, spec = expression(piece.value, scope), quoted(piece.spec)
-            lines.append(f"{_put(piece.value.type)}({to}, {value}, {spec});")
+            lines.append(_put(piece, to, expression(piece.value, scope)))
     return lines
 
 
-def _put(type_: Type) -> str:
-    if type_ is REAL:
-        return "model_put_real"
-    return "model_put_boolean" if type_ is BOOLEAN else "model_put_integer"
+def _put(piece: ir.Shown, to: str, value: str) -> str:
+    """Return the call that adds a number to a text."""
+    if piece.value.type is REAL:
+        return f"model_put_real({to}, {value}, {quoted(piece.spec)});"
+    if piece.spec not in ("", "!r"):
+        raise TypeError(f"format {piece.spec!r} of a number that is no float")
+    return f"model_put_{'boolean' if piece.value.type is BOOLEAN else 'integer'}({to}, {value});"
 
 
 def quoted(text: str) -> str:

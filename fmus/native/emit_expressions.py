@@ -20,6 +20,7 @@ from .values import (
     Type,
 )
 
+_PARTS = {"real": "re", "imag": "im"}
 _C = {"and": "&&", "or": "||"}
 _LEVELS = {"or": 1, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4, ">": 4, ">=": 4, "+": 5, "-": 5, "*": 6}
 _SELECT, _UNARY, _ATOM = 0, 7, 8
@@ -101,7 +102,8 @@ def _written(e: ir.Expression, scope: Scope) -> tuple[str, int]:
             name = c_name(e.name)
             return (f"*{name}", _UNARY) if e.name in scope.addresses else (name, _ATOM)
         case ir.Field():
-            return f"{_owner(e.of, scope)}{c_name(e.name)}", _ATOM
+            name = _PARTS[e.name] if e.of.type is COMPLEX else c_name(e.name)
+            return f"{_owner(e.of, scope)}{name}", _ATOM
         case ir.Item():
             return f"{_owner(e.of, scope)}at[{expression(e.index, scope)}]", _ATOM
         case ir.Length():

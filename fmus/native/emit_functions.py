@@ -49,7 +49,7 @@ def memory(program: ir.Program) -> str:
 def _same(type_: Type, a: str, b: str) -> str:
     """Return a test that two values are equal as Python compares them."""
     if type_ is COMPLEX:
-        return f"py_complex_equal({a}, {b})"
+        return f"py_complex_eq({a}, {b})"
     if isinstance(type_, Scalar | EnumType):
         return f"{a} == {b}"
     if isinstance(type_, StructType):

@@ -131,7 +131,7 @@ def numbers(type_: Type, place: str) -> Iterator[Row]:
         case ListType() | ParametersType():
             raise TypeError(f"{place}: a state holds neither lists nor parameters")
         case Scalar.COMPLEX:
-            for part in ("real", "imag"):
+            for part in ("re", "im"):
                 yield Row(REAL, f"{place}.{part}", 1, "sizeof(double)")
         case _:
             yield Row(type_, place, 1, f"sizeof({type_name(type_)})")
@@ -142,7 +142,7 @@ def _items(array: ArrayType, place: str) -> Iterator[Row]:
     rows = list(numbers(array.item, f"{place}.at[0]"))
     if all(row.length == 1 for row in rows):
         for row in rows:
-            yield row._replace(length=array.length, stride=f"sizeof({type_name(array.item)})")
+            yield Row(row.type, row.place, array.length, f"sizeof({type_name(array.item)})")
         return
     for k in range(array.length):
         yield from numbers(array.item, f"{place}.at[{k}]")

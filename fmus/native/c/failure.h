@@ -28,11 +28,11 @@ typedef struct {
 /* Begin an empty text in `size` bytes at `at`; size is at least 1. */
 model_text model_begin(char *at, size_t size);
 
-/* Add a piece, or a number by a format of Python: "" is str(), "!r" is repr(). */
+/* Add a piece, a real by a format of Python ("" is str(), "!r" is repr()), or another number as Python shows it. */
 void model_put(model_text *text, const char *piece);
 void model_put_real(model_text *text, double value, const char *format);
-void model_put_integer(model_text *text, int64_t value, const char *format);
-void model_put_boolean(model_text *text, bool value, const char *format);
+void model_put_integer(model_text *text, int64_t value);
+void model_put_boolean(model_text *text, bool value);
 
 /* Keep where a function of python_arithmetic.h failed. Return false, for the caller to return. */
 bool model_raised(model_failure *failure, const char *file, int line);
