@@ -8,6 +8,7 @@ file without any statement of a DBC is refused.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import sys
 from fractions import Fraction
@@ -139,6 +140,12 @@ class _Reader:
         """Return the name of a signal: its long one, where an attribute has that."""
         return self._own((self.entry.dbc_id, short), "SystemSignalLongSymbol") or short
 
+    @functools.cached_property
+    def _multiplexers(self) -> tuple[list[str], list[str]]:
+        """The names of all multiplexers of the message, and of those that no other one selects."""
+        marked = [other for other in self.entry.signals if other.marker.endswith("M")]
+        return [other.name for other in marked], [other.name for other in marked if other.marker == "M"]
+
     def _selection(self, s: SignalEntry) -> tuple[str, tuple[tuple[int, int], ...], str]:
         """Return the multiplexer of a signal and its raw values, "" and () for all frames; and a problem."""
         if s.marker and (found := self.entries.selectors.get((self.entry.dbc_id, s.name))):
@@ -148,8 +155,7 @@ class _Reader:
         number_of = s.marker[1:].removesuffix("M")
         if not (s.marker.startswith("m") and number_of.isdigit()):
             return "", (), f"line {s.line}: '{s.marker}' is no multiplexer's mark: M, m3 or m3M"
-        multiplexers = [other.name for other in self.entry.signals if other.marker.endswith("M")]
-        roots = [other.name for other in self.entry.signals if other.marker == "M"]
+        multiplexers, roots = self._multiplexers
         if s.marker.endswith("M") or len(multiplexers) != 1 or roots != multiplexers:
             said = (
                 f"{' and '.join(multiplexers) or 'no signal'} could select it, and no SG_MUL_VAL_ says which"

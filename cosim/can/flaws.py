@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..errors import short
 from .database import LONGEST, Database, Message, Signal, bits_text, raw_limits
+from .overlaps import first_overlaps
 
 _NOT_AVAILABLE = {"sna", "notavailable", "signalnotavailable"}
 GREATEST = {False: 0x7FF, True: 0x1FFFFFFF}
@@ -92,11 +93,10 @@ def checked(message: Message) -> Message:
         note(name, _own_flaw(message, signal))
     for name in signals:
         note(name, _chain_flaw(signals, name))
-    for one, other in list(_overlapping(signals)):
+    for name, (one, other) in first_overlaps(signals).items():
         shared = sorted(set(signals[one].bits) & set(signals[other].bits))
         bits = f"bits {shared[0]} to {shared[-1]}" if len(shared) > 1 else f"bit {shared[0]}"
-        for name in (one, other):
-            note(name, f"'{one}' and '{other}' overlap in {bits}")
+        note(name, f"'{one}' and '{other}' overlap in {bits}")
     for name in signals:
         note(name, _chain_flaw(signals, name))  # by an overlap of its multiplexer
     signals = {name: signal if signal.problem else clipped(signal) for name, signal in signals.items()}
@@ -132,45 +132,6 @@ def _chain_flaw(signals: Mapping[str, Signal], name: str) -> str:
             return f"no value of its multiplexer '{multiplexer}' that selects it is one of {kind}"
         seen.append(multiplexer)
     return ""
-
-
-def _overlapping(signals: Mapping[str, Signal]) -> Iterator[tuple[str, str]]:
-    """Yield the names of each two signals that share bits in a frame."""
-    taken: dict[int, list[str]] = {}
-    for name, signal in signals.items():
-        if signal.problem:
-            continue
-        met: dict[str, bool] = {}
-        for bit in signal.bits:
-            for other in taken.get(bit, ()):
-                if other not in met:
-                    met[other] = together(signals, name, other)
-            taken.setdefault(bit, []).append(name)
-        yield from ((other, name) for other, shared in met.items() if shared)
-
-
-def together(signals: Mapping[str, Signal], one: str, other: str) -> bool:
-    """Return True where some frame holds both signals: no multiplexer of both selects one or the other."""
-    of_one = dict(conditions(signals, one))
-    return all(
-        multiplexer not in of_one or _meet(of_one[multiplexer], ranges)
-        for multiplexer, ranges in conditions(signals, other)
-    )
-
-
-Ranges = tuple[tuple[int, int], ...]
-
-
-def conditions(signals: Mapping[str, Signal], name: str) -> Iterator[tuple[str, Ranges]]:
-    """Yield the multiplexers on the way to a signal with the raw values that select it."""
-    signal = signals[name]
-    while signal.multiplexer in signals:
-        yield signal.multiplexer, signal.multiplexer_ranges
-        signal = signals[signal.multiplexer]
-
-
-def _meet(some: Ranges, others: Ranges) -> bool:
-    return any(low <= last and first <= high for low, high in some for first, last in others)
 
 
 # ---- the code of "not available"

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from ..errors import ConfigError
 from .database import Message, Signal, prefix
-from .flaws import conditions
+from .overlaps import conditions
 
 
 @dataclasses.dataclass(frozen=True)

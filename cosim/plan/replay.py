@@ -11,10 +11,10 @@ import numpy as np
 
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message, Signal
-from ..can.flaws import conditions
 from ..can.framing import Framing, framing_of
 from ..can.logs.recording import Key, Recording, chosen_channel, key_of, recorded
 from ..can.logs.replay import Replayed
+from ..can.overlaps import conditions
 from ..can.send_steps import send_steps
 from ..can.send_types import Sending, check_send_type, send_type_of
 from ..clock import Clock

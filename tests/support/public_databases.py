@@ -27,8 +27,8 @@ import numpy as np
 
 from evcosim.cosim.can.database import Database, Message, Signal
 from evcosim.cosim.can.dbc import load_dbc
-from evcosim.cosim.can.flaws import conditions
 from evcosim.cosim.can.logs.frames import frames
+from evcosim.cosim.can.overlaps import conditions
 from evcosim.cosim.can.quantization import decode, quantize
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.plan.plan import Plan
