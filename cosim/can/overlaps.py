@@ -107,7 +107,7 @@ class _Taken:
 
 @dataclasses.dataclass
 class _Multiplexer:
-    """What is taken in the frames of a multiplexer, by the stretches of its values between `limits`.
+    """Bits that are taken in the frames of a multiplexer, by the stretches of its values between `limits`.
 
     `own` are the signals that it selects itself, `below` the multiplexers; `whole` is of all below it.
     """
