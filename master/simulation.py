@@ -76,7 +76,8 @@ class Simulation:
     ) -> None:
         require_memory(_LEAST, "a run", LINEAR_ALGEBRA)
         prepared = prepare(system, scenario, **options)
-        made, self._notice = engine_class(options.get("engine") or prepared.plan.experiment.engine)
+        engine = options.get("engine") or prepared.plan.experiment.engine
+        made, self._notice = engine_class(engine, profile, bool(prepared.plan.framed_bus))
         self.system: System = prepared.system
         self.scenario: Scenario = prepared.scenario
         self.plan: Plan = prepared.plan if to_stop else prepared.plan.open_ended()

@@ -57,7 +57,7 @@ NAMES = {
         "master/engine/compiled/wire_types.py",
         "create_struct_proxy unpack_tuple _StructProxy._getvalue",
     ),
-    "numba.core.compiler": ("master/engine/compiled/cache.py", "Compiler.define_pipelines"),
+    "numba.core.compiler": ("master/engine/compiled/compiling.py", "Compiler.define_pipelines"),
     "numba.core.typing.templates": (
         "master/engine/compiled/wire_types.py",
         "AbstractTemplate AttributeTemplate infer_getattr infer_global signature",

@@ -13,22 +13,29 @@ from .python_engine import PythonEngine
 _NUMBA = 450e6  # bytes of address space for numba and its libraries, which do not fail without them but hang
 
 
-def engine_class(wanted: EngineName | None = None) -> tuple[type[Engine], str]:
+def engine_class(
+    wanted: EngineName | None = None, timed: bool = False, frames: bool = False
+) -> tuple[type[Engine], str]:
     """Return the class of an engine (None: the fastest), and a notice if it is another than wanted, else "".
 
-    Raises ConfigError for an unknown name.
+    `timed`: it measures a profile; `frames`: there are some on buses. Raises ConfigError for an unknown name.
     """
     if wanted not in (None, *get_args(EngineName)):
         known = get_args(EngineName)
         raise ConfigError(f"there is no engine '{wanted}'{nearest(str(wanted), known)}: {', '.join(known)}")
     if wanted == "python":
         return PythonEngine, ""
-    if said := too_little_memory(_NUMBA, "the compiled engine", "numba"):
-        return PythonEngine, f"{said}: engine python"
-    try:
-        from .compiled.engine import CompiledEngine
-    except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
-        return PythonEngine, _without_numba(error)
+    from .compiled.cache import at_hand
+
+    if not at_hand(timed, frames):
+        if said := too_little_memory(_NUMBA, "the compiled engine", "numba"):
+            return PythonEngine, f"{said}: engine python"
+        try:
+            from .compiled import compiling as compiling  # which a run without its machine code needs
+        except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
+            return PythonEngine, _without_numba(error)
+    from .compiled.engine import CompiledEngine
+
     return CompiledEngine, ""
 
 
@@ -38,11 +45,14 @@ def compile_engine() -> str:
     What is there is not compiled anew.
     Return a notice if that is impossible, else "".
     """
+    from .compiled.cache import compiled, served, wire
+
     try:
-        from .compiled.cache import compiled, wire
+        notices = compiled()[1], compiled(timed=True)[1], wire()[1]
     except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
         return _without_numba(error)
-    return compiled()[1] or compiled(timed=True)[1] or wire()[1]
+    served()
+    return next(filter(None, notices), "")
 
 
 def _without_numba(error: ImportError | OSError) -> str:

@@ -18,6 +18,8 @@ from ..unit import floats
 from .shared import Shared
 
 _Python = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64)
+_RELEASING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)  # gives up Python's lock while it runs
+_HOLDING = ctypes.PYFUNCTYPE(ctypes.c_int64, ctypes.c_int64)
 
 
 class MachineTurns:
@@ -25,7 +27,8 @@ class MachineTurns:
 
     def __init__(self, code: bytes, instance: Instance, memory: Shared, socket: int) -> None:
         locked = instance.fmu.holds_python  # else each call of the FMU takes the lock and gives it back
-        self._run = Loaded(code, locked)
+        self._code = Loaded(code)
+        self._run = (_HOLDING if locked else _RELEASING)(self._code.address)
         self._instance = instance
         self._rows = rows = CallRows(floats(memory.values))
         self._acts: list[Call] = []

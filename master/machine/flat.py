@@ -21,6 +21,7 @@ _ALLOCATED, _PROGBITS, _SYMBOLS, _RELOCATIONS = 2, 1, 2, 4  # elf.h
 _PC32, _PLT32 = 2, 4
 _KEPT = (".text", ".rodata")
 _ALIGNMENT = 64
+_ENTRY = "evcosim_entry"
 _HEADER = struct.Struct("<16sHHIQQQIHHHHHH")
 _SECTION = struct.Struct("<IIQQQQIIQQ")
 _SYMBOL = struct.Struct("<IBBHQQ")
@@ -31,18 +32,19 @@ class NotFlatError(Exception):
     """The code needs more than its own bytes."""
 
 
-def flat(function: Callable[[int], int]) -> bytes:
-    """Return machine code that begins with a function of numba's of one int64, compiled now.
+def flat(function: Callable[..., int], signature: str = "int64(int64)") -> bytes:
+    """Return machine code that begins with a C function of numba's types in `signature`, compiled now.
 
-    Its C type is int(int64 *answer, void *, int64): `answer` receives what the function returns, the second
-    argument is not used. Raises NotFlatError.
+    Raises NotFlatError.
     """
-    compiling = numba.njit(
-        "int64(int64)", error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
-    )
+    compiling = numba.njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
     made = compiling(function)
     (compiled,) = made.overloads.values()
-    return linked(_object(compiled.library.get_llvm_str()), compiled.fndesc.llvm_func_name)
+    text, name = compiled.library.get_llvm_str(), compiled.fndesc.llvm_func_name
+    parameters = llvm.parse_assembly(text).get_function(name).arguments
+    kinds = [str(parameter.type) for parameter in parameters]
+    entry = _entry(name, f"i{compiled.signature.return_type.bitwidth}", kinds)
+    return linked(_object(text.replace("\ndefine ", f"\n{entry}\ndefine ", 1)), _ENTRY)
 
 
 def _object(text: str) -> bytes:
@@ -57,6 +59,24 @@ def _object(text: str) -> bytes:
     )
     content: bytes = target.emit_object(module)
     return content
+
+
+def _entry(called: str, kind: str, kinds: list[str]) -> str:
+    """Return a C function in LLVM's language that calls one of numba's convention, for a type of the answer.
+
+    That one has parameters of these `kinds`: the first receives the answer, and the second an exception, of
+    which there is none here; what it returns says if there was one.
+    """
+    answer, exception, *rest = kinds
+    given = [f"{each} %a{i}" for i, each in enumerate(rest)]
+    passed = ", ".join([f"{answer} %answer", f"{exception} null", *given])
+    return f"""define {kind} @{_ENTRY}({", ".join(given)}) {{
+  %answer = alloca {kind}
+  %status = call i32 @"{called}"({passed})
+  %value = load {kind}, {answer} %answer
+  ret {kind} %value
+}}
+"""
 
 
 @dataclasses.dataclass

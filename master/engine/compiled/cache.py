@@ -1,146 +1,172 @@
-"""The compiled kernel, from numba's cache or compiled now.
+"""The machine code of the compiled engine, from the user's cache or compiled now.
 
-What numba keeps in its own cache folder stands as one entry in the user's cache of built FMUs, which gives
-nothing back that somebody else could have written or that was changed (`evcosim.fmus.cache`). Its name has a
-digest of all SOURCES of the kernel, of which numba itself compares only one, and of this processor.
+An entry of the cache is code as plain bytes (`machine.flat`), which is mapped and called in a millisecond:
+numba takes half a second to be imported, and is only where there is no entry. Its name has a digest of all
+sources of the code, of numba and LLVM, and of this processor; the cache gives nothing back that somebody else
+could have written or that was changed (`evcosim.fmus.cache`).
 """
-
-# numba has no types
-# mypy: disable-error-code="no-untyped-call"
 
 from __future__ import annotations
 
-import contextlib
+import dataclasses
+import functools
 import hashlib
-import io
-import zipfile
-from collections.abc import Iterator
+import importlib.metadata
+import importlib.util
+import sys
 from pathlib import Path
-from types import ModuleType
-from typing import Any
+from typing import Protocol
 
-import llvmlite.binding
-import numba
-
-from ....cosim import leftovers
-from ....cosim.can.wire import tables as wire_tables
 from ...builtin import cache_folder, keep, kept
-from ...fmi import types
-from ...machine import access, calling, flat, handing, serving, slots, tables
-from ..progress import announce
-from . import frames, kernel
+from ...machine.hands import POSSIBLE
+from ...machine.loaded import Loaded
 
-SOURCES: tuple[ModuleType, ...] = (kernel, calling, handing, access, tables, slots, types, wire_tables)
-"""The modules of this project that the machine code is made of: `kernel` and those that it imports."""
-_SERVING: tuple[ModuleType, ...] = (serving, flat, calling, handing, access, tables, slots, types)
-_WIRE = "wire"
-_KERNEL = "int64(int64)"
-_made: dict[bool | str, Any] = {}
+_LIBRARIES = ("numba", "llvmlite")
+_ENGINE, _FRAMES = "evcosim.master.engine.compiled", "evcosim.cosim.can.wire"
+_MACHINE = (
+    "evcosim.master.machine.calling", "evcosim.master.machine.handing", "evcosim.master.machine.access",
+    "evcosim.master.machine.tables", "evcosim.master.machine.slots", "evcosim.master.fmi.types",
+)  # fmt: skip # names
+_COMPILING = (f"{_ENGINE}.compiling", "evcosim.master.machine.flat")
+
+
+@dataclasses.dataclass(frozen=True)
+class Piece:
+    """A function of machine code.
+
+    `what` are the words for it in a report, `sources` the names of the modules that it is made of.
+    """
+
+    name: str
+    what: str
+    sources: tuple[str, ...]
+
+
+_OF_KERNEL = (f"{_ENGINE}.kernel", f"{_FRAMES}.tables", *_MACHINE)
+_OF_FRAMES = (
+    f"{_ENGINE}.frames", f"{_ENGINE}.wire_types", f"{_ENGINE}.addresses", "evcosim.master.machine.access",
+    "evcosim.cosim.can.timing.draws", "evcosim.cosim.can.timing.lengths",
+    "evcosim.cosim.can.protection.profiles", "evcosim.cosim.can.protection.counters",
+    f"{_FRAMES}.arbitration", f"{_FRAMES}.babble", f"{_FRAMES}.faults", f"{_FRAMES}.log", f"{_FRAMES}.medium",
+    f"{_FRAMES}.off", f"{_FRAMES}.payload", f"{_FRAMES}.protect", f"{_FRAMES}.requests", f"{_FRAMES}.tables",
+    f"{_FRAMES}.uses", f"{_FRAMES}.values",
+)  # fmt: skip # names
+KERNEL = Piece("engine", "the engine", _OF_KERNEL)
+TIMED = Piece("engine-timed", "the engine", _OF_KERNEL)
+TURNS = Piece("turns", "the turns of isolated units", ("evcosim.master.machine.serving", *_MACHINE))
+WIRE = Piece("wire", "the frames of buses", _OF_FRAMES)
+PIECES = (KERNEL, TIMED, TURNS, WIRE)
+
+
+class Made(Protocol):
+    """Machine code in this process, at an address as long as the object is."""
+
+    @property
+    def address(self) -> int:
+        """The address of its function."""
+
+
+_made: dict[str, Made] = {}
 
 
 def compiled(timed: bool = False) -> tuple[int, str]:
     """Return the address of the kernel (`timed`: of the one that measures a profile) and a notice.
 
-    The notice is "", unless the kernel could not be kept. Compiling takes some seconds, the cache 0.1 s.
+    The notice is "", unless the kernel could not be kept. Compiling takes some seconds.
     """
-    notice = ""
-    if timed not in _made:
-        function = kernel.run_timed if timed else kernel.run
-        _made[timed], reason = _through_the_cache(function, _name(timed), what="the engine")
-        if reason:
-            notice = _not_kept(reason)
-    return int(_made[timed].address), notice
+    return _address(TIMED if timed else KERNEL)
 
 
 def wire() -> tuple[int, str]:
-    """Return the address of the frame path's function and a notice, as `compiled` does: in 10 s, or 0.1 s."""
-    if _WIRE not in _made:
-        name = f"wire-{_digest((frames, *frames.SOURCES), str(frames.__file__).encode())}.zip"
-        _made[_WIRE], reason = _through_the_cache(
-            frames.function(), name, frames.SIGNATURE, "the frames of buses"
-        )
+    """Return the address of the frame path's function and a notice, as `compiled` does: in 10 s."""
+    return _address(WIRE)
+
+
+def at_hand(timed: bool, frames: bool) -> bool:
+    """Return True if a run finds its machine code without numba: `frames`: it has some on a bus."""
+    return all(_found(piece) for piece in [TIMED if timed else KERNEL, *([WIRE] if frames else [])])
+
+
+def _address(piece: Piece) -> tuple[int, str]:
+    notice = ""
+    if not _found(piece):
+        from .compiling import made
+
+        _made[piece.name], reason = made(piece)
         if reason:
-            return int(_made[_WIRE].address), _not_kept(reason)
-    return int(_made[_WIRE].address), ""
+            notice = f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
+    return _made[piece.name].address, notice
 
 
-def _not_kept(reason: str) -> str:
-    return f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
+def _found(piece: Piece) -> bool:
+    """Return True if the code of a piece is in this process, and load it from the cache if it has it."""
+    if piece.name not in _made and POSSIBLE and (code := _kept(piece)) is not None:
+        try:
+            _made[piece.name] = Loaded(code)
+        except OSError:  # the system lets no such code run
+            return False
+    return piece.name in _made
 
 
 def served() -> bytes | None:
     """Return the machine code of the turns of an isolated unit, from the cache or compiled now.
 
-    None: it needs more than its own bytes on this machine, so that Python does the turns there.
+    None: there is no numba, or it needs more than its own bytes on this machine, so that Python does the
+    turns there.
     """
-    name = f"turns-{_digest(_SERVING)}.bin"
-    code = kept(name)
-    if code is None:
-        try:
-            code = flat.flat(serving.run)
-        except flat.NotFlatError:
-            return None
-        keep(name, code)  # a cache that keeps nothing is told by the engine's own
+    if (code := _kept(TURNS)) is not None:
+        return code
+    try:
+        from .compiling import flat_code
+    except (ImportError, OSError):  # OSError: no memory is left for its libraries
+        return None
+    if (code := flat_code(TURNS)) is not None:
+        keep(entry(TURNS), code)  # a cache that keeps nothing is told by the engine's own
     return code
 
 
-def _name(timed: bool) -> str:
-    """Return the name of the kernel's entry: another one in another place, too, which numba's files name."""
-    digest = _digest(SOURCES, str(kernel.__file__).encode())
-    return f"engine-{digest}-{'timed' if timed else 'plain'}.zip"
+def _kept(piece: Piece) -> bytes | None:
+    try:
+        return kept(entry(piece))
+    except (ImportError, OSError):  # no numba, of which it would be
+        return None
 
 
-def _digest(modules: tuple[ModuleType, ...], *more: bytes) -> str:
-    """Return a digest of these sources and of this processor."""
-    parts = [Path(module.__file__ or "").read_bytes() for module in modules]
-    parts += [numba.__version__.encode(), *more]
-    parts += [llvmlite.binding.get_host_cpu_name().encode()]
-    parts += [llvmlite.binding.get_host_cpu_features().flatten().encode()]
+def entry(piece: Piece, kind: str = "bin") -> str:
+    """Return the name of a piece's entry in the cache. Raises ImportError without numba."""
+    return f"{piece.name}-{_digest(piece.sources)}.{kind}"
+
+
+def _digest(sources: tuple[str, ...]) -> str:
+    """Return a digest of these modules, of the libraries that compile them and of this processor."""
+    parts = [_source(name) for name in (*sources, *_COMPILING)]
+    parts += [importlib.metadata.version(name).encode() for name in _LIBRARIES]
+    parts += [sys.version.encode(), _processor()]
     return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
 
 
-def _through_the_cache(
-    function: Any, name: str, signature: str = _KERNEL, what: str = "a function"
-) -> tuple[Any, str]:
-    """Return the compiled function, and why it could not be kept, or ""; `what` is its name in a report."""
+@functools.cache
+def _source(name: str) -> bytes:
+    """Return the text of a module, without importing it: it may import numba."""
+    found = importlib.util.find_spec(name)
+    assert found is not None and found.origin is not None  # it is a part of this package
+    return Path(found.origin).read_bytes()
+
+
+_OF_PROCESSOR = ("vendor_id", "cpu family", "model", "model name", "stepping", "flags")
+
+
+@functools.cache
+def _processor() -> bytes:
+    """Return what this processor can do: as the system says it, or as LLVM does where that says nothing."""
     try:
-        with leftovers.temporary() as folder:
-            if (packed := kept(name)) is not None:
-                with zipfile.ZipFile(io.BytesIO(packed)) as archive:
-                    archive.extractall(folder)
-            with _cached_in(str(folder)):
-                made = _compiled(function, signature, what, cache=True)
-            return made, "" if made.cache_hits else keep(name, _packed(folder))
-    except OSError as error:  # no temporary folder, or a full disk
-        return _compiled(function, signature, what, cache=False), error.strerror or str(error)
+        with open("/proc/cpuinfo", "rb") as file:
+            first = file.read(1 << 14).partition(b"\n\n")[0].decode()
+    except OSError:
+        first = ""
+    said = [line for line in first.splitlines() if line.partition("\t")[0].strip() in _OF_PROCESSOR]
+    if any(line.startswith("flags") for line in said):
+        return "\n".join(said).encode()
+    import llvmlite.binding as llvm
 
-
-def _compiled(function: Any, signature: str, what: str, cache: bool) -> Any:
-    """Return the compiled function, or the one that numba's cache has; say so before it is compiled."""
-
-    class Compiler(numba.core.compiler.Compiler):  # type: ignore[misc] # numba's
-        def define_pipelines(self) -> Any:
-            announce(f"compiling {what}, once: some seconds")
-            return super().define_pipelines()
-
-    return numba.cfunc(signature, cache=cache, error_model="numpy", pipeline_class=Compiler)(function)
-
-
-def _packed(folder: Path) -> bytes:
-    """Return the files below a folder as an archive."""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        for file in sorted(path for path in folder.rglob("*") if path.is_file()):
-            archive.write(file, file.relative_to(folder).as_posix())
-    return packed.getvalue()
-
-
-@contextlib.contextmanager
-def _cached_in(folder: str) -> Iterator[None]:
-    """Let numba use this folder as its cache within the block."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = folder
-    try:
-        yield
-    finally:
-        numba.config.CACHE_DIR = before
+    return f"{llvm.get_host_cpu_name()}\n{llvm.get_host_cpu_features().flatten()}".encode()

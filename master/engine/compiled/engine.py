@@ -17,8 +17,8 @@ from ...machine.hands import HandedOver
 from ...machine.rows import collect_warnings
 from ...machine.surroundings import Surroundings, address
 from ..engine import CHUNK_SECONDS, Engine
+from .addresses import wire_table
 from .cache import compiled, served, wire
-from .frames import wire_table
 from .placement import Placement
 from .program import Program
 

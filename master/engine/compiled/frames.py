@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numba.extending import overload
-from numpy.typing import NDArray
 
 from ....cosim.can.protection import counters, profiles
 from ....cosim.can.timing import draws, lengths
@@ -31,40 +30,20 @@ from ....cosim.can.wire import (
     payload,
     protect,
     requests,
-    tables,
     uses,
     values,
 )
-from ....cosim.can.wire.tables import Wire
-from ...machine import access
 from ...machine.access import call_3
-from ..fault_tables import Arrays
-from . import wire_types
-from .wire_types import BY_ANNOTATION, WORDS, wire_at
+from .wire_types import BY_ANNOTATION, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
     draws, lengths, profiles, counters, payload, off, values, log, babble, arbitration, protect, faults,
     requests, uses, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
-SOURCES: tuple[ModuleType, ...] = (*MODULES, tables, access, wire_types)
 SIGNATURE = "int32(int64, int64, int64, int64)"
 _FLAGS = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _SMALL = 600  # bytes of Python's code: with more, compiling takes longer and a frame no less
-
-
-def wire_table(arrays: Arrays, helper: int) -> NDArray[np.int64]:
-    """Return address and shape of each table, in the order of `Wire`, shape (tables, 3).
-
-    `helper` is the address of the function of Python that `ask` calls.
-    """
-    found = np.zeros((len(Wire._fields), WORDS), dtype=np.int64)
-    for row, name in zip(found, Wire._fields, strict=True):
-        if name == "helper":
-            row[0] = helper
-        else:
-            row[: 1 + arrays[name].ndim] = (arrays[name].ctypes.data, *arrays[name].shape)
-    return found
 
 
 def function() -> Any:

@@ -22,9 +22,8 @@ from numba.core.typing.templates import signature as signature_of
 from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, models, register_model
 
 from ....cosim.can.wire.tables import Wire
+from .addresses import WORDS
 
-WORDS = 3
-"""Words of a table: address, rows, columns (0: it has one dimension)."""
 _INT = ir.IntType(64)
 _PLACES = types.UniTuple(types.int64, 2)
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sys
 
 import pytest
 
 from evcosim.cosim import shortage
 from evcosim.cosim.errors import ConfigError, ShortageError
-from evcosim.master.engine.selection import engine_class
+from evcosim.master.engine.compiled import cache, compiling
+from evcosim.master.engine.selection import compile_engine, engine_class
+from evcosim.master.machine.hands import POSSIBLE
 from evcosim.master.simulation import Simulation
 
 
@@ -18,10 +21,16 @@ def test_what_is_no_engine_is_refused():
         engine_class("compild")
 
 
-def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch):
-    for name in [n for n in sys.modules if n.startswith("evcosim.master.engine.compiled.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.delattr(importlib.import_module("evcosim.master.engine.compiled"), "engine", raising=False)
+@pytest.fixture
+def nothing_compiled(monkeypatch, tmp_path):
+    """A process that has no machine code, and finds none in the cache."""
+    monkeypatch.setattr(cache, "_made", {})
+    monkeypatch.setattr(cache, "entry", lambda piece, kind="bin": f"none-{tmp_path.name}")
+    monkeypatch.delitem(sys.modules, f"{cache.__package__}.compiling", raising=False)
+    monkeypatch.delattr(importlib.import_module(cache.__package__), "compiling", raising=False)
+
+
+def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch, nothing_compiled):
     monkeypatch.setitem(sys.modules, "numba", None)
     with Simulation("scooter", stop_time=1.0) as simulation:
         simulation.run()
@@ -29,22 +38,19 @@ def test_without_numba_the_python_engine_runs_with_a_notice(monkeypatch):
         assert any("the compiled engine needs numba" in warning for warning in simulation.warnings)
 
 
-def test_a_numba_whose_libraries_find_no_memory_is_as_none(monkeypatch):
+def test_a_numba_whose_libraries_find_no_memory_is_as_none(monkeypatch, nothing_compiled):
     class NoMemory:
         def find_spec(self, name, path=None, target=None):
             if name == "numba":
                 raise OSError("Could not find/load shared object file")
 
-    for name in [n for n in sys.modules if n.startswith("evcosim.master.engine.compiled.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.delattr(importlib.import_module("evcosim.master.engine.compiled"), "engine", raising=False)
     monkeypatch.delitem(sys.modules, "numba", raising=False)
     monkeypatch.setattr(sys, "meta_path", [NoMemory(), *sys.meta_path])
     found, notice = engine_class()
     assert found.name == "python" and "Could not find/load shared object file" in notice
 
 
-def test_too_little_memory_for_numba_is_as_none(monkeypatch):
+def test_too_little_memory_for_numba_is_as_none(monkeypatch, nothing_compiled):
     monkeypatch.setattr(shortage, "memory_left", lambda: 300e6)
     monkeypatch.delitem(sys.modules, "numba", raising=False)
     found, notice = engine_class()
@@ -58,9 +64,28 @@ def test_too_little_memory_for_numba_is_as_none(monkeypatch):
         Simulation("scooter")
 
 
-def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
-    from evcosim.master.engine.compiled import cache
+@pytest.mark.skipif(not POSSIBLE, reason="elsewhere numba loads what it keeps")
+def test_kept_machine_code_needs_no_numba():
+    """A run with a profile, one with frames on a bus, and an isolated unit: each has code of its own."""
+    compile_engine()
+    code = (
+        "import sys; sys.modules['numba'] = sys.modules['llvmlite'] = None\n"
+        "from evcosim.master.simulation import Simulation\n"
+        "for given in ({'profile': True}, {'isolation': 'process'}, {}):\n"
+        "    for system in ('scooter', 'lane_keeping'):\n"
+        "        with Simulation(system, stop_time=0.5, engine='compiled', **given) as simulation:\n"
+        "            simulation.run()\n"
+        "            print(simulation.manifest()['experiment']['engine'], bool(simulation.plan.framed_bus))\n"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.splitlines() == ["compiled True", "compiled True"] * 3
 
+
+def test_a_cache_that_cannot_be_written_is_told_and_the_run_goes_on(monkeypatch, tmp_path):
+    if POSSIBLE:  # compiling takes 20 s
+        compile_engine()
+        codes = {piece: cache._kept(piece) for piece in cache.PIECES}
+        monkeypatch.setattr(compiling, "flat_code", codes.get)
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "file" / "below"))
     monkeypatch.setattr(cache, "_made", {})

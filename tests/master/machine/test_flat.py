@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 
 import pytest
@@ -38,10 +39,21 @@ def scaled(number: int) -> int:
 
 
 def test_code_with_constants_computes_what_python_computes() -> None:
-    function = Loaded(flat(scaled))
+    loaded = Loaded(flat(scaled))
+    function = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_int64)(loaded.address)
     for number in (0, 1, 2, 5, 6, 100):
         total = sum((0.1, -7.25, 1.5, 3.5, 8.0, 10.0)[i % 6] for i in range(number))
         assert function(number) == int(1000.0 * total)
+
+
+def compared(a: int, b: int, c: int, d: int) -> int:
+    return -1 if a < b else 10 * c + d
+
+
+def test_arguments_and_the_answer_are_those_of_the_signature() -> None:
+    loaded = Loaded(flat(compared, "int32(int64, int64, int64, int64)"))
+    function = ctypes.CFUNCTYPE(ctypes.c_int32, *[ctypes.c_int64] * 4)(loaded.address)
+    assert [function(1, 2, 3, 4), function(2**40, 1, 3, 4)] == [-1, 34]
 
 
 def wave(number: int) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import cfunc, types
 
-from evcosim.master.engine.compiled.frames import wire_table
+from evcosim.master.engine.compiled.addresses import wire_table
 from evcosim.master.engine.compiled.wire_types import TABLES, wire_at
 from evcosim.master.engine.wire_tables import wire_arrays
 
