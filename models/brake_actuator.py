@@ -25,14 +25,11 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import exp, pi
-from operator import attrgetter
 
 from .base import Model, record, var
 from .constants import SAME_TIME
 
 QUEUE = 8
-
-Waiting = tuple[float, float]  # a request [N.m], and the time for which it acts [s]
 
 
 class BrakeActuator(Model):
@@ -98,26 +95,41 @@ class BrakeActuator(Model):
         p: BrakeActuator.Parameters, x: BrakeActuator.State, u: BrakeActuator.Inputs, dt: float
     ) -> BrakeActuator.State:
         """Return the torque after `dt` [s] of a held request, its mean over that time, and the queue."""
-        queue = list(zip(_requests(x)[: x.waiting], _times(x)[: x.waiting], strict=True))
-        request = max(0.0, u.torque_request)
-        if queue and queue[-1][0] == request:
-            queue[-1] = (request, queue[-1][1] + dt)
-        else:
-            queue.append((request, dt))
+        requests = [
+            x.request_1, x.request_2, x.request_3, x.request_4,
+            x.request_5, x.request_6, x.request_7, x.request_8, 0.0,
+        ]  # fmt: skip # one place more than the state has
+        times = [
+            x.time_1, x.time_2, x.time_3, x.time_4,
+            x.time_5, x.time_6, x.time_7, x.time_8, 0.0,
+        ]  # fmt: skip # of the requests above
+        n = _asked(requests, times, x.waiting, max(0.0, u.torque_request), dt)
         torque, impulse, left = x.torque, 0.0, dt
+        first = 0
         while left > SAME_TIME:
-            y, acts = queue[0]  # (A1)
+            y, acts = requests[first], times[first]  # (A1)
             if acts > left + SAME_TIME:
                 h = left
-                queue[0] = (y, acts - h)
+                times[first] = acts - h
             else:
                 h = min(acts, left)
-                queue.pop(0)
+                first += 1
             end = y + (torque - y) * exp(-p.rate * h)  # (A2)
             impulse += y * h + (torque - end) / p.rate
             torque = end
             left -= h
-        return _state(torque, impulse / dt, _joined(queue))
+        if n - first > QUEUE:
+            _join(requests, times)
+            n -= 1
+        _move_up(requests, first, n)
+        _move_up(times, first, n)
+        return BrakeActuator.State(
+            torque, max(0.0, impulse / dt), n - first,
+            requests[0], requests[1], requests[2], requests[3],
+            requests[4], requests[5], requests[6], requests[7],
+            times[0], times[1], times[2], times[3],
+            times[4], times[5], times[6], times[7],
+        )  # fmt: skip # the lag, requests, times
 
     @staticmethod
     def outputs(p: BrakeActuator.Parameters, x: BrakeActuator.State) -> BrakeActuator.Outputs:
@@ -125,24 +137,28 @@ class BrakeActuator(Model):
         return BrakeActuator.Outputs(x.mean_torque)
 
 
-_NUMBERS = range(1, QUEUE + 1)
-_requests = attrgetter(*(f"request_{i}" for i in _NUMBERS))
-_times = attrgetter(*(f"time_{i}" for i in _NUMBERS))
-_NONE = (0.0,) * QUEUE
+def _asked(requests: list[float], times: list[float], n: int, request: float, dt: float) -> int:
+    """Put a request [N.m] that acts for `dt` [s] behind n others; return the number of all."""
+    if n > 0 and requests[n - 1] == request:
+        times[n - 1] += dt
+        return n
+    requests[n], times[n] = request, dt
+    return n + 1
 
 
-def _joined(queue: list[Waiting]) -> list[Waiting]:
-    """Return at most QUEUE requests: the neighbors that act shortest together become their mean."""
-    while len(queue) > QUEUE:
-        i = min(range(len(queue) - 1), key=lambda j: queue[j][1] + queue[j + 1][1])
-        (a, time_a), (b, time_b) = queue[i : i + 2]
-        time = time_a + time_b
-        queue[i : i + 2] = [((a * time_a + b * time_b) / time, time)]
-    return queue
+def _join(requests: list[float], times: list[float]) -> None:
+    """Make QUEUE requests of one more: the neighbors that act shortest together become their mean."""
+    shortest, i = times[0] + times[1], 0
+    for j in range(1, QUEUE):
+        if times[j] + times[j + 1] < shortest:
+            shortest, i = times[j] + times[j + 1], j
+    requests[i] = (requests[i] * times[i] + requests[i + 1] * times[i + 1]) / shortest
+    times[i] = shortest
+    for j in range(i + 1, QUEUE):
+        requests[j], times[j] = requests[j + 1], times[j + 1]
 
 
-def _state(torque: float, mean: float, queue: list[Waiting]) -> BrakeActuator.State:
-    n = len(queue)
-    requests = (*(request for request, _ in queue), *_NONE[n:])
-    times = (*(time for _, time in queue), *_NONE[n:])
-    return BrakeActuator.State(torque, max(0.0, mean), n, *requests, *times)
+def _move_up(values: list[float], first: int, n: int) -> None:
+    """Move the values from `first` to n to the front; 0 stands behind them."""
+    for i in range(QUEUE):
+        values[i] = values[first + i] if first + i < n else 0.0

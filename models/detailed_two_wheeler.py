@@ -39,13 +39,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from math import ceil, exp, inf, sqrt
-from operator import attrgetter
+from math import ceil, exp, sqrt
 from typing import NamedTuple
 
 from .base import Model, record, var
 from .constants import GRAVITY
 from .road_friction import FRICTION, friction_slope
+from .tire_relaxation import relaxation, relaxed
 from .two_wheeler_braking import TwoWheelerBraking, slip
 from .two_wheeler_ride import (
     Frame,
@@ -238,9 +238,12 @@ class Now(NamedTuple):
 Motion = Callable[[float, float, float, float, float, Ride, float, float], Now]
 
 
-ride_of: Callable[[DetailedTwoWheeler.State], Ride] = attrgetter(
-    "heave", "pitch", "front_hub", "rear_hub", "heave_rate", "pitch_rate", "front_hub_rate", "rear_hub_rate"
-)
+def ride_of(x: DetailedTwoWheeler.State) -> Ride:
+    """Return the part of a state that moves on the springs."""
+    return (
+        x.heave, x.pitch, x.front_hub, x.rear_hub,
+        x.heave_rate, x.pitch_rate, x.front_hub_rate, x.rear_hub_rate,
+    )  # fmt: skip # places, then their rates
 
 
 def _at_rest(p: DetailedTwoWheeler.Parameters, deceleration: float) -> tuple[float, float]:
@@ -308,14 +311,6 @@ def _motion(p: DetailedTwoWheeler.Parameters) -> Motion:
     return motion
 
 
-def _relaxation(sigma: float, h: float, fastest: float) -> Callable[[float, float, float], float]:
-    """Return the solution of (D4) over h [s]: (s, slip before, slip after) -> s, the slip being linear."""
-    way = h * fastest / sigma if sigma > 0.0 else inf
-    decay = exp(-way)
-    lag = (1.0 - decay) / way if way > 1e-8 else 1.0
-    return lambda s, before, after: after - lag * (after - before) + decay * (s - before)  # (D4)
-
-
 def _advance(
     p: DetailedTwoWheeler.Parameters,
     x: DetailedTwoWheeler.State,
@@ -333,16 +328,17 @@ def _advance(
     for i in range(n):
         k = motion(v, f, b, s_f, s_r, ride, torque_f, torque_r)
         v1, f1, b1 = v + h * k.speed, max(0.0, f + h * k.front_rim), max(0.0, b + h * k.rear_rim)
-        relax_f = _relaxation(sigma, h, 0.5 * max(v + v1, f + f1))
-        relax_r = _relaxation(sigma, h, 0.5 * max(v + v1, b + b1))
-        s_f1, s_r1 = relax_f(s_f, slip_f, slip(v1, f1)), relax_r(s_r, slip_r, slip(v1, b1))
+        relax_f = relaxation(sigma, h, 0.5 * max(v + v1, f + f1))  # (D4)
+        relax_r = relaxation(sigma, h, 0.5 * max(v + v1, b + b1))
+        s_f1 = relaxed(relax_f, s_f, slip_f, slip(v1, f1))
+        s_r1 = relaxed(relax_r, s_r, slip_r, slip(v1, b1))
         ride1 = moved(ride, k, h)
         k1 = motion(v1, f1, b1, s_f1, s_r1, ride1, torque_f, torque_r)
         v1 = v + 0.5 * h * (k.speed + k1.speed)
         f1 = max(0.0, f + 0.5 * h * (k.front_rim + k1.front_rim))
         b1 = max(0.0, b + 0.5 * h * (k.rear_rim + k1.rear_rim))
         slip_f1, slip_r1 = slip(v1, f1), slip(v1, b1)
-        s_f, s_r = relax_f(s_f, slip_f, slip_f1), relax_r(s_r, slip_r, slip_r1)
+        s_f, s_r = relaxed(relax_f, s_f, slip_f, slip_f1), relaxed(relax_r, s_r, slip_r, slip_r1)
         ride1 = between(ride, moved(ride1, k1, h), 0.5)
         if v1 <= stop:
             share = (v - stop) / (v - v1)
@@ -389,7 +385,7 @@ def _settled(p: DetailedTwoWheeler.Parameters, ride: Ride, a: float, rolling: fl
         return RideRates(up, (given + weight * ride[1] + pitch) / inertia, up_f, up_r)  # (D7)
 
     n = ceil(dt / p.inner_step - 1e-9)
-    h = dt / n if n else 0.0
+    h = dt / n if n > 0 else 0.0
     for _ in range(n):
         ahead = moved(ride, rates(ride), h)
         ride = between(ride, moved(ahead, rates(ahead), h), 0.5)

@@ -61,6 +61,9 @@ MAGNETIZING_INDUCTANCE = 482e-6  # H, published
 STATOR_RESISTANCE = 0.0044  # ohm, published
 SMALLEST_FLUX = 1e-3  # Wb: (F1) and (F4) divide by at least this
 
+# Complex numbers meet complex numbers only: what Python makes of `complex * float` depends on its version.
+ONE, HALF, QUARTER = complex(1.0, 0.0), complex(0.5, 0.0), complex(0.25, 0.0)
+
 
 class InductionMotorDrive(Model):
     """Torque request at a wheel and its speed in, torque at the wheel, currents and power out."""
@@ -198,19 +201,19 @@ class Machine:
         It is exp(A h), row by row, and then the response of current and flux to 1 V.
         """
         a_11 = complex(-self.resistance / self.leakage, -w)
-        a_12 = complex(self.rotor_rate, -w) * (self.ratio / self.leakage)
-        a_21, a_22 = self.coupling, -self.rotor_rate
-        mean = 0.5 * (a_11 + a_22)
-        root = complex_sqrt(0.25 * (a_11 - a_22) ** 2 + a_12 * a_21)
-        decay = complex_exp(mean * h)
-        even = decay * cosh(root * h)
-        odd = decay * (sinh(root * h) / root if root else h)
+        a_12 = complex(self.rotor_rate, -w) * complex(self.ratio / self.leakage, 0.0)
+        a_21, a_22 = complex(self.coupling, 0.0), complex(-self.rotor_rate, 0.0)
+        mean, difference, step = HALF * (a_11 + a_22), a_11 - a_22, complex(h, 0.0)
+        root = complex_sqrt(QUARTER * (difference * difference) + a_12 * a_21)
+        decay = complex_exp(mean * step)
+        even = decay * cosh(root * step)
+        odd = decay * (sinh(root * step) / root if abs(root) > 0.0 else step)
         m_11, m_22 = even + odd * (a_11 - mean), even + odd * (a_22 - mean)
         m_12, m_21 = odd * a_12, odd * a_21
         # inv(A) (exp(A h) - 1) [1/leakage, 0]; det A is not 0, because R_s is not
-        determinant = (a_11 * a_22 - a_12 * a_21) * self.leakage
-        g_1 = (a_22 * (m_11 - 1.0) - a_12 * m_21) / determinant
-        g_2 = (a_11 * m_21 - a_21 * (m_11 - 1.0)) / determinant
+        determinant = (a_11 * a_22 - a_12 * a_21) * complex(self.leakage, 0.0)
+        g_1 = (a_22 * (m_11 - ONE) - a_12 * m_21) / determinant
+        g_2 = (a_11 * m_21 - a_21 * (m_11 - ONE)) / determinant
         return m_11, m_12, m_21, m_22, g_1, g_2
 
 
@@ -238,7 +241,8 @@ def _steady(
     i_q = (torque + p.friction * shaft) / (k.torque_factor * flux)
     w_s = w + k.coupling * i_q / flux  # (F4)
     i = complex(i_d, i_q)
-    u = p.stator_resistance * i + 1j * w_s * (k.leakage * i + k.ratio * flux)
+    linked = complex(k.leakage, 0.0) * i + complex(k.ratio * flux, 0.0)
+    u = complex(p.stator_resistance, 0.0) * i + complex(0.0, w_s) * linked
     power = 1.5 * (u.real * i_d + u.imag * i_q)
     at_wheel = _gear(p, torque, wheel_speed) * torque  # (G1)
     return InductionMotorDrive.State(
@@ -260,12 +264,12 @@ def _machine_step(
     w = shaft * p.pole_pairs
     m_11, m_12, m_21, m_22, g_1, g_2 = k.advance(w, h)
     wanted = (_motor_request(p, u) + p.friction * shaft) / k.torque_factor
-    gain = k.leakage / p.time_constant
-    step_gain = h * k.resistance / p.time_constant
-    leakage, coupling, back = k.leakage, k.coupling, -k.ratio * complex(k.rotor_rate, -w)
+    gain = complex(k.leakage / p.time_constant, 0.0)
+    step_gain = complex(h * k.resistance / p.time_constant, 0.0)
+    leakage, coupling, back = k.leakage, k.coupling, complex(-k.ratio, 0.0) * complex(k.rotor_rate, -w)
     i_d, i_q_limit, u_max = p.magnetizing_current, k.current_q_limit, p.voltage_limit
 
-    current, flux = complex(x.current_d, x.current_q), complex(x.flux)
+    current, flux = complex(x.current_d, x.current_q), complex(x.flux, 0.0)
     held = complex(x.integral_d, x.integral_q)
     energy = 0.0
     amplitude = x.voltage
@@ -273,7 +277,8 @@ def _machine_step(
         size = abs(flux)
         if size < SMALLEST_FLUX:
             size = SMALLEST_FLUX
-        axis = flux / size
+        whole = complex(size, 0.0)
+        axis = flux / whole
         i = current * axis.conjugate()
         i_q = wanted / size  # (F1)
         if i_q > i_q_limit:
@@ -282,10 +287,10 @@ def _machine_step(
             i_q = -i_q_limit
         error = complex(i_d, i_q) - i
         w_s = w + coupling * i.imag / size  # (F4)
-        voltage = gain * error + held + complex(0.0, w_s * leakage) * i + back * size  # (F2)
+        voltage = gain * error + held + complex(0.0, w_s * leakage) * i + back * whole  # (F2)
         amplitude = abs(voltage)
         if amplitude > u_max:
-            limited = voltage * (u_max / amplitude)
+            limited = voltage * complex(u_max / amplitude, 0.0)
             error += (limited - voltage) / gain
             voltage, amplitude = limited, u_max
         held += step_gain * error  # (F3)
@@ -296,7 +301,7 @@ def _machine_step(
         mean = before + current
         energy += voltage.real * mean.real + voltage.imag * mean.imag
     size = abs(flux)
-    i = current * flux.conjugate() / size if size else current
+    i = current * flux.conjugate() / complex(size, 0.0) if size > 0.0 else current
     torque = k.torque_factor * size * i.imag - p.friction * shaft  # (M3)
     at_wheel = _gear(p, torque, u.wheel_speed) * torque  # (G1)
     power = 1.5 * 0.5 * energy / n

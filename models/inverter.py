@@ -108,5 +108,9 @@ class Inverter(Model):
 
 def loss(p: Inverter.Parameters, u: Inverter.Inputs) -> float:
     """Return P_l [W]."""
-    currents = (abs(u.left_current), abs(u.right_current))
-    return sum(p.idle_loss + p.current_loss * i + p.resistance * i * i for i in currents)  # (I1)
+    return _bridge_loss(p, abs(u.left_current)) + _bridge_loss(p, abs(u.right_current))  # (I1)
+
+
+def _bridge_loss(p: Inverter.Parameters, i: float) -> float:
+    """Return the loss [W] of one bridge at an effective phase current i >= 0 [A]."""
+    return p.idle_loss + p.current_loss * i + p.resistance * i * i

@@ -102,13 +102,13 @@ def frame(
     `carried` and `unsprung` are the masses [kg] on, and of, the front and the rear axle. Raises ValueError
     where an axle carries no more than its own mass.
     """
-    front, rear = (on - own for on, own in zip(carried, unsprung, strict=True))
+    front, rear = carried[0] - unsprung[0], carried[1] - unsprung[1]
     if front <= 0.0 or rear <= 0.0:
         raise ValueError(
             f"unsprung masses of {unsprung[0]} and {unsprung[1]} kg leave no sprung mass between the axles, "
             f"which carry {carried[0]:.4g} and {carried[1]:.4g} kg"
         )
-    above = (mass * height - sum(unsprung) * radius) / (front + rear) - radius
+    above = (mass * height - (unsprung[0] + unsprung[1]) * radius) / (front + rear) - radius
     return Frame(front + rear, wheelbase * rear / (front + rear), wheelbase * front / (front + rear), above)
 
 
@@ -134,7 +134,7 @@ def suspension(springs: Springs, frame: Frame) -> Suspension:
 
 def travel(frame: Frame, ride: Ride) -> tuple[float, float]:
     """Return the compressions [m] of the front and of the rear suspension."""
-    z, phi, z_f, z_r = ride[:4]
+    z, phi, z_f, z_r, _, _, _, _ = ride
     return z_f - z + frame.front * phi, z_r - z - frame.rear * phi  # (R3)
 
 
@@ -164,5 +164,11 @@ def moved(ride: Ride, rates: Rates, h: float) -> Ride:
 
 def between(a: Ride, b: Ride, share: float) -> Ride:
     """Return a + share (b - a)."""
-    z, phi, z_f, z_r, dz, dphi, dz_f, dz_r = (x + share * (y - x) for x, y in zip(a, b, strict=True))
-    return z, phi, z_f, z_r, dz, dphi, dz_f, dz_r
+    z, phi, z_f, z_r, dz, dphi, dz_f, dz_r = a
+    z1, phi1, z_f1, z_r1, dz1, dphi1, dz_f1, dz_r1 = b
+    return (
+        z + share * (z1 - z), phi + share * (phi1 - phi),
+        z_f + share * (z_f1 - z_f), z_r + share * (z_r1 - z_r),
+        dz + share * (dz1 - dz), dphi + share * (dphi1 - dphi),
+        dz_f + share * (dz_f1 - dz_f), dz_r + share * (dz_r1 - dz_r),
+    )  # fmt: skip # places, then their rates

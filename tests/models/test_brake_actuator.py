@@ -84,3 +84,48 @@ def test_time_does_not_leak() -> None:
 
 def test_a_negative_request_is_none() -> None:
     assert run([-50.0] * 5)[-1] == run([0.0] * 5)[-1]
+
+
+Waiting = list[tuple[float, float]]
+
+
+def by_a_list(p: BrakeActuator.Parameters, queue: Waiting, torque: float, request: float, dt: float) -> float:
+    """The torque after a step, of a queue [(request, time)] that grows and shrinks."""
+    if queue and queue[-1][0] == request:
+        queue[-1] = (request, queue[-1][1] + dt)
+    else:
+        queue.append((request, dt))
+    left = dt
+    while left > 1e-9:
+        y, acts = queue.pop(0)
+        h = left if acts > left + 1e-9 else min(acts, left)
+        if acts > left + 1e-9:
+            queue.insert(0, (y, acts - h))
+        torque = y + (torque - y) * math.exp(-p.rate * h)
+        left -= h
+    if len(queue) > QUEUE:
+        i = min(range(QUEUE), key=lambda j: queue[j][1] + queue[j + 1][1])
+        (a, time_a), (b, time_b) = queue[i : i + 2]
+        time = time_a + time_b
+        queue[i : i + 2] = [((a * time_a + b * time_b) / time, time)]
+    return torque
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.sampled_from([0.001, 0.0013, 0.004, 0.01, 0.05])), max_size=60),
+    st.sampled_from([0.0, 0.004, 0.01, 0.0137, 0.05]),
+)
+def test_the_places_of_the_state_are_a_queue_to_the_last_bit(
+    steps: list[tuple[int, float]], delay: float
+) -> None:
+    p = BrakeActuator.Parameters(delay=delay)
+    x = BrakeActuator.initial(p, BrakeActuator.Inputs())
+    queue, torque = [(0.0, delay)] if delay else [], 0.0
+    for request, dt in steps:
+        x = BrakeActuator.step(p, x, BrakeActuator.Inputs(float(request)), dt)
+        torque = by_a_list(p, queue, torque, float(request), dt)
+        padded = [*queue, *[(0.0, 0.0)] * (QUEUE - len(queue))]
+        assert (x.torque, x.waiting) == (torque, len(queue))
+        assert [getattr(x, f"request_{i}") for i in range(1, QUEUE + 1)] == [value for value, _ in padded]
+        assert [getattr(x, f"time_{i}") for i in range(1, QUEUE + 1)] == [time for _, time in padded]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from evcosim.models import induction_motor_drive
 from evcosim.models.base import violations
 from evcosim.models.induction_motor_drive import InductionMotorDrive, Machine
 
@@ -207,3 +209,37 @@ def test_friction_is_overcome_and_shows_in_the_current() -> None:
 def test_limits_that_leave_no_torque_are_refused() -> None:
     with pytest.raises(ValueError, match=r"current_limit = 400.0 A leaves no current .* = 419.0 A"):
         InductionMotorDrive.initial(dataclasses.replace(P, current_limit=400.0), Inputs())
+
+
+class Pure(complex):
+    """A complex number that calculates with complex numbers only."""
+
+
+def _pure(name: str) -> Any:
+    def calculate(self: complex, other: complex) -> Pure:
+        assert isinstance(other, complex), f"a complex number meets {other!r} in {name}"
+        return Pure(getattr(complex(self), name)(complex(other)))
+
+    return calculate
+
+
+for _name in ("add", "sub", "mul", "truediv"):
+    setattr(Pure, f"__{_name}__", _pure(f"__{_name}__"))
+    setattr(Pure, f"__r{_name}__", _pure(f"__r{_name}__"))
+Pure.conjugate = lambda self: Pure(complex(self).conjugate())  # type: ignore[method-assign] # the same in Pure
+
+
+@pytest.mark.parametrize("request_at_wheel", [1500.0, 30000.0])
+def test_complex_numbers_meet_complex_numbers_only(
+    request_at_wheel: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The product of a complex number and a float has other bits since Python 3.14."""
+    expected = run(dataclasses.replace(P, voltage_limit=150.0), request_at_wheel, CRUISE, 3)
+    monkeypatch.setattr(induction_motor_drive, "complex", Pure, raising=False)
+    for name in ("ONE", "HALF", "QUARTER"):
+        monkeypatch.setattr(induction_motor_drive, name, Pure(getattr(induction_motor_drive, name)))
+    for name in ("complex_exp", "complex_sqrt", "cosh", "sinh"):
+        plain = getattr(induction_motor_drive, name)
+        monkeypatch.setattr(induction_motor_drive, name, lambda z, plain=plain: Pure(plain(z)))
+    x = run(dataclasses.replace(P, voltage_limit=150.0), request_at_wheel, CRUISE, 3)
+    assert dataclasses.astuple(x) == dataclasses.astuple(expected)
