@@ -22,9 +22,9 @@ from ...cosim.can.wire.buffers import NEVER
 from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
+from ...cosim.plan.nodes import node_of
 from ...cosim.plan.plan import FaultPlan, MessagePlan
 from ...cosim.plan.readers import Reader
-from ...cosim.plan.receivers import node_of
 from .fault_tables import Arrays, add_faults, nodes_of, owner_of
 from .sender import Sender
 
