@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import enum
 import inspect
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
@@ -21,8 +21,8 @@ from .interface import Exposed, exposed
 from .slave import ModelSlave
 from .unit_definitions import define
 
+_NEEDS_PYTHON = {"needsExecutionTool": "true"}  # an interpreter with the packages that the model imports
 _CAPABILITIES = {
-    "needsExecutionTool": "true",  # a Python interpreter with the packages that the model imports
     "canHandleVariableCommunicationStepSize": "true",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",
@@ -40,8 +40,13 @@ class Origin(NamedTuple):
     license: str
 
 
-def describe(model: type[Model], origin: Origin, experiment: Experiment) -> bytes:
-    """Return the file's bytes, UTF-8. Raises ValueError that names model and variable of an unknown unit."""
+def describe(
+    model: type[Model], origin: Origin, experiment: Experiment, c_sources: Sequence[str] = ()
+) -> bytes:
+    """Return the file's bytes, UTF-8. Raises ValueError that names model and variable of an unknown unit.
+
+    An FMU that lists its C sources is made of them; any other one needs Python.
+    """
     variables = exposed(model)
     root = Element(
         "fmiModelDescription",
@@ -55,7 +60,12 @@ def describe(model: type[Model], origin: Origin, experiment: Experiment) -> byte
     for name, value in (("version", origin.version), ("license", origin.license)):
         if value:
             root.set(name, value)
-    SubElement(root, "CoSimulation", {"modelIdentifier": model.__name__, **_CAPABILITIES})
+    needed = {} if c_sources else _NEEDS_PYTHON
+    slave = SubElement(root, "CoSimulation", {"modelIdentifier": model.__name__, **needed, **_CAPABILITIES})
+    if c_sources:
+        listed = SubElement(slave, "SourceFiles")
+        for name in c_sources:
+            SubElement(listed, "File", name=name)
     _units(root, model, variables)
     _types(root, variables)
     categories = SubElement(root, "LogCategories")
@@ -69,9 +79,9 @@ def describe(model: type[Model], origin: Origin, experiment: Experiment) -> byte
         stepSize=repr(experiment.step_size),
     )
     _sampled(root, model, variables)
-    listed = SubElement(root, "ModelVariables")
+    declared = SubElement(root, "ModelVariables")
     for entry in variables:
-        listed.append(_scalar_variable(entry, model.sampled))
+        declared.append(_scalar_variable(entry, model.sampled))
     _structure(root, model, variables)
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, "utf-8")

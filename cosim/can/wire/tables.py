@@ -29,7 +29,6 @@ class Wire(NamedTuple):
     maps: Any
     base: Any
     waiting: Any
-    staged: Any
     kept: Any
     uses: Any
     faults: Any
@@ -102,9 +101,7 @@ looked at."""
 """Wholes of SUM that were taken out of LATENCY_SUM and SEEN_SUM."""
 COVERED = 77
 """The bytes that the checksum of a profile covers: without those that the frame adds to its message."""
-(STAGED, STAGED_SINCE, STAGED_SAMPLED) = range(78, 81)
-"""1 while a frame stands in `staged` that is not queued yet, when it will be, and the time of its values."""
-MESSAGE = 81
+MESSAGE = 78
 SUM = 2**62
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
@@ -137,8 +134,8 @@ MAP = 2
 bus), and of maps, from the bus' unit to the receiver's."""
 
 BYTES = 64
-"""Columns of `base`, `waiting` and `staged`, of a message's payload: what stands there unless a signal is
-written, the frame that waits, and the one that is not queued yet."""
+"""Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
+the frame that waits."""
 
 (TURN_EVERY, FIRST_TURN, LATER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST, USE_HIGH) = (
     range(10)
@@ -160,14 +157,13 @@ FLIGHT = PAYLOAD + BYTES
 """Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
 
 (FREE_AT, PENDING, DELAY, TIMED, FIRST_MESSAGE, MESSAGES, BIT, DATA_BIT, SEED, NAME, NOISY) = range(11)
-(BEGUN, STRIKES, OFF_NODES, TO_BABBLE, BEGUN_BY, NEXT_QUEUED) = range(11, 17)
-BUS_WIDTH = 17
-"""Columns of buses: the time from which on it is idle; the number of frames that wait, or are not queued yet;
-what is added to the end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on,
-in the order in which they win the bus; the times of a bit; the seed of its draws and a number of its name; 1
-if bits may be wrong; the start of the last frame; faults to come that take a node off the bus, nodes that
-are, and faults to come that babble; the message of the last frame; the time at which the next frame in
-`staged` is queued.
+(BEGUN, STRIKES, OFF_NODES, TO_BABBLE, BEGUN_BY) = range(11, 16)
+BUS_WIDTH = 16
+"""Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
+end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on, in the order in which
+they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong;
+the start of the last frame; faults to come that take a node off the bus, nodes that are, and faults to come
+that babble; the message of the last frame.
 Row i of `chances`, float64, has the probability that n bits on bus i are not all right in column n."""
 
 (READY_AT, ERROR_COUNT, RECEIVE_COUNT, BUS_OF, BUS_OFFS) = range(5)

@@ -23,11 +23,18 @@ typedef struct {
     const char *items_text; /* "0 known_speed, 1 estimated_speed" */
 } model_variable;
 
-/* `count` numbers one after the other in a record of the model that a saved state keeps. */
+enum { ALL_IN_USE = -1 };
+
+/* `count` numbers of a state that is saved, each `stride` bytes after the one before it: a field, an array, a
+   list, or one field of each record in an array or a list. */
 typedef struct {
-    char type; /* 'r' double, 'i' int64_t, 'b' bool */
+    char type; /* 'r' double, 'i' int64_t, 'b' bool, 'e' item of an enumeration, an int64_t */
     size_t offset;
-    size_t count;
+    size_t count, stride;
+    ptrdiff_t length; /* of a list: offset of the int64_t, a field before this one, that says how many are in
+                         use; else ALL_IN_USE */
+    const int32_t *items; /* values of an enumeration */
+    size_t item_count;
 } model_field;
 
 /* A model: sizes of its records, its variables, its functions. A function returns false where it fails, and
@@ -35,6 +42,7 @@ typedef struct {
 typedef struct {
     const char *name;
     const char *identity; /* of the FMU: a saved state belongs to it */
+    const char *token;    /* guid or instantiationToken of its description */
     bool sampled, feeds_through, timed;
     size_t parameters_size, inputs_size, state_size, outputs_size, memory_size;
     const model_variable *variables;

@@ -1,4 +1,4 @@
-"""The nodes of a bus by its messages: which one sends a message, and behind which one an input is."""
+"""Nodes of a bus: those that send its messages, and those whose units receive them."""
 
 from __future__ import annotations
 
