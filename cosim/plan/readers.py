@@ -12,13 +12,15 @@ from .turns import turn_from
 class Reader:
     """A unit that takes what a message brings at the steps k >= first with (k - first) % every == 0.
 
-    `later`: what arrives in such a step comes behind its turn, and is taken in the next one.
+    `later`: what arrives in such a step comes behind its turn, and is taken in the next one. `mailbox` is the
+    first of those that it takes.
     """
 
     unit: str
     every: int
     first: int
     later: bool
+    mailbox: int = dataclasses.field(default=-1, compare=False)
 
     def turn(self, k: int) -> int:
         """Return the step in which it takes what arrives in step k."""
@@ -32,12 +34,12 @@ def readers(plan: Plan) -> tuple[tuple[Reader, ...], ...]:
     for message in plan.messages:
         mailboxes = dict(message.arrivals)
         sinks = [mailboxes.get(slot, slot) for route in message.routes for slot, _ in route.sinks]
-        units = sorted({owners[slot] for slot in sinks if slot in owners})
+        units = {owners[slot]: slot for slot in reversed(sinks) if slot in owners}
         behind = -1 if message.after is None or message.timed else message.after
         found.append(
             tuple(
-                Reader(plan.units[i].name, plan.units[i].every, plan.units[i].first, i <= behind)
-                for i in units
+                Reader(plan.units[i].name, plan.units[i].every, plan.units[i].first, i <= behind, slot)
+                for i, slot in sorted(units.items())
             )
         )
     return tuple(found)

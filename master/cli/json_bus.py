@@ -103,6 +103,11 @@ FAULT = record(
     },
     optional=tuple(_OF_ACTIONS),
 )
+_JUDGED = {
+    "timeouts": whole("How often no frame came in time."),
+    "rejected": whole("Frames that the check of their protection did not take."),
+    "statuses": by_name("Frames by the status of their check.", whole("Their number.")),
+}
 FRAMES = record(
     "What was counted of the frames on a bus in a run.",
     {
@@ -125,12 +130,14 @@ FRAMES = record(
                     "delayed": whole("Frames that a fault made late."),
                     "held": whole("Frames that were sampled while their node was off the bus."),
                     "unheard": whole("Frames that arrived while a receiver was off the bus."),
-                    "timeouts": whole("How often no frame came in time."),
                     "replayed": whole("Frames that came from a log."),
-                    "rejected": whole("Frames that the check of their protection did not take."),
-                    "statuses": by_name("Frames by the status of their check.", whole("Their number.")),
+                    **_JUDGED,
+                    "receivers": by_name(
+                        "Where nodes were off the bus and saw other frames than the rest: by node.",
+                        record("A receiver.", _JUDGED, optional=tuple(_JUDGED)),
+                    ),
                 },
-                optional=(*_OF_FAULTS, "timeouts", "replayed", "rejected", "statuses"),
+                optional=(*_OF_FAULTS, "replayed", *_JUDGED, "receivers"),
             ),
         ),
         "nodes": by_name(

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.can.protection.counters import STATUSES
 from ...cosim.can.wire import tables as T
 from .frame_path import FramePath
+from .listener_tables import by_receiver
 
 _PICOSECOND = 1e-12
 
@@ -53,7 +53,8 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
             "load": load,
             **{name: int(row[column]) for name, column in _COUNTS.items()},
             "latency": _times(row, T.LATENCY_LEAST, T.LATENCY_HIGH, int(row[T.CARRIED])),
-            **_judged(row, frames.arrays["verdicts"][i]),
+            **_faulty(row),
+            **by_receiver(frames.arrays, i, frames.nodes),
             "seen": _times(row, T.SEEN_LEAST, T.SEEN_HIGH, int(row[T.ARRIVED])),
         }
     for (bus, node), row in zip(frames.nodes, frames.arrays["nodes"], strict=False):
@@ -63,18 +64,13 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _judged(row: NDArray[np.int64], verdicts: NDArray[np.int64]) -> dict[str, Any]:
-    """Return the counts of timeouts, faults, frames that were not taken and statuses, where there are any."""
+def _faulty(row: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the counts of frames of a log, and of those that faults hit, where there are any."""
     found: dict[str, Any] = {}
     if row[T.REPLAYED]:
         found["replayed"] = int(row[T.REPLAYED])
-    if row[T.TIMEOUT]:
-        found["timeouts"] = int(row[T.TIMEOUTS])
     if any(row[column] for column in _FAULTY.values()):
         found |= {name: int(row[column]) for name, column in _FAULTY.items()}
-    if row[T.PROFILE]:
-        found["rejected"] = int(row[T.REJECTED])
-        found["statuses"] = {name: int(verdicts[code]) for code, name in STATUSES.items() if verdicts[code]}
     return found
 
 

@@ -21,9 +21,10 @@ from ...cosim.can.wire.values import set_raw
 from ...cosim.plan.plan import FaultPlan, Plan, ReplayPlan
 from ...cosim.plan.readers import Reader, readers
 from .fault_tables import nodes_of
+from .listener_tables import add_uses
 from .schedule import Action
 from .sender import Sender
-from .wire_tables import add_uses, ring_of_bus, views, wire_arrays
+from .wire_tables import ring_of_bus, views, wire_arrays
 
 
 class FramePath:

@@ -22,9 +22,9 @@ from ...cosim.can.wire.payload import put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
-from ...cosim.plan.readers import Reader
 from ...cosim.plan.receivers import node_of
-from .fault_tables import Arrays, add_faults, nodes_of, owner_of
+from .fault_tables import Arrays, add_faults, nodes_of
+from .listener_tables import Rows, add_listeners
 from .sender import Sender
 
 _MOST_BITS = 1024  # no frame is longer
@@ -55,7 +55,6 @@ def wire_arrays(
         "waiting": _table(len(plans), T.BYTES),
         "kept": _table(len(plans), T.BYTES),
         "uses": _table(0, T.USE),
-        "verdicts": _table(len(plans), T.VERDICTS),
         "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
         "log": _table(_LOG_ROWS, T.LOG_WIDTH),
         "replays": _table(streams * T.REPLAY_ROWS, T.LOG_WIDTH),
@@ -68,9 +67,10 @@ def wire_arrays(
     }
     made["single_bits"], made["double_bits"] = made["single"].view(np.int32), made["double"].view(np.int64)
     made["state"][T.STEP_TIME] = picoseconds(step)
-    _add_signals(made, senders, receiving or {})
+    listeners = add_listeners(made, plans, receiving or {})
+    _add_signals(made, senders, listeners)
     _add_fallback(made, plans, initial or {})
-    _add_protection(made, plans, receiving or {})
+    _add_protection(made, plans, listeners)
     _add_buses(made, plans, step)
     _add_rings(made, plans)
     same = [(plan.bus, plan.message.priority) for plan in plans]
@@ -191,20 +191,17 @@ def _add_fallback(made: Arrays, plans: Sequence[MessagePlan], initial: Mapping[i
     made["fallback"] = np.array(found or [math.nan])
 
 
-def _add_protection(
-    made: Arrays, plans: Sequence[MessagePlan], receiving: Mapping[int, tuple[str, str]]
-) -> None:
+def _add_protection(made: Arrays, plans: Sequence[MessagePlan], listeners: Sequence[Rows]) -> None:
     """Add the protection of messages, their timeouts, and the inputs that receive their status."""
     statuses: list[int] = []
-    nodes = nodes_of(plans)
     for i, plan in enumerate(plans):
         if plan.framing is None:
             continue
         own, slots = plan.settings.of_message(plan.message.name), plan.framing.status
-        row: dict[int, Any] = {T.TIMEOUT: own.timeout or 0, T.LAST: -1}
+        row: dict[int, Any] = {T.TIMEOUT: own.timeout or 0}
         row |= {T.FIRST_STATUS: len(statuses) // 2, T.STATUSES: len(slots)}
         for slot in slots:
-            statuses += [slot, owner_of(slot, nodes, receiving)]
+            statuses += [slot, listeners[i][slot]]
         if (protection := plan.framing.protection) is not None:
             made["ids"][16 * i : 16 * i + len(protection.ids)] = protection.ids
             start, little = place_of(protection.crc)
@@ -212,7 +209,7 @@ def _add_protection(
                 T.PROFILE: protection.profile, T.CRC_AT: protection.crc.start // 8,
                 T.CHECK_START: start, T.CHECK_LITTLE: little, T.CHECK_BITS: protection.crc.length,
                 T.COVERED: plan.message.own_length or plan.message.length,
-                T.MAX_DELTA: protection.max_delta, T.GAP: protection.max_delta,
+                T.MAX_DELTA: protection.max_delta,
             }  # fmt: skip # a row
             if protection.counter is not None:
                 row[T.COUNTER_START], row[T.COUNTER_LITTLE] = place_of(protection.counter)
@@ -223,21 +220,18 @@ def _add_protection(
     made["statuses"] = np.array(statuses or [0, -1], dtype=np.int64)
 
 
-def _add_signals(made: Arrays, senders: Sequence[Sender], receiving: Mapping[int, tuple[str, str]]) -> None:
+def _add_signals(made: Arrays, senders: Sequence[Sender], listeners: Sequence[Rows]) -> None:
     """Add the tables of signals and their receivers, and where those of each message begin."""
     signals: list[dict[int, Any]] = []
     reals: list[dict[int, Any]] = []
     sinks: list[dict[int, Any]] = []
     maps: list[dict[int, Any]] = []
-    nodes = nodes_of([sender.plan for sender in senders])
     for i, sender in enumerate(senders):
         _fill(made["messages"], i, {T.FIRST_SIGNAL: len(signals), T.SIGNALS: len(sender.plan.routes)})
         for route, operation in zip(sender.plan.routes, sender.channel.operations, strict=True):
             signals.append(_signal_row(route, operation, len(sinks)))
             reals.append(_real_row(route, operation))
-            sinks += [{T.SLOT: s, T.OWNER: owner_of(s, nodes, receiving)} for s, _ in route.sinks]
-            if any(slot in receiving for slot, _ in route.sinks):
-                _fill(made["messages"], i, {T.OWNED: 1})
+            sinks += [{T.SLOT: slot, T.LISTENER: listeners[i][slot]} for slot, _ in route.sinks]
             # adding an offset of 0.0 would turn -0.0 into 0.0
             maps += [{T.FACTOR: a.scale, T.ADDEND: a.offset or -0.0} for _, a in route.sinks]
     made["signals"], made["reals"] = _table(len(signals), T.SIGNAL), _table(len(signals), T.REAL, np.float64)
@@ -341,16 +335,6 @@ def _under_way(made: Arrays, bus: NDArray[np.int64], plans: Sequence[MessagePlan
     first = int(bus[T.FIRST_MESSAGE])
     own = plans[first : first + int(bus[T.MESSAGES])]
     return sum((span + plan.latest) // (plan.every * step) + 3 for plan in own)
-
-
-def add_uses(made: Arrays, receivers: Sequence[Sequence[Reader]]) -> None:
-    """Add the table of uses to those of the frame path; `receivers` are those of its rows of messages."""
-    rows = [[r.every, r.first, r.later, -1, *[0] * (T.USE - 4)] for own in receivers for r in own]
-    made["uses"] = np.array(rows or [[1] + [0] * (T.USE - 1)], dtype=np.int64)
-    first = 0
-    for i, own in enumerate(receivers):
-        made["messages"][i, [T.FIRST_USE, T.USES]] = first, len(own)
-        first += len(own)
 
 
 def _table(rows: int, width: int, kind: Any = np.int64) -> NDArray[Any]:

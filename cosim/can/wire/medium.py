@@ -9,7 +9,7 @@ from .arbitration import contend, number_of
 from .babble import begin, go_on
 from .faults import hit, spoil, spoil_logged
 from .log import log, log_error
-from .off import is_off, note_hit, strike, unheard
+from .off import hear, is_off, note_hit, strike
 from .protect import accepted, protect, watch
 from .requests import wanted
 from .tables import Wire
@@ -217,13 +217,12 @@ def deliver(w: Wire, i: int, k: int, sampled: int, time: int) -> int:
     if hit(w, T.LOSE, i, sampled) >= 0:
         m[i, T.LOST] += 1
         return T.DONE
-    w.state[T.ARRIVING] = time
-    if m[i, T.OWNED] and unheard(w, i):
+    if m[i, T.OWNED] and hear(w, i, time) == 0:
         return T.DONE
-    verdict = accepted(w, i, k)
-    if verdict < 0:
+    takers = accepted(w, i, k)
+    if takers < 0:
         return T.RAISED
-    if verdict == 0:
+    if takers == 0:
         return T.DONE
     use(w, i, k, sampled)
     return unpack(w, i, k)
@@ -240,7 +239,6 @@ def act(w: Wire, what: int, i: int, k: int) -> int:
     if what == T.ARRIVE:
         return arrive(w, i, k)
     if what == T.WATCH:
-        w.state[T.ARRIVING] = k * w.state[T.STEP_TIME]
         watch(w, i)
         return T.DONE
     if what == T.REPLAY:

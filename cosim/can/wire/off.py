@@ -68,26 +68,22 @@ def recover(w: Wire, bus: int, now: int) -> None:
         set_back(w, bus, node)
 
 
-def unheard(w: Wire, i: int) -> int:
-    """Count the receivers of the frame at hand, of message i, that are off the bus; return 1 if all are."""
-    m, off, on = w.messages, 0, 0
-    for j in range(m[i, T.FIRST_SIGNAL], m[i, T.FIRST_SIGNAL] + m[i, T.SIGNALS]):
-        for s in range(w.signals[j, T.FIRST_SINK], w.signals[j, T.FIRST_SINK] + w.signals[j, T.SINKS]):
-            if is_deaf(w, w.sinks[s, T.OWNER]):
-                off = 1 + w.sinks[s, T.OWNER]
-            else:
-                on = 1
-    for s in range(m[i, T.FIRST_STATUS], m[i, T.FIRST_STATUS] + m[i, T.STATUSES]):
-        on = on if is_deaf(w, w.statuses[2 * s + 1]) else 1
-    if off:
+def hear(w: Wire, i: int, time: int) -> int:
+    """Let those receivers of the frame at hand, of message i, take it that are on the bus at a time.
+
+    Return their number; a frame that others do not hear is counted, and the faults behind it.
+    """
+    m, on, first = w.messages, 0, w.messages[i, T.FIRST_LISTENER]
+    for a in range(first, first + m[i, T.LISTENERS]):
+        owner = w.listeners[a, T.OWNER]
+        w.listeners[a, T.TAKES] = 1
+        if owner >= 0 and is_off(w, owner, time):
+            w.listeners[a, T.TAKES] = 0
+            note_hit(w, owner)
+        on += w.listeners[a, T.TAKES]
+    if on < m[i, T.LISTENERS]:
         m[i, T.UNHEARD] += 1
-        note_hit(w, off - 1)
-    return 1 if off and not on else 0
-
-
-def is_deaf(w: Wire, owner: int) -> bool:
-    """Return True if the node of a receiver (-1: none) is off the bus as the frame at hand arrives."""
-    return bool(owner >= 0 and is_off(w, owner, w.state[T.ARRIVING]))
+    return on
 
 
 def note_hit(w: Wire, node: int) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from ..protection.counters import judged, nothing_new, taken
 from ..protection.profiles import MAKER, P1C, P5, checksum, modulus
 from . import tables as T
-from .off import is_deaf
 from .payload import low_bits, put
 from .tables import Wire
 from .values import ask
@@ -59,30 +58,40 @@ def wipe(w: Wire, little: int, start: int, bits: int) -> None:
 
 
 def accepted(w: Wire, i: int, k: int) -> int:
-    """Judge the frame at hand, of message i; return 1 if its values reach the receivers, else 0.
+    """Let the receivers that hear the frame at hand, of message i, judge it.
 
-    -1: the maker's function raised an error.
+    Return the number of them that take it; -1: the maker's function raised an error.
     """
     m = w.messages
-    profile, head = m[i, T.PROFILE], i - m[i, T.PAGE]
-    m[head, T.FRESH] = 1
-    if profile:
-        counter = 0
-        if modulus(profile):
+    counter, right, takers = 0, 1, 0
+    if m[i, T.PROFILE]:
+        if modulus(m[i, T.PROFILE]):
             counter = low_bits(w.frame, m[i, T.COUNTER_LITTLE], m[i, T.COUNTER_START], m[i, T.COUNTER_BITS])
         right = is_right(w, i, counter, k)
         if right < 0:
             return -1
-        status, m[head, T.LAST], m[head, T.GAP] = judged(
-            profile, right > 0, counter, m[head, T.LAST], m[head, T.GAP], m[i, T.MAX_DELTA]
+    first = m[i, T.FIRST_LISTENER]
+    for a in range(first, first + m[i, T.LISTENERS]):
+        if m[i, T.OWNED] == 0 or w.listeners[a, T.TAKES]:
+            w.listeners[a, T.TAKES] = judge(w, i, a, right, counter)
+            takers += w.listeners[a, T.TAKES]
+    return takers
+
+
+def judge(w: Wire, i: int, a: int, right: int, counter: int) -> int:
+    """Let receiver a judge the frame at hand, of message i; return 1 if it takes the frame, else 0."""
+    m, r = w.messages, w.listeners
+    r[a, T.FRESH] = 1
+    if m[i, T.PROFILE]:
+        status, r[a, T.LAST], r[a, T.GAP] = judged(
+            m[i, T.PROFILE], right > 0, counter, r[a, T.LAST], r[a, T.GAP], m[i, T.MAX_DELTA]
         )
-        show(w, i, status)
+        show(w, i, a, status)
         if not taken(status):
-            m[i, T.REJECTED] += 1
             return 0
     elif m[i, T.STATUSES]:
-        show(w, i, 0)
-    m[head, T.TAKEN], m[head, T.TIMED_OUT] = 1, 0
+        show(w, i, a, 0)
+    r[a, T.TAKEN], r[a, T.TIMED_OUT] = 1, 0
     return 1
 
 
@@ -110,35 +119,43 @@ def is_right(w: Wire, i: int, counter: int, k: int) -> int:
 
 
 def watch(w: Wire, i: int) -> None:
-    """Look, once a cycle, whether frames of message i came and were taken."""
-    m, h = w.messages, i - w.messages[i, T.PAGE]
-    if m[h, T.PROFILE] and not m[h, T.FRESH]:
-        status, m[h, T.GAP] = nothing_new(m[h, T.PROFILE], m[h, T.GAP], m[h, T.MAX_DELTA])
-        show(w, i, status)
-    m[h, T.MISSED] = 0 if m[h, T.TAKEN] else m[h, T.MISSED] + 1
-    m[h, T.FRESH], m[h, T.TAKEN] = 0, 0
-    if m[h, T.TIMEOUT] and m[h, T.MISSED] >= m[h, T.TIMEOUT] and not m[h, T.TIMED_OUT]:
-        m[h, T.TIMED_OUT] = 1
-        m[h, T.TIMEOUTS] += 1
-        if m[h, T.PROFILE] == 0 and m[h, T.STATUSES]:
-            show(w, i, 1)
-        for page in range(h, h + m[h, T.PAGES]):
-            fall_back(w, page)
+    """Look, once a cycle, whether frames of message i came to each of its receivers, and were taken."""
+    first = w.messages[i, T.FIRST_LISTENER]
+    for a in range(first, first + w.messages[i, T.LISTENERS]):
+        look(w, i, a)
 
 
-def show(w: Wire, i: int, status: int) -> None:
-    """Count a status of message i, and write it to the inputs that get it: no new data to one off the bus."""
-    w.verdicts[i, status] += 1
-    first = w.messages[i, T.FIRST_STATUS]
-    for s in range(first, first + w.messages[i, T.STATUSES]):
-        w.memory[w.statuses[2 * s]] = 1.0 if is_deaf(w, w.statuses[2 * s + 1]) else float(status)
+def look(w: Wire, i: int, a: int) -> None:
+    """Look whether frames of message i came to receiver a since it looked, and were taken."""
+    m, r, head = w.messages, w.listeners, i - w.messages[i, T.PAGE]
+    if m[i, T.PROFILE] and not r[a, T.FRESH]:
+        status, r[a, T.GAP] = nothing_new(m[i, T.PROFILE], r[a, T.GAP], m[i, T.MAX_DELTA])
+        show(w, i, a, status)
+    r[a, T.MISSED] = 0 if r[a, T.TAKEN] else r[a, T.MISSED] + 1
+    r[a, T.FRESH], r[a, T.TAKEN] = 0, 0
+    if m[i, T.TIMEOUT] and r[a, T.MISSED] >= m[i, T.TIMEOUT] and not r[a, T.TIMED_OUT]:
+        r[a, T.TIMED_OUT] = 1
+        r[a, T.TIMEOUTS] += 1
+        if m[i, T.PROFILE] == 0 and m[i, T.STATUSES]:
+            show(w, i, a, 1)
+        for page in range(head, head + m[i, T.PAGES]):
+            fall_back(w, page, a)
 
 
-def fall_back(w: Wire, i: int) -> None:
-    """Give the receivers of message i what stands in for its values; NaN: they keep the last ones."""
+def show(w: Wire, i: int, a: int, status: int) -> None:
+    """Count a status of message i at receiver a, and write it to the inputs of that one that get it."""
+    m = w.messages
+    w.verdicts[m[i, T.FIRST_VERDICT] + a - m[i, T.FIRST_LISTENER], status] += 1
+    for s in range(m[i, T.FIRST_STATUS], m[i, T.FIRST_STATUS] + m[i, T.STATUSES]):
+        if w.statuses[2 * s + 1] == a:
+            w.memory[w.statuses[2 * s]] = float(status)
+
+
+def fall_back(w: Wire, i: int, a: int) -> None:
+    """Give receiver a of message i what stands in for its values; NaN: it keeps the last ones."""
     first = w.messages[i, T.FIRST_SIGNAL]
     for j in range(first, first + w.messages[i, T.SIGNALS]):
         start = w.signals[j, T.FIRST_SINK]
         for s in range(start, start + w.signals[j, T.SINKS]):
-            if w.fallback[s] == w.fallback[s]:
+            if w.sinks[s, T.LISTENER] == a and w.fallback[s] == w.fallback[s]:
                 w.memory[w.sinks[s, T.SLOT]] = w.fallback[s]

@@ -17,7 +17,7 @@ class Wire(NamedTuple):
 
     `reals`, `maps` and `chances` are float64. In one dimension: `memory`, the run's, float64, as
     `fallback`, which has a number for each row of sinks; `odds`, the probability of each fault;
-    `ids`, 16 data IDs of each message; `statuses`, in pairs of an input's slot and its OWNER;
+    `ids`, 16 data IDs of each message; `statuses`, in pairs of an input's slot and its row of listeners;
     `frame`, the bytes of the frame at hand; `single` (float32) with its bits `single_bits` (int32), `double`
     (float64) with its bits `double_bits`, one number each; `state`. `helper` is what `ask` calls.
     """
@@ -27,6 +27,7 @@ class Wire(NamedTuple):
     reals: Any
     sinks: Any
     maps: Any
+    listeners: Any
     base: Any
     waiting: Any
     kept: Any
@@ -74,38 +75,37 @@ by a wire error, and that arrived; the time that the bus was busy with them."""
 (PAGE, PAGES) = range(31, 33)
 """Which of the pages of a multiplexed message it is, and the number of them; they have one buffer."""
 (PROFILE, CRC_AT, COUNTER_START, COUNTER_BITS, COUNTER_LITTLE, NIBBLE_START, NIBBLE_LITTLE) = range(33, 40)
-(MAX_DELTA, COUNTER, LAST, GAP, REJECTED) = range(40, 45)
+(MAX_DELTA, COUNTER, FIRST_LISTENER, LISTENERS, FIRST_VERDICT) = range(40, 45)
 """The profile of its protection (0: none), the byte of its checksum, the layouts of counter and of profile
-1C's nibble; the greatest step of the counter, the next one to send, the last that was taken and the greatest
-step at present (`protection.counters`); the number of frames that were not taken."""
-(TIMEOUT, MISSED, TIMED_OUT, TIMEOUTS, FRESH, TAKEN, FIRST_STATUS, STATUSES) = range(45, 53)
-"""Cycles without a frame that was taken until its receivers get `fallback`, those so far, 1 while they have
-it, and how often that was; 1 if a frame came, and was taken, since `watch` looked (what changes of a
-multiplexed message, here and in its protection, has the row of its first page); STATUSES slots of inputs
-from FIRST_STATUS of `statuses` on get the number of the last frame's status."""
+1C's nibble; the greatest step of the counter, and the next one to send (what changes of a multiplexed
+message has the row of its first page). LISTENERS rows of listeners from FIRST_LISTENER on judge its frames,
+those of all its pages, and have as many rows of `verdicts` for each page, from FIRST_VERDICT on."""
+(TIMEOUT, FIRST_STATUS, STATUSES) = range(45, 48)
+"""Cycles without a frame that was taken until its receivers get `fallback`; STATUSES slots of inputs from
+FIRST_STATUS of `statuses` on get the number of the last frame's status."""
+(CHECK_START, CHECK_BITS, CHECK_LITTLE) = range(48, 51)
+"""The layout of a maker's checksum."""
+(LATENCY_HIGH, SEEN_HIGH) = range(51, 53)
+"""Wholes of SUM that were taken out of LATENCY_SUM and SEEN_SUM."""
 (KEPT, LOST, SILENCED, DELAYED, HELD, UNHEARD, REPLAYED) = range(53, 60)
 """1 once `kept` has the last payload that was sent; frames that a fault took from receivers, silenced, or
 made late; those that were sampled while their node was off the bus, that arrived while a receiver was, and
 that came from a log."""
 (BABBLES, OWNED) = range(60, 62)
-"""1 + the row of the fault whose frames they are, 0 for a message; 1 where a receiver has an OWNER."""
+"""1 + the row of the fault whose frames they are, 0 for a message; 1 where a listener has an OWNER."""
 (SEND_TYPE, INTERVAL, CYCLE, ASKED, NEXT_STEP, PHASE, ACTIVE, LOOKED) = range(62, 70)
 """Its send type, the least steps between two frames, its cycle in steps; 1 while a frame is wanted, the first
 step at which it may be sent, the step at which it became active, 1 while it is, and once its values were
 looked at."""
 (FIRST_USE, USES) = range(70, 72)
 """USES rows of `uses` from FIRST_USE on: one for each unit that receives it."""
-(CHECK_START, CHECK_BITS, CHECK_LITTLE) = range(72, 75)
-"""The layout of a maker's checksum."""
-(LATENCY_HIGH, SEEN_HIGH) = range(75, 77)
-"""Wholes of SUM that were taken out of LATENCY_SUM and SEEN_SUM."""
-COVERED = 77
+COVERED = 72
 """The bytes that the checksum of a profile covers: without those that the frame adds to its message."""
-MESSAGE = 78
+MESSAGE = 73
 SUM = 2**62
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
-"""Columns of `verdicts`, the number of frames of each message by the number of their status."""
+"""Columns of `verdicts`, the number of frames by the number of the status that a listener gave them."""
 
 # ---- columns of signals
 
@@ -126,25 +126,33 @@ raw value; the offset of decoding, -0.0 where there is none."""
 FLOAT64, FLOAT32, NEAREST, HALF_EVEN, TRUNCATE, EXACT = range(6)
 """Kinds of a signal: by format or rounding; EXACT: integers that no double holds, which Python computes."""
 
-SLOT, OWNER = range(2)
+SLOT, LISTENER = range(2)
 SINK = 2
 FACTOR, ADDEND = range(2)
 MAP = 2
-"""Columns of sinks, the receiver's slot and the row of nodes of its node (-1: none that could be off the
-bus), and of maps, from the bus' unit to the receiver's."""
+"""Columns of sinks, the receiver's slot and its row of listeners, and of maps, from the bus' unit to the
+receiver's."""
+
+(OWNER, TAKES, LAST, GAP, MISSED, TIMED_OUT, TIMEOUTS, FRESH, TAKEN) = range(9)
+LISTENING = 9
+"""Columns of listeners, the receivers of a message that hear and judge its frames alike: the row of nodes of
+their node (-1: none that could be off the bus); 1 if they take the frame at hand; the counter of the last
+that they took, and the greatest step that they take at present (`protection.counters`); cycles so far without
+a frame that they took, 1 while they have `fallback`, and how often that was; 1 if a frame came, and was
+taken, since `watch` looked."""
 
 BYTES = 64
 """Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
 the frame that waits."""
 
-(TURN_EVERY, FIRST_TURN, LATER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST, USE_HIGH) = (
-    range(10)
+(TURN_EVERY, FIRST_TURN, LATER, USER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST) = range(
+    10
 )
-USE = 10
-"""Columns of uses: period and offset of the receiver in steps, and 1 if what arrives in its step comes after
-its turn; the turn in which the last value is used (-1: none came), and when that was sampled; the number of
-values that were used before, and least, sum and greatest time from sampling to turn, and the wholes of SUM
-that were taken out of the sum."""
+USE_HIGH, USE = 10, 11
+"""Columns of uses: period and offset of the receiver in steps, 1 if what arrives in its step comes after its
+turn, and its row of listeners; the turn in which the last value is used (-1: none came), and when that was
+sampled; the number of values that were used before, and least, sum and greatest time from sampling to turn,
+and the wholes of SUM that were taken out of the sum."""
 
 # ---- frames under way
 
@@ -186,10 +194,9 @@ REPLAY_ROWS = 1024
 times REPLAY_ROWS on, the one whose frame comes next; 1 if there are no more. Rows have the columns of the
 log, but for the step, which is that in which the frame is seen."""
 
-STEP_TIME, LOG_ROWS, FAULTS, ARRIVING = range(4)
-STATE = 4
-"""Places in state: the time of a step; rows of the log in use; the number of faults; the time at which the
-frame at hand arrives."""
+STEP_TIME, LOG_ROWS, FAULTS = range(3)
+STATE = 3
+"""Places in state: the time of a step; rows of the log in use; the number of faults."""
 
 (FAULT_KIND, FAULT_BUS, FAULT_KEY, FAULT_NODE, SINCE_TIME, UNTIL_TIME, LEFT, EACH, MET, HITS) = range(10)
 (FAULT_SEED, BYTE, MASK, COUNTER_TOO, AMOUNT, FAULT_NUMBER) = range(10, 16)

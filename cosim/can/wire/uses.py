@@ -28,9 +28,11 @@ def note(m: Any, i: int, least: int, high: int, time: int, before: int) -> None:
 
 
 def use(w: Wire, i: int, k: int, sampled: int) -> None:
-    """Let the receivers of message i use, in their next turns, the values that arrive in step k."""
-    u, first = w.uses, w.messages[i, T.FIRST_USE]
+    """Let those that take a frame of message i use, in their next turns, the values that arrive in step k."""
+    u, first, alone = w.uses, w.messages[i, T.FIRST_USE], w.messages[i, T.LISTENERS] == 1
     for row in range(first, first + w.messages[i, T.USES]):
+        if not (alone or w.listeners[u[row, T.USER], T.TAKES]):
+            continue
         wait = max(0, k + u[row, T.LATER] - u[row, T.FIRST_TURN])
         turn = (
             u[row, T.FIRST_TURN]

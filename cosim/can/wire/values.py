@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 from . import tables as T
-from .off import is_deaf
 from .payload import high_bits, low_bits, put, whole, words
 from .tables import Wire
 
@@ -82,8 +81,8 @@ def pack(w: Wire, i: int) -> None:
 
 
 def unpack(w: Wire, i: int, k: int) -> int:
-    """Write the values of the frame at hand, of message i, to its receivers; return DONE or RAISED."""
-    first = w.messages[i, T.FIRST_SIGNAL]
+    """Write the values of the frame at hand, of message i, to those that take it; return DONE or RAISED."""
+    alone, first = w.messages[i, T.LISTENERS] == 1, w.messages[i, T.FIRST_SIGNAL]
     for j in range(first, first + w.messages[i, T.SIGNALS]):
         if w.signals[j, T.SINKS]:
             little, start, bits = w.signals[j, T.LITTLE], w.signals[j, T.START], w.signals[j, T.BITS]
@@ -97,7 +96,7 @@ def unpack(w: Wire, i: int, k: int) -> int:
             else:
                 raw = raw_number(w, kind, low, high, bits, w.signals[j, T.SIGNED])
                 value = raw * w.reals[j, T.SCALE] + w.reals[j, T.OUT_ADD]
-            receive(w, j, value)
+            receive(w, j, value, alone)
     return T.DONE
 
 
@@ -112,10 +111,12 @@ def raw_number(w: Wire, kind: int, low: int, high: int, bits: int, signed: int) 
     return float(whole(low, high, bits, signed))
 
 
-def receive(w: Wire, j: int, value: float) -> None:
-    """Write a value of signal j, in the bus' unit, to its receivers that are on the bus."""
+def receive(w: Wire, j: int, value: float, alone: bool) -> None:
+    """Write a value of signal j, in the bus' unit, to its receivers that take the frame at hand.
+
+    `alone`: all of them hear and judge frames alike.
+    """
     first = w.signals[j, T.FIRST_SINK]
     for s in range(first, first + w.signals[j, T.SINKS]):
-        if is_deaf(w, w.sinks[s, T.OWNER]):
-            continue
-        w.memory[w.sinks[s, T.SLOT]] = w.maps[s, T.FACTOR] * value + w.maps[s, T.ADDEND]
+        if alone or w.listeners[w.sinks[s, T.LISTENER], T.TAKES]:
+            w.memory[w.sinks[s, T.SLOT]] = w.maps[s, T.FACTOR] * value + w.maps[s, T.ADDEND]

@@ -12,7 +12,7 @@ from evcosim.cosim.can.wire.tables import Wire
 
 
 def wire(since: int = 1000, until: int = 2000) -> SimpleNamespace:
-    """Two nodes on a bus, of which a fault takes the second off; message 0 is received by both."""
+    """Two nodes on a bus, of which a fault takes the second off; message 0 is heard by both."""
     tables = {name: np.zeros((4, 80), dtype=np.int64) for name in Wire._fields}
     tables |= {name: np.zeros(80, dtype=np.int64) for name in ("frame", "state", "statuses")}
     tables["nodes"][2:, T.BUS_OF] = -1
@@ -20,9 +20,8 @@ def wire(since: int = 1000, until: int = 2000) -> SimpleNamespace:
     tables["state"][T.FAULTS] = 1
     row = {T.FAULT_KIND: T.BUS_OFF, T.FAULT_NODE: 1, T.SINCE_TIME: since, T.UNTIL_TIME: until}
     tables["faults"][0, list(row)] = list(row.values())
-    tables["messages"][0, T.SIGNALS] = 1
-    tables["signals"][0, T.SINKS] = 2
-    tables["sinks"][:2, T.OWNER] = 0, 1
+    tables["messages"][0, T.LISTENERS] = 2
+    tables["listeners"][:2, T.OWNER] = 0, 1
     made = SimpleNamespace(**tables)
     made.wire = Wire(**{name: table.data for name, table in tables.items()})
     return made
@@ -57,13 +56,15 @@ def test_a_frame_during_the_fault_does_not_count():
     assert w.nodes[1, T.OFF_UNTIL] == 2000 + 1408
 
 
-def test_a_receiver_that_is_off_is_counted_and_a_frame_is_unheard_where_all_are():
+def test_who_is_off_does_not_hear_a_frame_which_counts_once():
     w = wire()
     off.strike(w.wire, 0, 1000)
-    w.state[T.ARRIVING] = 1500
-    assert off.unheard(w.wire, 0) == 0
-    w.sinks[0, T.OWNER] = 1
-    assert off.unheard(w.wire, 0) == 1
-    assert w.messages[0, T.UNHEARD] == w.faults[0, T.HITS] == 2
-    w.sinks[:2, T.OWNER] = -1
-    assert off.unheard(w.wire, 0) == 0
+    assert off.hear(w.wire, 0, 999) == 2
+    assert w.messages[0, T.UNHEARD] == w.faults[0, T.HITS] == 0
+    assert off.hear(w.wire, 0, 1500) == 1
+    assert w.listeners[:2, T.TAKES].tolist() == [1, 0]
+    w.listeners[0, T.OWNER] = 1
+    assert off.hear(w.wire, 0, 1500) == 0
+    assert w.messages[0, T.UNHEARD] == 2
+    w.listeners[:2, T.OWNER] = -1
+    assert off.hear(w.wire, 0, 1500) == 2

@@ -19,6 +19,7 @@ from evcosim.cosim.can.wire import tables as T
 from evcosim.cosim.plan.plan import MessagePlan
 from evcosim.cosim.units.measure import Affine
 from evcosim.master.engine.frame_path import FramePath
+from evcosim.master.engine.listener_tables import judgments
 from evcosim.master.engine.sender import Sender
 
 VALUE = Signal("Value", 24, 16, not_available=0xFFFF, scale=0.5)
@@ -51,8 +52,13 @@ class Path:
         self.memory = np.array([0.0, -7.0, -1.0])
         sender = Sender(plan, MessageChannel(message, routes), memoryview(self.memory), None)
         self.path = FramePath([sender], self.memory, 0.01, True, {1: -7.0})
-        self.row = self.path.arrays["messages"][0]
         self.k = 0
+
+    @property
+    def judged(self) -> dict[str, object]:
+        """What is counted of the message."""
+        (found,) = judgments(self.path.arrays, 0)
+        return found
 
     def step(self, value: float, spoil=lambda payload: None, lost: bool = False) -> tuple[float, float]:
         """Send a value, spoil the frame under way; return what is received a step later, and its status."""
@@ -89,7 +95,7 @@ def test_every_flipped_bit_is_seen(profile):
 
         assert path.step(20.0, flip)[0] == 20.0  # the value of the frame before, times 2
         assert path.memory[2] in (2.0, 64.0)
-        assert path.row[T.REJECTED] == 1
+        assert path.judged["rejected"] == 1
 
 
 @pytest.mark.parametrize("length", [8, 9, 12, 13, 20, 33])
@@ -141,7 +147,7 @@ def test_after_a_timeout_receivers_have_what_stands_in(profile, choice, after):
     path = Path(profile, timeout=3, on_timeout=choice)
     path.step(1.0)
     assert [path.step(2.0, lost=True)[0] for _ in range(4)] == [2.0, 2.0, after, after]
-    assert path.row[T.TIMEOUTS] == 1
+    assert path.judged["timeouts"] == 1
     assert path.memory[2] == 1.0
     assert path.step(5.0)[0] == 10.0  # with each check a greater step of the counter is taken
     assert path.step(6.0)[0] == 12.0
