@@ -18,13 +18,14 @@ from __future__ import annotations
 import functools
 import hashlib
 import re
+from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
 from . import cache, runtime
 from .catalog import CATALOG, Experiment, model_file
-from .sources import Source, collect, file_of, own_roots, rewritten
+from .sources import Source, collect, file_of, models_folder, own_roots, rewritten
 
 _OWN_LICENSE = "MIT"
 _HERE = Path(__file__).parent
@@ -114,8 +115,7 @@ def built(name: str, anew: bool = False) -> Path:
 
     With `anew` it is built in any case. Raises ValueError for an unknown name.
     """
-    recipe = _catalog_recipe(name)
-    return cache.fetch(f"{recipe.identity}.fmu", lambda: _content(recipe), anew)
+    return cache.fetch(f"{_identity(name)}.fmu", lambda: _content(_catalog_recipe(name)), anew)
 
 
 def build_model(
@@ -162,6 +162,49 @@ def _record(digest: str) -> str:
     return f"built-here-{digest}"
 
 
+def _identity(name: str) -> str:
+    """Return the identity of a catalog FMU, as its recipe says; the cache keeps it by all that may change it.
+
+    To follow the import statements of a model takes longer than all the rest of finding its FMU.
+    Raises ValueError for an unknown name.
+    """
+    if name not in CATALOG:
+        return _catalog_recipe(name).identity
+    about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), _models(models_folder())))
+    if about not in _identities:
+        entry = f"identity-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
+        kept = (cache.load(entry) or b"").decode("ascii", "replace")
+        if not re.fullmatch(rf"{name}_[0-9a-f]{{12}}", kept):
+            kept = _catalog_recipe(name).identity
+            cache.keep(entry, kept.encode())  # a cache that keeps nothing is told with the FMU
+        _identities[about] = kept
+    return _identities[about]
+
+
+_identities: dict[str, str] = {}
+
+
+@functools.cache
+def _common(folder: Path, version: str) -> str:
+    """Return a digest of what all FMUs have in common; `folder` is that of this package."""
+    parts = runtime.binaries(), runtime.python_files(), runtime.licenses()
+    return _digest([version.encode(), *_flat(_own_code(folder)), *(p for part in parts for p in _flat(part))])
+
+
+_digests: dict[Path, tuple[object, str]] = {}
+
+
+def _models(folder: Path) -> str:
+    """Return a digest of the models of this package, read again where one was written since."""
+    files = sorted(folder.rglob("*.py"))
+    state = [(file, cache.settled(file)) for file in files]
+    before, digest = _digests.get(folder, (None, ""))
+    if before != state or not all(about for _, about in state):
+        digest = _digest([part for file in files for part in (str(file).encode(), file.read_bytes())])
+        _digests[folder] = state, digest
+    return digest
+
+
 def _catalog_recipe(name: str) -> Recipe:
     if name not in CATALOG:
         import difflib  # slow to import
@@ -179,19 +222,27 @@ def _recipe(name: str, module: str, file: Path, experiment: Experiment, version:
     if not (name.isidentifier() and name.isascii()):
         raise ValueError(f"{name}: an FMU is built from a class at the top of its module, with an ASCII name")
     sources = tuple(collect(module, file))
-    digest = hashlib.sha256()
     about = (name, module, experiment, version, license, runtime.version("evcosim"))
-    for part in (
-        repr(about).encode(),
-        *(part for source in sources for part in (source.path.encode(), source.content)),
-        *_flat(_own_code(_HERE)),
-        *_flat(runtime.binaries()),
-        *_flat(runtime.python_files()),
-        *_flat(runtime.licenses()),
-    ):
+    digest = _digest(
+        [
+            repr(about).encode(),
+            *(part for source in sources for part in (source.path.encode(), source.content)),
+            *_flat(_own_code(_HERE)),
+            *_flat(runtime.binaries()),
+            *_flat(runtime.python_files()),
+            *_flat(runtime.licenses()),
+        ]
+    )
+    return Recipe(name, module, sources, experiment, version, license, digest[:32])
+
+
+def _digest(parts: Iterable[bytes]) -> str:
+    """Return SHA-256 of parts, each with its length."""
+    digest = hashlib.sha256()
+    for part in parts:
         digest.update(len(part).to_bytes(8, "big"))
         digest.update(part)
-    return Recipe(name, module, sources, experiment, version, license, digest.hexdigest()[:32])
+    return digest.hexdigest()
 
 
 @functools.cache

@@ -18,6 +18,7 @@ import hashlib
 import os
 import stat
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -112,6 +113,22 @@ def keep(name: str, content: bytes) -> str:
     return ""
 
 
+_JUST_NOW = 100_000_000
+"""Nanoseconds after a file was written, in which it may be written again and have the same times."""
+
+
+def settled(path: Path) -> tuple[int, ...] | None:
+    """Return what stays the same as long as a file is not written, or replaced; None if it just was.
+
+    Raises OSError where there is none.
+    """
+    about = os.lstat(path)
+    if time.time_ns() - max(about.st_mtime_ns, about.st_ctime_ns) < _JUST_NOW:
+        return None
+    times = about.st_mtime_ns, about.st_ctime_ns
+    return about.st_dev, about.st_ino, about.st_mode, about.st_uid, about.st_size, *times
+
+
 def write(path: Path, content: bytes, mode: int = 0o666) -> Path:
     """Write a file at once or not at all, and return its path; two processes may write it. Raises OSError.
 
@@ -159,14 +176,26 @@ _DAMAGED = "is damaged: its digest is not the one with which it was kept"
 
 def _kept(path: Path) -> bool:
     """Return True for a file whose digest stands in the record beside it; drop any other. Raises OSError."""
+    beside = path.with_name(path.name + _RECORD)
+    states: tuple[object, object] = None, None
+    with contextlib.suppress(OSError):  # what it is, reading says
+        states = settled(path), settled(beside)
+        if all(states) and _known.get(path) == states:
+            _require_our_folder(path.parent)
+            return True
     content = _read(path)
-    record = _read(path.with_name(path.name + _RECORD))
+    record = _read(beside)
     if content is None or record is None:
         return False  # another process may be about to write the record
     if record != f"{_digest(content)}  {path.name}\n".encode():
         _drop(path, _DAMAGED)
         return False
+    _known[path] = states
     return True
+
+
+_known: dict[Path, tuple[object, object]] = {}
+"""The states of files that this process has compared with their records, and of those."""
 
 
 def _digest(content: bytes) -> str:

@@ -55,7 +55,7 @@ class Roots(NamedTuple):
         top, _, rest = module.partition(".")
         if top == "evcosim":
             part, _, rest = rest.partition(".")
-            folder = {"models": _models_folder(), "fmus": _HERE}.get(part)
+            folder = {"models": models_folder(), "fmus": _HERE}.get(part)
             return None if folder is None else _file(folder, rest)
         if top == (self.package or top) and not (self.package == "" and _is_shared(self.folder)):
             return _file(self.folder, module)
@@ -218,7 +218,8 @@ def _is_shared(folder: Path) -> bool:
 
 
 @functools.cache
-def _models_folder() -> Path:
+def models_folder() -> Path:
+    """Return the folder of the models of this package."""
     from .. import models  # light: a docstring
 
     return Path(models.__file__ or "").resolve().parent

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .plan import Plan
-from .turns import turn_from
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,9 +24,10 @@ class Reader:
     later: bool
     mailbox: int = dataclasses.field(default=-1, compare=False)
 
-    def turn(self, k: int) -> int:
-        """Return the step in which it takes what arrives in step k."""
-        return turn_from(k + self.later, self.every, self.first)
+    def turns(self, steps: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the steps in which it takes what arrives in these steps, shape (n,)."""
+        since = np.maximum(steps + self.later - self.first, 0)
+        return self.first - -since // self.every * self.every
 
 
 def readers(plan: Plan) -> tuple[tuple[Reader, ...], ...]:

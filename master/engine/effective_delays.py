@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...cosim.can.wire import tables as T
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import MessagePlan, Plan
@@ -36,10 +38,16 @@ def delays_of_values(plan: Plan, number: int, steps: int) -> Delays:
 
 def _at_once(message: MessagePlan, reader: Reader, steps: int, step: float) -> dict[str, float] | None:
     """Return the delays of a unit that receives each value as many steps after it was sampled."""
-    sampled = range(message.first, steps, message.every)
-    used = {reader.turn(k + message.delay): k for k in sampled}  # the last one of those before a turn
-    times = [(turn - k) * picoseconds(step) for turn, k in used.items() if turn < steps]
-    return _times(min(times), sum(times), max(times), len(times)) if times else None
+    sampled = np.arange(message.first, steps, message.every)
+    turns = reader.turns(sampled + message.delay)
+    # a turn takes the last one of those before it
+    used = (turns < steps) & (turns != np.append(turns[1:], -1))
+    waited = (turns - sampled)[used]
+    if not len(waited):
+        return None
+    length = picoseconds(step)
+    least, total, most = (int(n) * length for n in (waited.min(), waited.sum(), waited.max()))
+    return _times(least, total, most, len(waited))
 
 
 def _times(least: int, total: int, most: int, count: int) -> dict[str, float] | None:

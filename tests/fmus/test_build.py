@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 
 import fmpy
 import pytest
@@ -156,6 +157,38 @@ def test_a_second_run_builds_nothing(own_cache, monkeypatch):
     assert built("Battery") == first
 
 
+def test_a_kept_identity_is_that_of_the_recipe(own_cache, monkeypatch):
+    """It is found without following imports, made anew where it is damaged, and another for another model."""
+    monkeypatch.setattr(building, "_identities", {})
+    expected = built("Battery").stem
+    (entry,) = own_cache.glob("identity-*")
+    followed = []
+    collect = building.collect
+    monkeypatch.setattr(building, "collect", lambda *given: followed.append(given) or collect(*given))
+    for content, count in ((entry.read_bytes(), 0), (b"", 1), (b"\n", 1), (entry.read_bytes()[:-1], 1)):
+        monkeypatch.setattr(building, "_identities", {})
+        entry.write_bytes(content)
+        followed.clear()
+        assert built("Battery").stem == expected
+        assert len(followed) == count
+    assert cache.keep(entry.name, b"Scooter_0123456789ab") == ""  # whole, and of another model
+    monkeypatch.setattr(building, "_identities", {})
+    assert built("Battery").stem == expected
+
+
+def test_a_model_that_is_written_is_read_again(tmp_path, monkeypatch):
+    (tmp_path / "model.py").write_text("a = 1")
+    first = building._models(tmp_path)
+    (tmp_path / "model.py").write_text("a = 2")  # within the same tick of the file system's clock
+    second = building._models(tmp_path)
+    monkeypatch.setattr(cache, "_JUST_NOW", -1)
+    assert building._models(tmp_path) == second != first
+    (tmp_path / "model.py").write_text("a = 10")
+    assert len({first, second, building._models(tmp_path)}) == 3
+    (tmp_path / "other.py").write_text("")
+    assert len({first, second, building._models(tmp_path)}) == 3
+
+
 @pytest.mark.parametrize("changed", sorted(file.name for file in building._HERE.glob("*.py")))
 def test_another_builder_is_another_file_in_the_cache(changed, own_cache, tmp_path, monkeypatch):
     first = built("Battery")
@@ -193,7 +226,13 @@ def test_four_processes_may_build_at_once(own_cache):
     printed = [process.communicate(timeout=60)[0] for process in running]
     assert [process.returncode for process in running] == [0] * 4
     assert len(set(printed)) == 1
-    assert sorted(file.suffix for file in own_cache.iterdir()) == [".fmu", ".sha256"]
+    identity = Path(printed[0].strip()).stem
+    kept = {file.name for file in own_cache.iterdir()}
+    assert {name for name in kept if not name.startswith("identity-Battery-")} == {
+        f"{identity}.fmu",
+        f"{identity}.fmu.sha256",
+    }
+    assert len(kept) == 3
 
 
 @pytest.mark.parametrize(

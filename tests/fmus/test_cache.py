@@ -235,3 +235,32 @@ for i in range(60):
     said = [process.communicate(timeout=120)[1] for process in running]
     assert [process.returncode for process in running] == [0] * 4, said
     assert said == [b""] * 4
+
+
+def test_a_file_that_was_compared_is_not_read_again_until_it_is_written(monkeypatch):
+    """Within a process, and not in the tick of the file system's clock in which it was written."""
+    make = Maker()
+    path = cache.fetch("thing", make)
+    assert cache.settled(path) is None
+    monkeypatch.setattr(cache, "_JUST_NOW", -1)
+    read, original = [], cache._read
+    monkeypatch.setattr(cache, "_read", lambda path: read.append(path) or original(path))
+    for _ in range(3):
+        assert cache.fetch("thing", make) == path
+    assert (len(read), make.made) == (2, 1)
+    flipped(path)
+    assert cache.fetch("thing", make).read_bytes() == CONTENT
+    assert make.made == 2
+    os.utime(path, (0, 0))
+    assert cache.fetch("thing", make) == path and make.made == 2
+
+
+@needs_owners
+def test_a_folder_that_others_may_write_is_not_trusted_again(own_cache, monkeypatch, capsys):
+    monkeypatch.setattr(cache, "_JUST_NOW", -1)
+    monkeypatch.setattr(cache, "_replaced", {})
+    path = cache.fetch("thing", Maker())
+    assert cache.fetch("thing", Maker()) == path
+    own_cache.chmod(0o777)
+    assert cache.fetch("thing", Maker()) != path
+    assert "others can write it" in capsys.readouterr().err

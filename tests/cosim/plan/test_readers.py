@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from evcosim.cosim.plan.readers import Reader, readers
+from evcosim.cosim.plan.turns import turn_from
 from evcosim.cosim.plan.unit_plan import Route
 from evcosim.master.simulation import Simulation
 
@@ -32,7 +34,9 @@ def test_who_has_had_its_turn_takes_a_message_in_the_next_one(after, timed, late
     assert found == (Reader("a", 2, 0, later > 0), Reader("b", 2, 1, later > 1))
 
 
-def test_the_next_turn():
-    assert [Reader("u", 4, 2, False).turn(k) for k in range(8)] == [2, 2, 2, 6, 6, 6, 6, 10]
-    assert [Reader("u", 4, 2, True).turn(k) for k in range(8)] == [2, 2, 6, 6, 6, 6, 10, 10]
-    assert Reader("u", 1, 0, True).turn(5) == 6
+@pytest.mark.parametrize("later", [False, True])
+@pytest.mark.parametrize(("every", "first"), [(1, 0), (4, 2), (3, 7)])
+def test_the_next_turns_are_those_of_a_unit(every, first, later):
+    turns = Reader("u", every, first, later).turns(np.arange(20))
+    assert turns.tolist() == [turn_from(k + later, every, first) for k in range(20)]
+    assert Reader("u", 4, 2, True).turns(np.arange(8)).tolist() == [2, 2, 6, 6, 6, 6, 10, 10]
