@@ -1,6 +1,7 @@
 /* Python's arithmetic in C99, bit for bit, for models that were written in Python.
 
-   python_failure.h    exceptions and their texts; PY_VERSION_MINOR, the Python that is followed
+   python_compiler.h   what is asked of a compiler; PY_VERSION_MINOR, the Python 3 that is followed (11 to 14)
+   python_failure.h    exceptions and their texts
    python_float.h      py_float_...: operators and built-in functions of float
    python_integer.h    py_int_...: those of int within 64 bits; places in lists and tuples
    python_math.h       py_math_...: module math
@@ -16,6 +17,7 @@
 #define PYTHON_ARITHMETIC_H
 
 #include "python_cmath.h"
+#include "python_compiler.h"
 #include "python_complex.h"
 #include "python_failure.h"
 #include "python_float.h"

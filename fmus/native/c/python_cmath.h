@@ -31,7 +31,7 @@ static inline bool py_cmath_isinf(py_complex a)
 }
 
 /* The logarithm from which on exp() would overflow too soon: Modules/cmathmodule.c, CM_LOG_LARGE_DOUBLE */
-#define PY_LOG_LARGE log(DBL_MAX / 4.0)
+#define PY_LOG_LARGE 708.3964185322641 /* log(DBL_MAX / 4) */
 
 /* The rule of cmath's functions that can overflow. */
 static inline bool py_cmath_finite(py_complex value, py_complex *result, py_failure *failure)
@@ -72,6 +72,7 @@ static inline bool py_cmath_exp(py_complex z, py_complex *result, py_failure *fa
     double size;
     if (!py_cmath_isfinite(z))
         return py_cmath_exp_special(z, result, failure);
+    z = py_complex_opaque(z);
     if (z.re > PY_LOG_LARGE) {
         size = exp(z.re - 1.0);
         value = py_complex_of(size * cos(z.im) * PY_E, size * sin(z.im) * PY_E);
@@ -105,6 +106,7 @@ static inline bool py_cmath_cosh(py_complex z, py_complex *result, py_failure *f
     py_complex value;
     if (!py_cmath_isfinite(z))
         return py_cmath_cosh_special(z, result, failure);
+    z = py_complex_opaque(z);
     if (fabs(z.re) > PY_LOG_LARGE) {
         const double nearer = z.re - copysign(1.0, z.re);
         value = py_complex_of(cos(z.im) * cosh(nearer) * PY_E, sin(z.im) * sinh(nearer) * PY_E);
@@ -136,6 +138,7 @@ static inline bool py_cmath_sinh(py_complex z, py_complex *result, py_failure *f
     py_complex value;
     if (!py_cmath_isfinite(z))
         return py_cmath_sinh_special(z, result, failure);
+    z = py_complex_opaque(z);
     if (fabs(z.re) > PY_LOG_LARGE) {
         const double nearer = z.re - copysign(1.0, z.re);
         value = py_complex_of(cos(z.im) * sinh(nearer) * PY_E, sin(z.im) * cosh(nearer) * PY_E);
@@ -169,6 +172,7 @@ static inline bool py_cmath_tanh(py_complex z, py_complex *result, py_failure *f
 {
     if (!py_cmath_isfinite(z))
         return py_cmath_tanh_special(z, result, failure);
+    z = py_complex_opaque(z);
     if (fabs(z.re) > PY_LOG_LARGE) {
         const double small = 4.0 * sin(z.im) * cos(z.im) * exp(-2.0 * fabs(z.re));
         *result = py_complex_of(copysign(1.0, z.re), small);
@@ -221,12 +225,14 @@ static inline py_complex py_cmath_sqrt_special(py_complex z)
 /* cmath.sqrt(z): Modules/cmathmodule.c, cmath_sqrt_impl */
 static inline py_complex py_cmath_sqrt(py_complex z)
 {
-    double re = fabs(z.re), root, half;
-    const double im = fabs(z.im);
+    double re, im, root, half;
     if (!py_cmath_isfinite(z))
         return py_cmath_sqrt_special(z);
     if (z.re == 0.0 && z.im == 0.0)
         return py_complex_of(0.0, z.im);
+    z = py_complex_opaque(z);
+    re = fabs(z.re);
+    im = fabs(z.im);
     if (re < DBL_MIN && im < DBL_MIN) { /* their size may be subnormal, and lack digits */
         re = ldexp(re, 53);
         root = ldexp(sqrt(re + hypot(re, ldexp(im, 53))), -27);
@@ -243,8 +249,10 @@ static inline py_complex py_cmath_sqrt(py_complex z)
 /* cmath.log(z): Modules/cmathmodule.c, c_log */
 static inline bool py_cmath_log(py_complex z, py_complex *result, py_failure *failure)
 {
-    const double re = fabs(z.re), im = fabs(z.im);
-    double size;
+    double re, im, size;
+    z = py_complex_opaque(z);
+    re = fabs(z.re);
+    im = fabs(z.im);
     if (!py_cmath_isfinite(z)) {
         *result = py_complex_of(py_cmath_isinf(z) ? PY_INFINITY : PY_NAN, py_math_atan2(z.im, z.re));
         return true;
@@ -282,10 +290,10 @@ static inline bool py_cmath_log10(py_complex z, py_complex *result, py_failure *
 /* cmath.phase(z): Modules/cmathmodule.c, cmath_phase_impl */
 static inline bool py_cmath_phase(py_complex z, double *result, py_failure *failure)
 {
-    const double angle = atan2(z.im, z.re);
+    const double angle = atan2(py_opaque(z.im), py_opaque(z.re));
     if (angle == 0.0 && z.im != 0.0) { /* where alone the library may say that it is too small */
         errno = 0;
-        (void)atan2(z.im, z.re);
+        (void)atan2(py_opaque(z.im), py_opaque(z.re));
         if (errno == ERANGE)
             return py_math_range(failure);
     }
@@ -296,11 +304,11 @@ static inline bool py_cmath_phase(py_complex z, double *result, py_failure *fail
 /* cmath.polar(z): Modules/cmathmodule.c, cmath_polar_impl */
 static inline bool py_cmath_polar(py_complex z, double *size, double *angle, py_failure *failure)
 {
-    const double value = hypot(z.re, z.im);
+    const double value = hypot(py_opaque(z.re), py_opaque(z.im));
     if (isinf(value) && py_cmath_isfinite(z))
         return py_math_range(failure);
     *size = value;
-    *angle = atan2(z.im, z.re);
+    *angle = atan2(py_opaque(z.im), py_opaque(z.re));
     return true;
 }
 
@@ -331,7 +339,7 @@ static inline bool py_cmath_rect(double size, double angle, py_complex *result, 
     if (angle == 0.0)
         *result = py_complex_of(size, size * angle);
     else
-        *result = py_complex_of(size * cos(angle), size * sin(angle));
+        *result = py_complex_of(size * cos(py_opaque(angle)), size * sin(py_opaque(angle)));
     return true;
 }
 

@@ -20,6 +20,12 @@ static inline py_complex py_complex_of(double re, double im)
     return z;
 }
 
+/* z as a value that the compiler does not know. */
+static inline py_complex py_complex_opaque(py_complex z)
+{
+    return py_complex_of(py_opaque(z.re), py_opaque(z.im));
+}
+
 /* a + b: Objects/complexobject.c, _Py_c_sum */
 static inline py_complex py_complex_add(py_complex a, py_complex b)
 {
@@ -153,7 +159,7 @@ static inline bool py_complex_div(py_complex a, py_complex b, py_complex *result
 /* abs(a): Objects/complexobject.c, _Py_c_abs and complex_abs */
 static inline bool py_complex_abs(py_complex a, double *result, py_failure *failure)
 {
-    const double size = hypot(a.re, a.im);
+    const double size = hypot(py_opaque(a.re), py_opaque(a.im));
     if (isinf(size) && isfinite(a.re) && isfinite(a.im))
         return py_failed(failure, PY_OVERFLOW, "absolute value too large");
     *result = size;
@@ -204,7 +210,7 @@ static inline bool py_complex_pow(py_complex a, py_complex power, py_complex *re
         else
             value = py_complex_quotient(one, below);
     } else if (!zero) {
-        value = py_complex_pow_polar(a, power);
+        value = py_complex_pow_polar(py_complex_opaque(a), py_complex_opaque(power));
     } else if (power.im != 0.0 || power.re < 0.0) {
         errno = EDOM;
     }

@@ -7,33 +7,11 @@
 #ifndef PYTHON_FAILURE_H
 #define PYTHON_FAILURE_H
 
-#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "Python's arithmetic is that of IEEE 754: compile without -ffast-math, -Ofast and -ffinite-math-only"
-#endif
-#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ == 2
-#error "Python's arithmetic is that of doubles: compile without 80-bit registers (-mfpmath=sse)"
-#endif
-#if defined(__clang__)
-#pragma STDC FP_CONTRACT OFF /* GCC has the option -ffp-contract=off, and none of them by pragma */
-#endif
-
-#ifndef PY_VERSION_MINOR
-#define PY_VERSION_MINOR 11
-#endif
-
-#if defined(__GNUC__) /* what fails is no part of the straight way through a function */
-#define PY_COLD static __attribute__((cold, noinline, unused))
-#else
-#define PY_COLD static inline
-#endif
-
-#define PY_INFINITY ((double)INFINITY)
-#define PY_NAN ((double)NAN)
+#include "python_compiler.h"
 
 typedef enum {
     PY_ZERO_DIVISION = 1, /* ZeroDivisionError */

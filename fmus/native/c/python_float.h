@@ -126,6 +126,8 @@ static inline bool py_float_pow(double a, double b, double *result, py_failure *
         *result = negative ? -1.0 : 1.0;
         return true;
     }
+    a = py_opaque(a);
+    b = py_opaque(b);
     power = pow(a, b);
     if (!isnormal(power)) { /* here alone can the library have said that it is out of range */
         errno = 0;

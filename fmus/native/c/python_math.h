@@ -84,19 +84,19 @@ static inline bool py_math_finite(double x, double value, double *result, py_fai
 /* math.exp(x): Modules/mathmodule.c, math_1 */
 static inline bool py_math_exp(double x, double *result, py_failure *failure)
 {
-    return py_math_finite(x, exp(x), result, failure);
+    return py_math_finite(x, exp(py_opaque(x)), result, failure);
 }
 
 /* math.exp2(x): Modules/mathmodule.c, math_1 */
 static inline bool py_math_exp2(double x, double *result, py_failure *failure)
 {
-    return py_math_finite(x, exp2(x), result, failure);
+    return py_math_finite(x, exp2(py_opaque(x)), result, failure);
 }
 
 /* math.expm1(x): Modules/mathmodule.c, math_1 */
 static inline bool py_math_expm1(double x, double *result, py_failure *failure)
 {
-    return py_math_finite(x, expm1(x), result, failure);
+    return py_math_finite(x, expm1(py_opaque(x)), result, failure);
 }
 
 /* math.log(x) of a float: Modules/mathmodule.c, m_log */
@@ -104,7 +104,7 @@ static inline bool py_math_log(double x, double *result, py_failure *failure)
 {
     if (x <= 0.0)
         return py_math_domain("expected a positive input", x, failure);
-    *result = log(x);
+    *result = log(py_opaque(x));
     return true;
 }
 
@@ -121,7 +121,7 @@ static inline bool py_math_log2(double x, double *result, py_failure *failure)
 {
     if (x <= 0.0)
         return py_math_domain("expected a positive input", x, failure);
-    *result = log2(x);
+    *result = log2(py_opaque(x));
     return true;
 }
 
@@ -130,7 +130,7 @@ static inline bool py_math_log10(double x, double *result, py_failure *failure)
 {
     if (x <= 0.0)
         return py_math_domain("expected a positive input", x, failure);
-    *result = log10(x);
+    *result = log10(py_opaque(x));
     return true;
 }
 
@@ -139,7 +139,7 @@ static inline bool py_math_log1p(double x, double *result, py_failure *failure)
 {
     if (x <= -1.0)
         return py_math_domain("expected argument value > -1", x, failure);
-    *result = x == 0.0 ? x : log1p(x);
+    *result = x == 0.0 ? x : log1p(py_opaque(x));
     return true;
 }
 
@@ -148,7 +148,7 @@ static inline bool py_math_sin(double x, double *result, py_failure *failure)
 {
     if (isinf(x))
         return py_math_domain("expected a finite input", x, failure);
-    *result = sin(x);
+    *result = sin(py_opaque(x));
     return true;
 }
 
@@ -157,7 +157,7 @@ static inline bool py_math_cos(double x, double *result, py_failure *failure)
 {
     if (isinf(x))
         return py_math_domain("expected a finite input", x, failure);
-    *result = cos(x);
+    *result = cos(py_opaque(x));
     return true;
 }
 
@@ -166,7 +166,7 @@ static inline bool py_math_tan(double x, double *result, py_failure *failure)
 {
     if (isinf(x))
         return py_math_domain("expected a finite input", x, failure);
-    *result = tan(x);
+    *result = tan(py_opaque(x));
     return true;
 }
 
@@ -175,7 +175,7 @@ static inline bool py_math_asin(double x, double *result, py_failure *failure)
 {
     if (x < -1.0 || x > 1.0)
         return py_math_domain("expected a number in range from -1 up to 1", x, failure);
-    *result = asin(x);
+    *result = asin(py_opaque(x));
     return true;
 }
 
@@ -184,14 +184,14 @@ static inline bool py_math_acos(double x, double *result, py_failure *failure)
 {
     if (x < -1.0 || x > 1.0)
         return py_math_domain("expected a number in range from -1 up to 1", x, failure);
-    *result = acos(x);
+    *result = acos(py_opaque(x));
     return true;
 }
 
 /* math.atan(x): Modules/mathmodule.c, math_1 */
 static inline double py_math_atan(double x)
 {
-    return atan(x);
+    return atan(py_opaque(x));
 }
 
 /* math.atan2(y, x): Modules/mathmodule.c, m_atan2, which asks the library for finite y != 0 and x alone */
@@ -207,31 +207,31 @@ static inline double py_math_atan2(double y, double x)
     }
     if (isinf(x) || y == 0.0)
         return copysign(right ? 0.0 : PY_PI, y);
-    return atan2(y, x);
+    return atan2(py_opaque(y), py_opaque(x));
 }
 
 /* math.sinh(x): Modules/mathmodule.c, math_1 */
 static inline bool py_math_sinh(double x, double *result, py_failure *failure)
 {
-    return py_math_finite(x, sinh(x), result, failure);
+    return py_math_finite(x, sinh(py_opaque(x)), result, failure);
 }
 
 /* math.cosh(x): Modules/mathmodule.c, math_1 */
 static inline bool py_math_cosh(double x, double *result, py_failure *failure)
 {
-    return py_math_finite(x, cosh(x), result, failure);
+    return py_math_finite(x, cosh(py_opaque(x)), result, failure);
 }
 
 /* math.tanh(x): Modules/mathmodule.c, math_1 */
 static inline double py_math_tanh(double x)
 {
-    return tanh(x);
+    return tanh(py_opaque(x));
 }
 
 /* math.asinh(x): Modules/mathmodule.c, math_1 */
 static inline double py_math_asinh(double x)
 {
-    return asinh(x);
+    return asinh(py_opaque(x));
 }
 
 /* math.acosh(x): Modules/mathmodule.c, math_1 */
@@ -239,7 +239,7 @@ static inline bool py_math_acosh(double x, double *result, py_failure *failure)
 {
     if (x < 1.0)
         return py_math_domain("expected argument value not less than 1", x, failure);
-    *result = acosh(x);
+    *result = acosh(py_opaque(x));
     return true;
 }
 
@@ -248,26 +248,26 @@ static inline bool py_math_atanh(double x, double *result, py_failure *failure)
 {
     if (x <= -1.0 || x >= 1.0)
         return py_math_domain("expected a number between -1 and 1", x, failure);
-    *result = atanh(x);
+    *result = atanh(py_opaque(x));
     return true;
 }
 
 /* math.cbrt(x): Modules/mathmodule.c, math_1 */
 static inline double py_math_cbrt(double x)
 {
-    return cbrt(x);
+    return cbrt(py_opaque(x));
 }
 
 /* math.erf(x): Modules/mathmodule.c, math_1a */
 static inline double py_math_erf(double x)
 {
-    return erf(x);
+    return erf(py_opaque(x));
 }
 
 /* math.erfc(x): Modules/mathmodule.c, math_1a */
 static inline double py_math_erfc(double x)
 {
-    return erfc(x);
+    return erfc(py_opaque(x));
 }
 
 /* math.pow(x, y), always of floats: Modules/mathmodule.c, math_pow_impl */
@@ -278,7 +278,7 @@ static inline bool py_math_pow(double x, double y, double *result, py_failure *f
         *result = y == 0.0 ? 1.0 : py_float_pow_special(x, y);
         return true;
     }
-    power = pow(x, y);
+    power = pow(py_opaque(x), py_opaque(y));
     if (isnan(power) || (isinf(power) && x == 0.0))
         return py_math_invalid(failure);
     if (isinf(power))

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import cmath
+import ctypes
 import functools
 import itertools
 import math
 import operator
+import platform
 import random
 import re
 import shutil
 import struct
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -214,7 +217,14 @@ EXPECTED: dict[str, Callable[..., Any]] = {
     "py_format_float": format,
 }
 INSIDE = {
-    *("py_float_quotient", "py_float_is_odd", "py_float_pow_special", "py_float_no_int", "py_int_beyond"),
+    *(
+        "py_complex_opaque",
+        "py_float_quotient",
+        "py_float_is_odd",
+        "py_float_pow_special",
+        "py_float_no_int",
+        "py_int_beyond",
+    ),
     *("py_int_size", "py_int_quotient", "py_int_ratio", "py_place", "py_math_domain", "py_math_invalid"),
     *("py_math_range", "py_math_finite", "py_squares_add", "py_squares_add_square", "py_squares_total"),
     *("py_vector_norm", "py_complex_direction", "py_complex_no_nan", "py_complex_mul_infinite"),
@@ -281,12 +291,12 @@ def check(name: str, *values: Any) -> None:
 
 
 def combined(name: str) -> Iterator[tuple[Any, ...]]:
-    """Yield all combinations of the special values, or 5,000 of them, always the same."""
+    """Yield all combinations of the special values, or 3,000 of them, always the same."""
     pools = [VALUES[kind][0] for kind in kinds(name)]
-    if math.prod(map(len, pools)) <= 5000:
+    if math.prod(map(len, pools)) <= 3000:
         return itertools.product(*pools)
     rng = random.Random(name)
-    return (tuple(rng.choice(pool) for pool in pools) for _ in range(5000))
+    return (tuple(rng.choice(pool) for pool in pools) for _ in range(3000))
 
 
 def test_no_function_is_left_out():
@@ -307,7 +317,7 @@ def test_special_values(name):
 
 @pytest.mark.parametrize("name", EXPECTED)
 def test_any_values(name):
-    @settings(deadline=None, max_examples=150)
+    @settings(deadline=None, max_examples=60)
     @given(st.tuples(*(VALUES[kind][1] for kind in kinds(name))))
     def equal(values):
         check(name, *values)
@@ -423,10 +433,66 @@ def test_the_product_with_an_infinity_is_that_of_the_version():
     assert of_version(14)("py_complex_mul", complex(math.inf, 0.0), complex(0.0, math.inf)).imag == math.inf
 
 
+def loaded(source: str, folder: Path, flags: tuple[str, ...] = ("-O2",)) -> ctypes.CDLL:
+    """Return a library of one C source that includes the headers."""
+    need_c_compiler()
+    compile_source(
+        f'#include "python_arithmetic.h"\n{source}', folder / "unit.so", (*flags, "-fPIC", "-shared")
+    )
+    return ctypes.CDLL(str(folder / "unit.so"))
+
+
+def test_functions_of_constants_are_the_library_s_and_not_the_compiler_s(tmp_path):
+    rng = random.Random(17)
+    one = "exp exp2 expm1 log log2 log10 log1p sin cos tan asin acos atan sinh cosh tanh asinh atanh cbrt erf"
+    calls = [(name, (rng.uniform(0.01, 0.99),)) for name in one.split() for _ in range(40)]
+    calls += [("pow", (rng.uniform(0.1, 9), n)) for n in (2.0, 3.0, 0.5, -2.0, 1.5) for _ in range(20)]
+    calls += [
+        (name, (rng.choice([2.0, 10.0]), rng.uniform(-9, 9))) for name in ("pow", "atan2") for _ in range(20)
+    ]
+    source = ["void all(double *to) {", "py_failure f;"]
+    for i, (name, values) in enumerate(calls):
+        given = ", ".join(map(float.hex, values))
+        can_fail = "py_failure" in str(declared()[f"py_math_{name}"])
+        call = f"py_math_{name}({given}, to + {i}, &f)" if can_fail else f"to[{i}] = py_math_{name}({given})"
+        source.append(f"(void)({call});")
+    found = (ctypes.c_double * len(calls))()
+    loaded("\n".join([*source, "}"]), tmp_path).all(found)
+    for (name, values), value in zip(calls, found, strict=True):
+        assert bits(value) == bits(getattr(math, name)(*values)), (name, values)
+
+
+def test_sine_and_cosine_are_the_same_where_a_compiler_asks_for_both_at_once(tmp_path):
+    library = loaded("void both(double x, double *to) { to[0] = sin(x); to[1] = cos(x); }", tmp_path)
+    library.both.argtypes = [ctypes.c_double, ctypes.POINTER(ctypes.c_double)]
+    rng, to = random.Random(19), (ctypes.c_double * 2)()
+    for x in (*(rng.uniform(-10, 10) for _ in range(10000)), *filter(math.isfinite, FLOATS)):
+        library.both(x, to)
+        assert bits(tuple(to)) == bits((math.sin(x), math.cos(x)))
+
+
+def test_no_operations_are_fused_where_the_processor_can(tmp_path):
+    """Who compiles the sources may ask for it; GCC 12 does it for complex products even unasked."""
+    cpu = Path("/proc/cpuinfo")
+    if platform.machine() != "x86_64" or not cpu.exists() or " fma " not in cpu.read_text():
+        pytest.skip("this machine is no x86-64 with fused operations")
+    product = "void product(const py_complex *a, py_complex *to) { *to = py_complex_mul(a[0], a[1]); }"
+    scaled = "void scaled(const double *a, double *to) { *to = a[0] * a[1] + a[2]; }"
+    flags = ("-O3", "-mfma", "-std=gnu99", "-ffp-contract=fast")
+    library, rng = loaded(product + scaled, tmp_path, flags), random.Random(23)
+    for _ in range(2000):
+        a = [rng.uniform(-9, 9) for _ in range(4)]
+        given, to = (ctypes.c_double * 4)(*a), (ctypes.c_double * 2)()
+        library.product(given, to)
+        assert bits(complex(*to)) == bits(complex(*a[:2]) * complex(*a[2:]))
+        library.scaled(given, to)
+        assert bits(to[0]) == bits(a[0] * a[1] + a[2])
+
+
 STRICT = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror", "-c")
 
 
-@pytest.mark.parametrize("compiler", ["cc", "gcc", "clang"])
+@pytest.mark.parametrize("compiler", ["cc", "clang"])
 @pytest.mark.parametrize("optimization", ["-O0", "-O2"])
 @pytest.mark.parametrize("minor", [11, 14])
 def test_compilers_have_nothing_to_say(compiler, optimization, minor, tmp_path):
