@@ -33,7 +33,7 @@ class CanLogEntry(FiniteModel):
     """Time of the log in s, as the file counts it, at which the run's clock shows 0 s; without it that of the
     first frame."""
 
-    channel: int | str | None = None
+    channel: Annotated[int, Field(ge=0, le=0xFFFF)] | str | None = None
     """The interface whose frames are replayed, as the file names or numbers it; without it the only one, or
     that of the bus' name."""
 

@@ -18,17 +18,16 @@ from evcosim.cosim.swap.swap_file import SwapFile
 from evcosim.cosim.system.scenario import ScenarioFile, load_scenario
 from evcosim.cosim.system.system import SystemFile, load_system
 from evcosim.master.simulation import Simulation
-from support.every_key import SCENARIO, SWAP, SYSTEM
+from support.every_key import DATABASE, LOG, ON_FRAMES, SWAP, SYSTEM
 from support.forked import forked
 from support.numeric_keys import Place, numeric_places, with_value
 from support.said import said_of
-from support.small_bench import DATABASE
 
 HOSTILE = [1e308, -1e308, 5e-324, math.inf, math.nan, 0, -1, 1e-10, 2**63, -(2**63) - 1, 10**400, 10**5000]
 WRONG = [True, "0.5", [1]]
 KINDS: dict[str, tuple[type[BaseModel], str]] = {
     "system": (SystemFile, SYSTEM),
-    "scenario": (ScenarioFile, SCENARIO),
+    "scenario": (ScenarioFile, ON_FRAMES),
     "swap": (SwapFile, SWAP),
 }
 UNWRITTEN = re.compile(r"[^\w .,:;/%*+()\[\]-]", re.ASCII)
@@ -81,6 +80,7 @@ def good(kind: str) -> str:
 def written(folder: Path, kind: str, document: Any) -> dict[str, Path]:
     """Write the three files, one of them with this document, and return their paths."""
     (folder / "bench.dbc").write_text(DATABASE)
+    (folder / "bench.log").write_text(LOG)
     paths = {}
     for name in KINDS:
         paths[name] = folder / f"{name}.toml"
@@ -121,6 +121,8 @@ def test_the_keys_that_everybody_writes_are_found():
         ("system", "connect", 0, "initial"),
         ("scenario", "stimulus", 0, "table", 0, 1),
         ("scenario", "event", 0, "value"),
+        ("scenario", "fault", 0, "period"),
+        ("scenario", "stimulus", 0, "time_offset"),
         ("scenario", "parameters", "*", "*"),
         ("swap", "memory_limit"),
     } <= found

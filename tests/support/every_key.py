@@ -1,10 +1,19 @@
 """Files with a table for every numeric key: a system, a scenario of it, and a swap file for its vehicle.
 
-A key that is not in them can be added to its table. The scenario runs in the built-in scooter too.
+A key that is not in them can be added to its table. The scenario runs in the built-in scooter too; what needs
+frames that take time, and a log, it has in addition in `ON_FRAMES`.
 """
 
 from __future__ import annotations
 
+from . import small_bench
+
+DATABASE = small_bench.DATABASE.replace(
+    "BA_DEF_ BO_", 'BO_ 512 GRIP_Brake: 1 GRIP\n SG_ Force : 0|8@1+ (1,0) [0|250] "N" EMD\nBA_DEF_ BO_', 1
+).replace("BU_: VCU EMD", "BU_: VCU EMD GRIP")
+"""Of `SYSTEM`: that of the small bench, and a message that no unit sends."""
+LOG = "".join(f"(0.{i}00000) can0 200#{i:02X}\n" for i in range(1, 4))
+"""The log `bench.log`."""
 _SHOWN = """[[figure.panels]]
 signals = [{ name = "vehicle.speed", weight = 1.0 }]
 unit = "km/h"
@@ -89,7 +98,6 @@ metric = "above"
 limit = 1.0
 """
 )
-"""Its database is `small_bench.DATABASE`."""
 
 SCENARIO = (
     """
@@ -123,6 +131,17 @@ probability = 0.5
 seed = 1
 byte = 0
 mask = 1
+[[fault]]
+action = "delay"
+time = 0.02
+duration = 0.01
+message = "can0.EMD_Status"
+by = 0.01
+[[fault]]
+action = "bus_off"
+time = 0.01
+duration = 0.01
+node = "can0.EMD"
 [[event]]
 action = "override"
 time = 0.01
@@ -140,6 +159,25 @@ sweep = [0.1, 0.6]
 duration = 100.0
 repeats = 1
 band = [0.1, 0.5]
+"""
+)
+ON_FRAMES = (
+    SCENARIO
+    + """
+[[stimulus]]
+can_log = "bench.log"
+bus = "can0"
+time_offset = 0.1
+channel = "can0"
+to = { "vehicle.brake_force" = "GRIP_Brake.Force" }
+[[fault]]
+action = "babble"
+time = 0.01
+duration = 0.01
+bus = "can0"
+id = 1
+length = 8
+period = 0.001
 """
 )
 SWAP = """
