@@ -97,7 +97,7 @@ static inline double py_float_pow_special(double a, double b)
     return py_float_is_odd(b) ? copysign(0.0, a) : 0.0;
 }
 
-/* a ** b: Objects/floatobject.c, float_pow */
+/* a ** b: Objects/floatobject.c, float_pow; the words for a result that is too large are those on Linux */
 static inline bool py_float_pow(double a, double b, double *result, py_failure *failure)
 {
     bool negative = false;

@@ -39,9 +39,11 @@ static inline uint64_t py_int_size(int64_t a)
 /* a * b: Objects/longobject.c, long_mul */
 static inline bool py_int_mul(int64_t a, int64_t b, int64_t *result, py_failure *failure)
 {
-    const uint64_t limit = (uint64_t)INT64_MAX + ((a < 0) != (b < 0));
-    if (a != 0 && py_int_size(b) > limit / py_int_size(a))
-        return py_int_beyond(failure);
+    if (a != (int32_t)a || b != (int32_t)b) { /* the product of halves always fits, without a division */
+        const uint64_t limit = (uint64_t)INT64_MAX + ((a < 0) != (b < 0));
+        if (a != 0 && py_int_size(b) > limit / py_int_size(a))
+            return py_int_beyond(failure);
+    }
     *result = (int64_t)((uint64_t)a * (uint64_t)b);
     return true;
 }
