@@ -37,7 +37,8 @@ def c_source(model: type[Model], program: ir.Program, identity: str, token: str)
         *functions.texts(),
         *description(model, program, identity, token, functions.failing, functions.with_memory),
     ]
-    return "\n".join(piece for piece in pieces if piece)
+    text = "\n".join(piece for piece in pieces if piece)
+    return "".join(f"{line}\n" for long in text.splitlines() for line in wrapped(long))
 
 
 def _types(model: type[Model], program: ir.Program) -> Iterator[str]:
@@ -71,3 +72,35 @@ def _meanings(record: type) -> dict[str, str]:
     """Return description and unit of each variable of a record, as a comment."""
     texts = {v.name: f"{v.description} [{v.unit}]" if v.unit else v.description for v in variables(record)}
     return {name: comment(text) for name, text in texts.items()}
+
+
+def wrapped(line: str) -> list[str]:
+    """Return a line of C as lines of at most 110 characters, where it can be broken at a blank.
+
+    It is broken after a comma or before an operator if it has one, and never within a text.
+    """
+    lines, indent = [], " " * (len(line) - len(line.lstrip()) + 8)
+    while len(line) > _WIDTH:
+        places = [k for k in _blanks(line) if len(indent) < k <= _WIDTH]
+        good = [k for k in places if line[k - 1] == "," or line[k + 1] in "+-*/&|?:"] or places
+        if not good:
+            break
+        lines.append(line[: good[-1]])
+        line = indent + line[good[-1] + 1 :]
+    return [*lines, line]
+
+
+_WIDTH = 110
+
+
+def _blanks(line: str) -> list[int]:
+    """Return the places of the blanks of a line that are in no text."""
+    if line.lstrip().startswith("/*"):
+        return [k for k, c in enumerate(line) if c == " "]
+    found, within = [], False
+    for k, c in enumerate(line):
+        if c == '"' and line[k - 1] != "\\":
+            within = not within
+        elif c == " " and not within:
+            found.append(k)
+    return found

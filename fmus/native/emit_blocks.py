@@ -190,7 +190,7 @@ def _statement(s: ir.Statement, declared: str, inner: dict[str, Type], frame: Fr
                 [*(expression(a, scope) for a in s.arguments), f"&{c_name(s.target.name)}", _FAILURE]
             )
             failed = f'model_raised(failure, "{s.place.file}", {s.place.line})'
-            return [f"if (!{s.function}({given})) return {failed};{_note(s.note)}"]
+            return [f"if (!{s.function}({given})){_note(s.note)}", f"    return {failed};"]
         case ir.Call():
             return _call(s, declared, frame)
         case ir.Derive():
@@ -210,7 +210,7 @@ def _statement(s: ir.Statement, declared: str, inner: dict[str, Type], frame: Fr
         case ir.Raise():
             failed = f'model_raise(failure, "{s.exception}", "{s.place.file}", {s.place.line})'
             begin = "model_text text = model_begin(failure->text, MODEL_TEXT);"
-            return ["{", *_indented([begin, *_texts(s.text, "&text", scope), f"return {failed};"]), "}"]
+            return [begin, *_texts(s.text, "&text", scope), f"return {failed};"]
         case ir.Say():
             return [*_texts(s.text, "said", scope), "return true;"]
 
@@ -221,7 +221,7 @@ def _call(s: ir.Call, declared: str, frame: Frame) -> list[str]:
         result = [] if s.target is None else [f"&{c_name(s.target.name)}"]
         given = argument_list(s.function, s.arguments, scope, *result, "failure")
         before = [f"{declared}{c_name(s.target.name)};"] if declared and s.target else []
-        return [*before, f"if (!{name}({given})) return false;{_note(s.note)}"]
+        return [*before, f"if (!{name}({given})){_note(s.note)}", "    return false;"]
     called = f"{name}({argument_list(s.function, s.arguments, scope)});{_note(s.note)}"
     if s.target is None or s.target.name in frame.unread:
         return [called]
@@ -237,7 +237,8 @@ def _derive(s: ir.Derive, declared: str, frame: Frame) -> list[str]:
         before = [f"{declared}{target};"] if declared else []
         return [
             *before,
-            f"if (!{accessor}({given}, &{target}{memory}, failure)) return false;{_note(s.note)}",
+            f"if (!{accessor}({given}, &{target}{memory}, failure)){_note(s.note)}",
+            "    return false;",
         ]
     if s.target.name in frame.unread:
         return []

@@ -20,9 +20,21 @@ from .values import (
     Type,
 )
 
-_PARTS = {"real": "re", "imag": "im"}
 _C = {"and": "&&", "or": "||"}
-_LEVELS = {"or": 1, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4, ">": 4, ">=": 4, "+": 5, "-": 5, "*": 6}
+_LEVELS = {
+    "or": 1,
+    "and": 2,
+    "==": 3,
+    "!=": 3,
+    "<": 4,
+    "<=": 4,
+    ">": 4,
+    ">=": 4,
+    "+": 5,
+    "-": 5,
+    "*": 6,
+    "/": 6,
+}
 _SELECT, _UNARY, _ATOM = 0, 7, 8
 
 
@@ -102,8 +114,7 @@ def _written(e: ir.Expression, scope: Scope) -> tuple[str, int]:
             name = c_name(e.name)
             return (f"*{name}", _UNARY) if e.name in scope.addresses else (name, _ATOM)
         case ir.Field():
-            name = _PARTS[e.name] if e.of.type is COMPLEX else c_name(e.name)
-            return f"{_owner(e.of, scope)}{name}", _ATOM
+            return f"{_owner(e.of, scope)}{c_name(e.name)}", _ATOM
         case ir.Item():
             return f"{_owner(e.of, scope)}at[{expression(e.index, scope)}]", _ATOM
         case ir.Length():
@@ -154,7 +165,7 @@ def _least(operand: ir.Expression, operator: str, level: int, place: int) -> int
     """
     if operator in ("and", "or"):
         return level if _same_operator(operand, operator) else _LEVELS["=="]
-    if operator in ("+", "-", "*"):
+    if operator in ("+", "-", "*", "/"):
         return level + place
     return _LEVELS["+"]
 

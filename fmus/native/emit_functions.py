@@ -145,15 +145,12 @@ class Functions:
         computed, given = c_name(f"{f.name}_computed"), [c_name(a.name) for a in f.arguments]
         if f.can_fail:
             given += [f"&{kept}.result", "memory", "failure"]
-            compute, leave = (
-                f"if (!{computed}({', '.join(given)})) return false;",
-                [f"*result = {kept}.result;"],
-            )
-            leave.append("return true;")
+            compute = [f"if (!{computed}({', '.join(given)}))", "    return false;"]
+            leave = [f"*result = {kept}.result;", "return true;"]
         else:
-            compute = f"{kept}.result = {computed}({', '.join([*given, 'memory'])});"
+            compute = [f"{kept}.result = {computed}({', '.join([*given, 'memory'])});"]
             leave = [f"return {kept}.result;"]
-        keep = [compute, *(f"{kept}.{name} = {name};" for name in compared), f"{kept}.known = true;"]
+        keep = [*compute, *(f"{kept}.{name} = {name};" for name in compared), f"{kept}.known = true;"]
         lines = [f"if (!({' && '.join([f'{kept}.known', *tests])})) {{", f"    {kept}.known = false;"]
         lines += [*(f"    {line}" for line in keep), "}", *leave]
         return f"{self._head(f, f.name)}\n{{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
@@ -172,12 +169,13 @@ class Functions:
         memory = ["memory"] if by in self.with_memory else []
         if own in self.failing:
             given = ", ".join(["p", f"&{field}", *memory, "failure"])
-            compute = f"if (!{c_name(by)}({given})) return false;"
+            compute = [f"if (!{c_name(by)}({given}))", "    return false;"]
             leave = [f"*result = {field};", "return true;"]
         else:
-            compute = f"{field} = {c_name(by)}({', '.join(['p', *memory])});"
+            compute = [f"{field} = {c_name(by)}({', '.join(['p', *memory])});"]
             leave = [f"return {field};"]
-        lines = [f"if (!p->{name}_known) {{", f"    {compute}", f"    p->{name}_known = true;", "}", *leave]
+        known = [f"    {line}" for line in (*compute, f"p->{name}_known = true;")]
+        lines = [f"if (!p->{name}_known) {{", *known, "}", *leave]
         return f"{self._accessor_head(p, name, type_)}\n{{\n" + "".join(f"    {x}\n" for x in lines) + "}\n"
 
 

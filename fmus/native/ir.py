@@ -49,7 +49,7 @@ class TableItem:
 
 @dataclasses.dataclass(frozen=True)
 class Field:
-    """A field of a struct or of the parameters."""
+    """A field of a struct or of the parameters; `re` and `im` of a complex number."""
 
     type: Type
     of: Expression
@@ -75,10 +75,10 @@ class Length:
 
 @dataclasses.dataclass(frozen=True)
 class Operation:
-    """An operator between values of one type, by its name in Python: `+ - *` and comparisons of reals, ...
+    """Values of one type joined by an operator of Python that cannot fail here.
 
-    ... comparisons of integers, `and`, `or`, `not` of truth values, `-` with one operand. Integer arithmetic
-    is `Checked`, because it can leave the 64 bits, and that of complex numbers is `Apply` or `Checked`.
+    It is one of `+ - *` and comparisons of reals and of integers whose sum is known to be within 64 bits,
+    `/` by a real that is known not to be 0, `and`, `or` and `not` of truth values, and `-` with one operand.
     """
 
     type: Type

@@ -36,17 +36,16 @@ void model_put_boolean(model_text *text, bool value)
     model_put(text, py_repr_bool(buffer, sizeof buffer, value));
 }
 
-bool model_raised(model_failure *failure, const char *file, int line)
-{
-    model_text text = model_begin(failure->text, sizeof failure->text);
-    model_put(&text, failure->python.text);
-    return model_raise(failure, py_exception(failure->python.code), file, line);
-}
-
-bool model_raise(model_failure *failure, const char *exception, const char *file, int line)
+void model_keep(model_failure *failure, const char *exception, const char *file, int line)
 {
     failure->exception = exception;
     failure->file = file;
     failure->line = line;
-    return false;
+}
+
+void model_keep_python(model_failure *failure, const char *file, int line)
+{
+    model_text text = model_begin(failure->text, sizeof failure->text);
+    model_put(&text, failure->python.text);
+    model_keep(failure, py_exception(failure->python.code), file, line);
 }

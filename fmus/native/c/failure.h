@@ -34,10 +34,21 @@ void model_put_real(model_text *text, double value, const char *format);
 void model_put_integer(model_text *text, int64_t value);
 void model_put_boolean(model_text *text, bool value);
 
-/* Keep where a function of python_arithmetic.h failed. Return false, for the caller to return. */
-bool model_raised(model_failure *failure, const char *file, int line);
+/* Keep an exception whose text is in failure->text, and where it was raised; then one of python_arithmetic.h. */
+void model_keep(model_failure *failure, const char *exception, const char *file, int line);
+void model_keep_python(model_failure *failure, const char *file, int line);
 
-/* Keep an exception whose text is in failure->text, and where it was raised. Return false. */
-bool model_raise(model_failure *failure, const char *exception, const char *file, int line);
+/* The same, and false, for the caller to return: inline, so that compilers know the value. */
+static inline bool model_raise(model_failure *failure, const char *exception, const char *file, int line)
+{
+    model_keep(failure, exception, file, line);
+    return false;
+}
+
+static inline bool model_raised(model_failure *failure, const char *file, int line)
+{
+    model_keep_python(failure, file, line);
+    return false;
+}
 
 #endif
