@@ -39,14 +39,21 @@ static inline const char *py_exception(py_failure_code code)
     }
 }
 
-/* Fill `failure`; false, which the caller returns. A longer text would be cut. */
-PY_COLD bool py_failed(py_failure *failure, py_failure_code code, const char *text)
+/* Fill `failure`. A longer text would be cut. */
+PY_COLD void py_failure_fill(py_failure *failure, py_failure_code code, const char *text)
 {
     size_t n = 0;
     for (; text[n] != '\0' && n + 1 < sizeof failure->text; n++)
         failure->text[n] = text[n];
     failure->text[n] = '\0';
     failure->code = code;
+}
+
+/* The same; false, which the caller returns. What only fails is inline, so that compilers see that it is false,
+   and that no result is read which was not written. */
+static inline bool py_failed(py_failure *failure, py_failure_code code, const char *text)
+{
+    py_failure_fill(failure, code, text);
     return false;
 }
 

@@ -164,13 +164,11 @@ static inline bool py_float_bool(double x)
 }
 
 /* The reason why a float is no integer of 64 bits: Objects/longobject.c, PyLong_FromDouble */
-PY_COLD bool py_float_no_int(double x, py_failure *failure)
+static inline bool py_float_no_int(double x, py_failure *failure)
 {
-    if (isnan(x))
-        return py_failed(failure, PY_VALUE, "cannot convert float NaN to integer");
-    if (isinf(x))
-        return py_failed(failure, PY_OVERFLOW, "cannot convert float infinity to integer");
-    return py_failed(failure, PY_OVERFLOW, PY_BEYOND_64_BITS);
+    const char *const unbounded = isinf(x) ? "cannot convert float infinity to integer" : PY_BEYOND_64_BITS;
+    const char *const text = isnan(x) ? "cannot convert float NaN to integer" : unbounded;
+    return py_failed(failure, isnan(x) ? PY_VALUE : PY_OVERFLOW, text);
 }
 
 /* int(x), math.trunc(x): Objects/floatobject.c, float___trunc___impl */

@@ -7,7 +7,7 @@
 #include "python_failure.h"
 
 /* Fail for a result that Python has and 64 bits have not. */
-PY_COLD bool py_int_beyond(py_failure *failure)
+static inline bool py_int_beyond(py_failure *failure)
 {
     return py_failed(failure, PY_OVERFLOW, PY_BEYOND_64_BITS);
 }

@@ -34,8 +34,8 @@ static inline bool py_math_trunc(double x, int64_t *result, py_failure *failure)
     return py_float_int(x, result, failure);
 }
 
-/* Fail for an argument that has no result; `expected` is what Python says since 3.14, before the argument. */
-PY_COLD bool py_math_domain(const char *expected, double x, py_failure *failure)
+/* Fill the failure for an argument that has no result. */
+PY_COLD void py_math_domain_fill(const char *expected, double x, py_failure *failure)
 {
 #if PY_VERSION_MINOR >= 14
     char text[sizeof failure->text], number[PY_REPR_SIZE];
@@ -43,22 +43,29 @@ PY_COLD bool py_math_domain(const char *expected, double x, py_failure *failure)
     py_put_text(&to, expected);
     py_put_text(&to, ", got ");
     py_put_text(&to, py_repr_float(number, sizeof number, x));
-    return py_failed(failure, PY_DOMAIN, py_written(&to));
+    py_failure_fill(failure, PY_DOMAIN, py_written(&to));
 #else
     (void)expected;
     (void)x;
-    return py_failed(failure, PY_DOMAIN, "math domain error");
+    py_failure_fill(failure, PY_DOMAIN, "math domain error");
 #endif
 }
 
+/* Fail for an argument that has no result; `expected` is what Python says since 3.14, before the argument. */
+static inline bool py_math_domain(const char *expected, double x, py_failure *failure)
+{
+    py_math_domain_fill(expected, x, failure);
+    return false;
+}
+
 /* Fail without a word on the argument. */
-PY_COLD bool py_math_invalid(py_failure *failure)
+static inline bool py_math_invalid(py_failure *failure)
 {
     return py_failed(failure, PY_DOMAIN, "math domain error");
 }
 
 /* Fail for a result beyond the largest double. */
-PY_COLD bool py_math_range(py_failure *failure)
+static inline bool py_math_range(py_failure *failure)
 {
     return py_failed(failure, PY_RANGE, "math range error");
 }
