@@ -71,6 +71,8 @@ def send_times(
             )
         interval = min(interval, cycle)
     bounds = interval * settings.cycle if interval else settings.cycle * every if settings.cycle > 1 else 0
+    if kind == "on_write":  # of the writes within an interval the frame at its end has the last
+        every = max(every, bounds)
     return SendTimes(every, first, Sending(kind, cycle * settings.cycle, bounds))
 
 

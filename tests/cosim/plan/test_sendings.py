@@ -65,6 +65,23 @@ def test_the_steps_of_each_send_type(tmp_path, own, every, first, sending):
     assert times(made(tmp_path, units=units, **own)) == (every, first, sending)
 
 
+@pytest.mark.parametrize("period", [1, 2, 3, 10])
+@pytest.mark.parametrize("interval", [1, 2, 3, 4, 15, 20])
+def test_a_write_within_the_interval_is_sent_when_that_ends(tmp_path, period, interval):
+    """As AUTOSAR COM defers it with a minimum delay time: a write waits, and a later one joins it."""
+    own = {"send_type": "on_write", "min_interval": round(interval * 0.01, 2)}
+    every, first, sending = times(made(tmp_path, units={"a": {"period": round(period * 0.01, 2)}}, **own))
+    sent: list[int] = []
+    waits = False
+    for k in range(200):
+        waits |= k % period == 0
+        if waits and (not sent or k - sent[-1] >= interval):
+            sent.append(k)
+            waits = False
+    assert list(range(first, 200, every)) == sent
+    assert sending == Sending("on_write", 0, interval)
+
+
 def test_the_attributes_of_a_database(tmp_path):
     change = attribute("GenMsgSendType", 1) + attribute("GenMsgDelayTime", 25)
     assert times(made(tmp_path, change)) == (1, 0, Sending("on_change", 0, 3))  # 25 ms are three steps

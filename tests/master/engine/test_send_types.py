@@ -59,15 +59,31 @@ def test_a_minimum_interval_bounds_how_often():
     assert at_most[0] == ran(sent({"cycle_time": 0.1}))[0]
 
 
-def test_a_unit_with_a_period_and_an_offset_writes_at_its_turns():
-    system = sent({"send_type": "on_write"}, ("VCU_Request",))
-    ecu = system.file.units["ecu"].model_copy(update={"period": 0.05, "offset": 0.02})
+def written(engine: str, **own: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
+    """The steps at which VCU_Request is sent in 3 s, the throttle of the ecu, which writes it with its steps
+    (at 20, 120, 220 ms ...), and that of the vehicle."""
+    system = sent({"send_type": "on_write", **own}, ("VCU_Request",))
+    ecu = system.file.units["ecu"].model_copy(update={"period": 0.1, "offset": 0.02})
     units = system.file.units | {"ecu": ecu}
     system = dataclasses.replace(system, file=system.file.model_copy(update={"units": units}))
-    with Simulation(system, "fig8", log_frames=True) as simulation:
-        simulation.step(23)
-        frames = simulation.manifest()["frames"]["can0"]["messages"]["VCU_Request"]
-    assert frames["sent"] == 5  # at 20, 70, 120, 170 and 220 ms
+    with Simulation(system, "fig8", log_frames=True, engine=engine, isolation="none") as simulation:
+        simulation.step(300)
+        frames = [f for log in simulation._engine.frames.log_of("can0").frames for f in log.frames()]
+        steps = [end // 10**10 for _, end, message, _ in frames if message.name == "VCU_Request"]
+        return steps, simulation.results["ecu.throttle"], simulation.results["vehicle.throttle"]
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+@pytest.mark.parametrize(("interval", "apart"), [(None, 10), (0.03, 10), (0.1, 10), (0.15, 15), (0.27, 27)])
+def test_a_unit_writes_at_its_turns_and_what_comes_too_soon_waits_for_the_end_of_the_interval(
+    engine, interval, apart
+):
+    steps, wanted, seen = written(engine, **({} if interval is None else {"min_interval": interval}))
+    assert steps == list(range(2, 300, apart))
+    assert len(set(wanted[steps].tolist())) > 5
+    assert np.abs(seen - wanted)[steps].max() <= 0.2 + 1e-9  # half of the signal's resolution
+    changes = np.flatnonzero(np.diff(seen)) + 1
+    assert set(changes.tolist()) <= set(steps)
 
 
 @pytest.mark.parametrize("timing", ["instant", "frame"])
