@@ -33,7 +33,10 @@ def with_faults(plan: Plan, system: System, scenario: Scenario, varied: BusVaria
         return dataclasses.replace(plan, warnings=(*plan.warnings, *_without_bus(scenario)))
     losses = _losses(plan, varied) if varied is not None and varied.loss else []
     faults = planned(scenario.file.faults, plan.messages, plan.clock.start, str(scenario.path))
-    faults += planned(losses, plan.messages, plan.clock.start, "bus variation: loss")
+    faults += tuple(
+        dataclasses.replace(loss, varied=True)
+        for loss in planned(losses, plan.messages, plan.clock.start, "bus variation: loss")
+    )
     messages = framed(plan.messages, faults)
     struck = {fault.bus for fault in faults if isinstance(fault.fault, BusOff)}
     return dataclasses.replace(

@@ -12,7 +12,8 @@ from ..can.pages import pages
 from ..system.system import Algorithm
 from .network import Connecting
 from .plan import MessagePlan
-from .sendings import send_times, staged
+from .sendings import send_times
+from .slots import Slots
 from .steps import steps_in
 
 
@@ -57,7 +58,7 @@ def message_plans(
         arrivals: list[tuple[int, int]] = []
         of_page = [route for route in routes if route.signal.name in page.signals]
         if delay and framing is None:
-            of_page = [staged(work.slots, route, arrivals) for route in of_page]
+            of_page = [_delayed(work.slots, route, arrivals) for route in of_page]
         sent = page.of(message)
         yield MessagePlan(
             bus=bus,
@@ -76,3 +77,10 @@ def message_plans(
             page=page.selected,
             sending=times.sending,
         )
+
+
+def _delayed(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
+    """Return the route into slots of its own; add the pairs of these and the mailboxes to `arrivals`."""
+    sinks = [(slots.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
+    arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
+    return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))

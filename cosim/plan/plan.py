@@ -120,7 +120,10 @@ class MessagePlan:
 
 @dataclasses.dataclass(frozen=True)
 class FaultPlan:
-    """A fault from `since` to before `until` [ps after the start], on a message or a node of a bus."""
+    """A fault from `since` to before `until` [ps after the start], on a message or a node of a bus.
+
+    `varied`: it is a loss of a `BusVariation`, and not of the scenario.
+    """
 
     fault: Fault
     bus: str
@@ -128,6 +131,7 @@ class FaultPlan:
     node: str
     since: int
     until: int
+    varied: bool = False
 
 
 @dataclasses.dataclass(frozen=True)

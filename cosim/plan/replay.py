@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from ..can.channel import SignalRoute
-from ..can.database import Database, Message, Signal
+from ..can.database import Database, Message
 from ..can.framing import Framing, framing_of
 from ..can.logs.recording import Key, Recording, chosen_channel, key_of, recorded
 from ..can.logs.replay import Replayed
 from ..can.overlaps import conditions
 from ..can.send_steps import send_steps
 from ..can.send_types import Sending, check_send_type, send_type_of
+from ..can.wire.payload import raw_value
 from ..clock import Clock
 from ..errors import ConfigError
 from ..system.can_log_spec import CanLogEntry
@@ -136,17 +137,6 @@ def _is_held(message: Message, name: str, raws: Mapping[str, int]) -> bool:
         any(low <= raws[multiplexer] <= high for low, high in ranges)
         for multiplexer, ranges in conditions(message.signals, name)
     )
-
-
-def raw_value(signal: Signal, data: bytes) -> int:
-    """Return the raw value of an integer signal in a payload."""
-    if signal.little_endian:
-        raw = int.from_bytes(data, "little") >> signal.start
-    else:
-        begin = 8 * (signal.start // 8) + 7 - signal.start % 8
-        raw = int.from_bytes(data, "big") >> (8 * len(data) - begin - signal.length)
-    raw &= (1 << signal.length) - 1
-    return raw - (1 << signal.length) if signal.signed and raw >> (signal.length - 1) else raw
 
 
 def _timed(

@@ -6,13 +6,11 @@ import dataclasses
 from collections.abc import Iterable, Mapping
 
 from ..can.bus_settings import BusSettings
-from ..can.channel import SignalRoute
 from ..can.database import Message
 from ..can.send_steps import send_steps
 from ..can.send_types import Sending, check_send_type, send_type_of
 from ..clock import steps_to
 from ..errors import ConfigError
-from .slots import Slots
 from .steps import steps_in
 
 Turns = Mapping[str, tuple[int, int]]
@@ -109,10 +107,3 @@ def other_send_types(messages: Iterable[tuple[str, Message, BusSettings, bool]])
         if missing:
             said.append(f"{message.file}: {bus}.{message.name} {missing}")
     return list(dict.fromkeys(said))
-
-
-def staged(slots: Slots, route: SignalRoute, arrivals: list[tuple[int, int]]) -> SignalRoute:
-    """Return the route into slots of its own; add the pairs of these and the mailboxes to `arrivals`."""
-    sinks = [(slots.take(1), mailbox, map_) for mailbox, map_ in route.sinks]
-    arrivals += [(slot, mailbox) for slot, mailbox, _ in sinks]
-    return dataclasses.replace(route, sinks=tuple((slot, map_) for slot, _, map_ in sinks))

@@ -79,13 +79,19 @@ def numbers_of(faults: Sequence[FaultPlan]) -> list[int]:
     """Return the number by which each fault draws: no two of one action that can hit one message share it.
 
     They count those of one action on one message, or on one node, which is odd, in the order of the file: a
-    fault more changes no draw of those on others.
+    fault more changes no draw of those on others. The loss of a variation has the first number of its
+    message, in a scenario with such faults or without.
     """
-    targets = [(found.fault.action, found.bus, found.message, found.node) for found in faults]
+    targets = [(found.fault.action, found.bus, found.message, found.node, found.varied) for found in faults]
     return [
-        targets[:i].count(target) << 1 | bool(found.node)
+        targets[:i].count(target) + _varies(found) << 1 | bool(found.node)
         for i, (target, found) in enumerate(zip(targets, faults, strict=True))
     ]
+
+
+def _varies(found: FaultPlan) -> bool:
+    """Return True for a fault of the scenario of which a variation has one too, which draws first."""
+    return isinstance(found.fault, Lose) and bool(found.message) and not found.varied
 
 
 def hits_of(made: Arrays, faults: Sequence[FaultPlan]) -> dict[int, int]:

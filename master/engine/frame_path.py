@@ -16,7 +16,7 @@ from ...cosim.can.quantization import ChannelError, decode, quantize
 from ...cosim.can.transmissions import FrameLog, frame_store
 from ...cosim.can.wire import medium
 from ...cosim.can.wire import tables as T
-from ...cosim.can.wire.payload import low_bits, words
+from ...cosim.can.wire.payload import low_bits, whole, words
 from ...cosim.can.wire.values import set_raw
 from ...cosim.plan.plan import FaultPlan, Plan, ReplayPlan
 from ...cosim.plan.readers import Reader, readers
@@ -145,10 +145,7 @@ class FramePath:
         sender, i = self._signals[row]
         signal = sender.channel.operations[i].signal
         low, high = self.wire.signals[row, T.LOW], self.wire.signals[row, T.HIGH]
-        raw = low | high << 32
-        if signal.signed and raw >> (signal.length - 1):
-            raw -= 1 << signal.length
-        self.wire.double[0] = decode(signal, raw)
+        self.wire.double[0] = decode(signal, whole(low, high, signal.length, signal.signed))
 
     def _set_checksum(self, row: int) -> None:
         protection, found = self._protections[row], self.wire.messages

@@ -18,7 +18,7 @@ from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.lengths import bit_time
 from ...cosim.can.unfilled import raw_values
 from ...cosim.can.wire import tables as T
-from ...cosim.can.wire.payload import put, words
+from ...cosim.can.wire.payload import place_of, put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
 from ...cosim.plan.plan import FaultPlan, MessagePlan
@@ -345,9 +345,3 @@ def _table(rows: int, width: int, kind: Any = np.int64) -> NDArray[Any]:
 def _fill(table: NDArray[Any], i: int, row: dict[int, Any]) -> None:
     for column, value in row.items():
         table[i, column] = value
-
-
-def place_of(signal: Signal) -> tuple[int, int]:
-    """Return the place of a signal in the frame, as `wire.payload` counts it, and 1 where it is Intel's."""
-    start = signal.start if signal.little_endian else 8 * (signal.start // 8) + 7 - signal.start % 8
-    return start, int(signal.little_endian)

@@ -37,11 +37,6 @@ class Sent:
     jitter: int = 0
 
 
-def utilization(messages: Sequence[Sent]) -> float:
-    """Return the part of the time that the bus is busy with these messages; over 1: it cannot be."""
-    return sum(m.time / m.cycle for m in messages)
-
-
 def response_times(messages: Sequence[Sent], bit: int, interframe: int = 0) -> dict[str, int | None]:
     """Return the longest response time [ps] of each message by name; None: it has no bound.
 

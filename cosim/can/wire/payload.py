@@ -6,7 +6,10 @@ that are written must be 0 before.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
+
+from ..database import Signal
 
 _WORD = 32
 _MASK = 0xFFFFFFFF
@@ -87,7 +90,7 @@ def take_big(frame: Any, start: int, bits: int) -> int:
 
 
 def whole(low: int, high: int, bits: int, signed: int) -> int:
-    """Return the number that a raw value of 62 bits at most stands for."""
+    """Return the number that a raw value stands for: in machine code one of 62 bits at most."""
     value = low | high << _WORD
     if signed and value >> (bits - 1):
         value -= 1 << bits
@@ -97,3 +100,19 @@ def whole(low: int, high: int, bits: int, signed: int) -> int:
 def words(value: int) -> tuple[int, int]:
     """Return the two words of a whole number."""
     return value & _MASK, (value >> _WORD) & _MASK
+
+
+# ---- for Python alone
+
+
+def place_of(signal: Signal) -> tuple[int, int]:
+    """Return `start` of a signal, as `put` counts it, and 1 where it is `little`, else 0."""
+    start = signal.start if signal.little_endian else 8 * (signal.start // 8) + 7 - signal.start % 8
+    return start, int(signal.little_endian)
+
+
+def raw_value(signal: Signal, frame: Sequence[int]) -> int:
+    """Return the raw value of an integer signal in a payload."""
+    (start, little), bits = place_of(signal), signal.length
+    low, high = low_bits(frame, little, start, bits), high_bits(frame, little, start, bits)
+    return whole(low, high, bits, signal.signed)

@@ -78,9 +78,48 @@ def test_losses_of_a_variation_follow_the_seed_of_the_bus_and_its_own(tmp_path):
     assert np.array_equal(lost[1][SPEED], lost[2][SPEED])
 
 
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_the_loss_of_a_variation_and_that_of_the_scenario_draw_by_themselves(tmp_path, engine):
+    """As many are hit by the one with the other beside it as alone, and not the same ones."""
+    lose = 'action = "lose"\ntime = 0.0\nmessage = "can0.EMD_Status"\nprobability = 0.3'
+    loss = BusVariation(loss=0.3)
+    by_itself = hits(tmp_path, lose, engine)["can0.EMD_Status"]
+    varied = hits(tmp_path, "", engine, loss)
+    both = hits(tmp_path, lose, engine, loss)
+    of_both = both.pop("can0.EMD_Status")
+    assert of_both == by_itself + varied.pop("can0.EMD_Status")
+    assert both == varied
+    with Simulation("scooter", tmp_path / "faults.toml", engine=engine, isolation="none", bus=loss) as run:
+        run.step(300)
+        lost = run.manifest()["frames"]["can0"]["messages"]["EMD_Status"]["lost"]
+    assert max(of_both) < lost < sum(of_both)
+
+
+def hits(tmp_path, fault, engine, loss=None):
+    """The numbers of frames that the faults on each message hit, in the order of the faults."""
+    text = SCENARIO + fault if fault else SCENARIO.removesuffix("[[fault]]\n")
+    (tmp_path / "faults.toml").write_text(text)
+    found = {}
+    with Simulation("scooter", tmp_path / "faults.toml", engine=engine, isolation="none", bus=loss) as run:
+        run.step(300)
+        for each in run.manifest()["faults"]:
+            found.setdefault(each["on"], []).append(each["frames"])
+    return found
+
+
 def with_seed(name, seed):
     """A system with a seed of its buses."""
     return timed(name, timing="instant", seed=seed)
+
+
+@pytest.mark.parametrize("engine", ["python", "compiled"])
+def test_the_first_frame_has_no_payload_before_it_that_could_be_frozen(tmp_path, engine):
+    fault = 'action = "freeze"\ntime = 0.0\nmessage = "can0.EMD_Status"\n'
+    assert hits(tmp_path, fault, engine) == {"can0.EMD_Status": [299]}
+    found, _ = ran(tmp_path, fault + "count = 60", engine)
+    assert (found[SPEED][:61] == found[SPEED][0]).all()
+    assert found[SPEED][61] != found[SPEED][0]
+    assert hits(tmp_path, fault + "every = 2", engine) == {"can0.EMD_Status": [150]}  # the second, fourth ...
 
 
 @pytest.mark.parametrize("engine", ["python", "compiled"])

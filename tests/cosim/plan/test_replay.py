@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.can.logs.frames import encoder
-from evcosim.cosim.plan.replay import raw_value
+from evcosim.cosim.can.wire.payload import raw_value
 from support.framed import layouts
 
 

@@ -58,8 +58,8 @@ def test_a_fault_more_changes_no_draw_of_those_on_others():
         faults = ScenarioFile.model_validate({"fault": faults}).faults
         return numbers_of(planned(faults, plans, 0.0, "test.toml"))
 
-    assert numbers(given) == [0, 1, 0, 2, 0]
-    assert numbers([{**lose, "message": "can0.O"}, *given[:4]])[1:] == [0, 1, 0, 2]
+    assert numbers(given) == [2, 1, 0, 4, 2]
+    assert numbers([{**lose, "message": "can0.O"}, *given[:4]])[1:] == [2, 1, 0, 4]
 
 
 def test_the_node_behind_a_mailbox():

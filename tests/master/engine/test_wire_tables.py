@@ -17,7 +17,7 @@ from evcosim.cosim.can.wire.tables import Wire
 from evcosim.cosim.plan.plan import MessagePlan
 from evcosim.cosim.units.measure import Affine
 from evcosim.master.engine.sender import Sender
-from evcosim.master.engine.wire_tables import place_of, rounding_code, views, wire_arrays
+from evcosim.master.engine.wire_tables import rounding_code, views, wire_arrays
 from support.channels import FREE
 
 FED, LEFT = Signal("Fed", 7, 16, little_endian=False, start_raw=9), Signal("Left", 16, 8, start_raw=255)
@@ -78,12 +78,6 @@ def test_every_table_has_a_place_and_is_shared_with_its_view():
     assert made["double_bits"][0] == 0x3FF0000000000000
     made["messages"][0, T.SENT] = 7
     assert wire.messages[0, T.SENT] == 7
-
-
-def test_places_count_from_the_first_bit_that_is_sent():
-    assert place_of(LEFT) == (16, 1)
-    assert place_of(Signal("S", 0, 3, little_endian=False)) == (7, 0)
-    assert place_of(Signal("S", 15, 3, little_endian=False)) == (8, 0)
 
 
 def test_ways_of_rounding_and_floats_differ() -> None:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import random
 
-import pytest
-
-from evcosim.cosim.can.timing.response_times import Sent, response_times, utilization
+from evcosim.cosim.can.timing.response_times import Sent, response_times
 
 MS = 10**9  # ps
 
@@ -20,7 +18,6 @@ def test_the_example_of_davis_2007() -> None:
     ]
     found = response_times(messages, bit=1)
     assert found == {"A": 2 * MS, "B": 3 * MS, "C": 7 * MS // 2}
-    assert utilization(messages) == pytest.approx(1 / 2.5 + 2 / 3.5)
 
 
 def test_a_message_alone_takes_its_own_time() -> None:

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from evcosim.cosim.can.database import Message, Signal
 from evcosim.cosim.can.logs.frames import encoder
-from evcosim.cosim.can.wire.payload import high_bits, low_bits, put, whole, words
+from evcosim.cosim.can.wire.payload import high_bits, low_bits, place_of, put, raw_value, whole, words
 from support.framed import layouts
 
 
 def place(signal: Signal) -> tuple[int, int, int]:
-    start = signal.start if signal.little_endian else 8 * (signal.start // 8) + 7 - signal.start % 8
-    return int(signal.little_endian), start, signal.length
+    start, little = place_of(signal)
+    return little, start, signal.length
 
 
 def pattern(signal: Signal, raw: float | int) -> int:
@@ -49,6 +49,7 @@ def test_bytes_are_those_of_cantools_and_come_back(message, data):
         signal = message.signals[name]
         low, high = low_bits(frame, *place(signal)), high_bits(frame, *place(signal))
         assert low | high << 32 == pattern(signal, raw) & ((1 << signal.length) - 1)
+        assert signal.is_float or raw_value(signal, bytes(frame)) == raw
 
 
 def test_every_length_start_and_order():
@@ -65,6 +66,12 @@ def test_every_length_start_and_order():
                 assert sum(bit << i for i, bit in enumerate(bits)) == value
                 assert sum(map(int.bit_count, frame)) == value.bit_count()
                 assert low_bits(frame, *place(signal)) | high_bits(frame, *place(signal)) << 32 == value
+
+
+def test_places_count_from_the_first_bit_that_is_sent():
+    assert place_of(Signal("S", 16, 8)) == (16, 1)
+    assert place_of(Signal("S", 0, 3, little_endian=False)) == (7, 0)
+    assert place_of(Signal("S", 15, 3, little_endian=False)) == (8, 0)
 
 
 def test_whole_extends_the_sign():
