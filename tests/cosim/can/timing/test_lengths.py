@@ -86,6 +86,45 @@ def test_without_stuff_bits_frames_have_published_sizes(
         assert sum(least_bits(extended, length, fd, switch)) + INTERFRAME == bits
 
 
+@pytest.mark.parametrize(
+    ("fd", "extended", "least", "most"),
+    [
+        # the table in the commit "can: length: refactor frame lengths definition to add size in bits" of
+        # Linux (V. Mailhol, 2023), for the greatest payload, with the interframe space
+        (False, False, 111, 135),
+        (False, True, 131, 160),
+        (True, False, 579, 712),
+        (True, True, 598, 736),
+    ],
+)
+def test_the_greatest_frames_are_those_of_a_published_table(
+    fd: bool, extended: bool, least: int, most: int
+) -> None:
+    for switch in {False, fd}:
+        kind = (extended, 64 if fd else 8, fd, switch)
+        assert sum(least_bits(*kind)) + INTERFRAME == least
+        assert sum(most_bits(*kind)) + INTERFRAME == most
+
+
+def test_stuff_bits_and_rates_of_can_fd_are_as_published() -> None:
+    """The sums for all payloads, and the split of base frames.
+
+    Sums are those of `can_frame_bits` in Linux' include/linux/can/length.h with stuff bits, the split that of
+    P. Molinaro (github.com/pierremolinaro/codes-can, calcul-debit-utile-canfd.cpp): with the interframe space
+    29 to 33 bits at the nominal rate, and at that of the data 33 + 8 n (38 + 8 n from 20 bytes on) to 1 + 2 n
+    more.
+    """
+    for n in FD_LENGTHS:
+        for extended, header in ((False, 22), (True, 41)):
+            stuffed = header + 8 * n + (header + 8 * n - 1) // 4
+            published = stuffed + (28 if n <= 16 else 33) + 9 + 3
+            assert sum(most_bits(extended, n, True, True)) + INTERFRAME == published
+            assert most_bits(extended, n, True, False) == (published - INTERFRAME, 0)
+        nominal, fast = least_bits(False, n, True, True)
+        assert (nominal + INTERFRAME, fast) == (29, (33 if n <= 16 else 38) + 8 * n)
+        assert most_bits(False, n, True, True) == (nominal + 4, fast + 1 + 2 * n)
+
+
 def test_the_longest_classic_frames_are_those_of_davis() -> None:
     for n in range(9):
         assert most_bits(False, n)[0] + INTERFRAME == 55 + 10 * n
@@ -109,6 +148,9 @@ def test_the_most_is_reached() -> None:
     """A bound that no frame comes near would hide what it is for."""
     longest = max(counted(Frame(i, False, bytes([a] * 8))) for i in (0, 0x78, 0x787) for a in range(256))
     assert longest >= most_bits(False, 8)[0] - 5
+    for extended, n in ((False, 8), (False, 64), (True, 64)):
+        frames = (Frame(i, extended, bytes([a] * n), True) for i in (0, 0x78, 0x787) for a in range(256))
+        assert max(map(counted, frames)) >= sum(most_bits(extended, n, True)) - 5
 
 
 def test_dlc_and_padding() -> None:
