@@ -8,7 +8,17 @@ from collections.abc import Iterator
 from . import ir
 from .emit_expressions import Scope, argument_list, expression, handed
 from .emit_types import c_name, type_name
-from .values import BOOLEAN, REAL, ListType, Type
+from .values import (
+    BOOLEAN,
+    COMPLEX,
+    REAL,
+    ArrayType,
+    ListType,
+    ParametersType,
+    Scalar,
+    StructType,
+    Type,
+)
 
 _FAILURE = "&failure->python"
 
@@ -18,13 +28,15 @@ class Frame:
     """A function, and what its statements need to know of its program.
 
     `failing` are the functions of the program that can fail, `derived` the accessor of each derived value of
-    the parameters by its name. `unread` are locals of the function that nothing reads.
+    the parameters by its name. `unread` are locals of the function that nothing reads, `filled` those that a
+    call gives their value through their address.
     """
 
     function: ir.Function
     scope: Scope
     failing: frozenset[str]
     unread: frozenset[str]
+    filled: frozenset[str] = frozenset()
     speaks: bool = False
 
     @property
@@ -35,7 +47,8 @@ class Frame:
 
 def body(frame: Frame) -> list[str]:
     """Return the lines of a function's body."""
-    needed = set(read(frame.function.body)) | set(_filled(frame.function.body, frame))
+    frame = dataclasses.replace(frame, filled=frozenset(_filled(frame.function.body, frame)))
+    needed = frame.filled.union(read(frame.function.body))
     return _block(
         frame.function.body, {x.name: x.type for x in frame.function.locals if x.name in needed}, frame
     )
@@ -114,17 +127,30 @@ def _block(block: ir.Block, undeclared: dict[str, Type], frame: Frame) -> list[s
             first[places[0]].append(name)
     for k, statement in enumerate(block):
         at_once = _target_at_once(statement)
-        lines += [f"{type_name(undeclared[name])} {c_name(name)};" for name in first[k] if name != at_once]
+        later = [ir.Local(undeclared[name], name) for name in first[k] if name != at_once]
+        lines += [_unset(local, local.name in frame.filled) for local in later]
         declared = f"{type_name(undeclared[at_once])} " if at_once and at_once in first[k] else ""
         lines += _statement(statement, declared, inner[k], frame)
     return lines
+
+
+def _unset(local: ir.Local, filled: bool) -> str:
+    """Return the declaration of a variable that gets its value later.
+
+    Compilers do not see that a call which fails is left at once, and would warn of a number that it has not
+    `filled` through its address: this one is 0 at first.
+    """
+    zero = {REAL: " = 0.0", BOOLEAN: " = false", COMPLEX: " = {0.0, 0.0}"}
+    none = "" if isinstance(local.type, StructType | ArrayType | ListType | ParametersType) else " = 0"
+    start = zero.get(local.type, none) if isinstance(local.type, Scalar) else none
+    return f"{type_name(local.type)} {c_name(local.name)}{start if filled else ''};"
 
 
 def _target_at_once(statement: ir.Statement) -> str | None:
     """Return the variable that a statement gives its first value in one expression, if it is such a one."""
     if isinstance(statement, ir.Assign) and statement.target.name not in set(named(statement.value)):
         return statement.target.name
-    if isinstance(statement, ir.Call) and statement.target is not None:
+    if isinstance(statement, ir.Checked | ir.Call) and statement.target is not None:
         return None if statement.target.name in set(named(statement.arguments)) else statement.target.name
     return statement.target.name if isinstance(statement, ir.Derive) else None
 
@@ -190,7 +216,8 @@ def _statement(s: ir.Statement, declared: str, inner: dict[str, Type], frame: Fr
                 [*(expression(a, scope) for a in s.arguments), f"&{c_name(s.target.name)}", _FAILURE]
             )
             failed = f'model_raised(failure, "{s.place.file}", {s.place.line})'
-            return [f"if (!{s.function}({given})){_note(s.note)}", f"    return {failed};"]
+            before = [_unset(s.target, True)] if declared else []
+            return [*before, f"if (!{s.function}({given})){_note(s.note)}", f"    return {failed};"]
         case ir.Call():
             return _call(s, declared, frame)
         case ir.Derive():
@@ -220,7 +247,7 @@ def _call(s: ir.Call, declared: str, frame: Frame) -> list[str]:
     if s.function in frame.failing:
         result = [] if s.target is None else [f"&{c_name(s.target.name)}"]
         given = argument_list(s.function, s.arguments, scope, *result, "failure")
-        before = [f"{declared}{c_name(s.target.name)};"] if declared and s.target else []
+        before = [_unset(s.target, True)] if declared and s.target else []
         return [*before, f"if (!{name}({given})){_note(s.note)}", "    return false;"]
     called = f"{name}({argument_list(s.function, s.arguments, scope)});{_note(s.note)}"
     if s.target is None or s.target.name in frame.unread:
@@ -234,7 +261,7 @@ def _derive(s: ir.Derive, declared: str, frame: Frame) -> list[str]:
     memory = ", memory" if accessor in frame.scope.with_memory else ""
     given = handed(s.parameters, frame.scope)
     if accessor in frame.failing:
-        before = [f"{declared}{target};"] if declared else []
+        before = [_unset(s.target, True)] if declared else []
         return [
             *before,
             f"if (!{accessor}({given}, &{target}{memory}, failure)){_note(s.note)}",

@@ -123,7 +123,7 @@ class Functions:
         addresses = frozenset(a.name for a in f.arguments if isinstance(a.type, ListType | ParametersType))
         reads = set(read(f.body))
         unread = frozenset(x.name for x in f.locals if x.name not in reads)
-        frame = Frame(f, Scope(addresses, self.with_memory), self.failing, unread, self._speaks(f))
+        frame = Frame(f, Scope(addresses, self.with_memory), self.failing, unread, speaks=self._speaks(f))
         lines = body(frame)
         if frame.can_fail and f.returns is None and not (lines and lines[-1].startswith("return")):
             lines.append("return true;")
