@@ -57,17 +57,41 @@ def describe(
         generationTool=origin.tool,
         variableNamingConvention="structured",
     )
-    for name, value in (("version", origin.version), ("license", origin.license)):
-        if value:
-            root.set(name, value)
+    set_origin(root, origin)
     needed = {} if c_sources else _NEEDS_PYTHON
     slave = SubElement(root, "CoSimulation", {"modelIdentifier": model.__name__, **needed, **_CAPABILITIES})
     if c_sources:
         listed = SubElement(slave, "SourceFiles")
         for name in c_sources:
             SubElement(listed, "File", name=name)
-    _units(root, model, variables)
+    add_units(root, model, variables)
     _types(root, variables)
+    add_log_and_experiment(root, experiment)
+    tool = SubElement(SubElement(root, "VendorAnnotations"), "Tool", name="evcosim")
+    add_sampled(tool, model, variables)
+    declared = SubElement(root, "ModelVariables")
+    for entry in variables:
+        declared.append(_scalar_variable(entry, model.sampled))
+    _structure(root, model, variables)
+    return written(root)
+
+
+def written(root: Element) -> bytes:
+    """Return the bytes of an XML file, UTF-8, indented."""
+    ElementTree.indent(root)
+    content: bytes = ElementTree.tostring(root, "utf-8")
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + content + b"\n"
+
+
+def set_origin(root: Element, origin: Origin) -> None:
+    """Set version and license of a model, where there are any."""
+    for name, value in (("version", origin.version), ("license", origin.license)):
+        if value:
+            root.set(name, value)
+
+
+def add_log_and_experiment(root: Element, experiment: Experiment) -> None:
+    """Add the categories of the log, and the experiment of an importer that is given none."""
     categories = SubElement(root, "LogCategories")
     for name, text in ModelSlave.log_categories.items():
         SubElement(categories, "Category", name=name, description=text)
@@ -78,14 +102,6 @@ def describe(
         stopTime=repr(experiment.stop_time),
         stepSize=repr(experiment.step_size),
     )
-    _sampled(root, model, variables)
-    declared = SubElement(root, "ModelVariables")
-    for entry in variables:
-        declared.append(_scalar_variable(entry, model.sampled))
-    _structure(root, model, variables)
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, "utf-8")
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + content + b"\n"
 
 
 def headline(described: type) -> str:
@@ -94,19 +110,21 @@ def headline(described: type) -> str:
     return text.splitlines()[0].replace("`", "")
 
 
-def _sampled(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
-    """Add the annotation that names the outputs which hold from the time of their inputs on."""
+def add_sampled(annotation: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
+    """Add to evcosim's annotation the outputs which hold from the time of their inputs on."""
     held = [
         entry.variable.name
         for entry in variables
-        if entry.causality == "output" and _variability(entry, model.sampled) == "discrete"
+        if entry.causality == "output" and variability(entry, model.sampled) == "discrete"
     ]
-    tool = SubElement(SubElement(root, "VendorAnnotations"), "Tool", name="evcosim")
-    SubElement(tool, "Sampled", outputs=" ".join(held))
+    SubElement(annotation, "Sampled", outputs=" ".join(held))
 
 
-def _units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
-    """Add the definitions of the units of Real variables; no other type carries one in FMI 2.0."""
+def add_units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> None:
+    """Add the definitions of the units of Real variables; no other type carries one.
+
+    Raises ValueError that names model and variable of an unknown unit.
+    """
     used = {}
     for _, _, v in variables:
         if v.type == "Real" and v.unit:
@@ -128,18 +146,25 @@ def _units(root: Element, model: type[Model], variables: Iterable[Exposed]) -> N
 
 
 def _types(root: Element, variables: Iterable[Exposed]) -> None:
-    enumerations = {
-        v.enumeration.__name__: v.enumeration for _, _, v in variables if v.enumeration is not None
-    }
-    if not enumerations:
+    if not (used := enumerations(variables)):
         return
     definitions = SubElement(root, "TypeDefinitions")
-    for name, enumeration in sorted(enumerations.items()):
-        simple = SubElement(definitions, "SimpleType", name=name, description=headline(enumeration))
-        listed = SubElement(simple, "Enumeration")
-        for item in enumeration:
-            about = {"name": item.name.lower(), "value": str(int(item)), **_text_of(item)}
-            SubElement(listed, "Item", about)
+    for enumeration in used:
+        about = {"name": enumeration.__name__, "description": headline(enumeration)}
+        add_items(SubElement(SubElement(definitions, "SimpleType", about), "Enumeration"), enumeration)
+
+
+def enumerations(variables: Iterable[Exposed]) -> list[type[enum.IntEnum]]:
+    """Return the enumerations of variables, by their names."""
+    found = {v.enumeration.__name__: v.enumeration for _, _, v in variables if v.enumeration is not None}
+    return [found[name] for name in sorted(found)]
+
+
+def add_items(definition: Element, enumeration: type[enum.IntEnum]) -> None:
+    """Add the items of an enumeration to its definition."""
+    for item in enumeration:
+        about = {"name": item.name.lower(), "value": str(int(item)), **_text_of(item)}
+        SubElement(definition, "Item", about)
 
 
 def _text_of(item: enum.IntEnum) -> dict[str, str]:
@@ -153,10 +178,17 @@ def _scalar_variable(entry: Exposed, sampled: bool) -> Element:
     scalar = Element("ScalarVariable", name=v.name, valueReference=str(entry.reference))
     scalar.set("description", v.description)
     scalar.set("causality", entry.causality)
-    scalar.set("variability", _variability(entry, sampled))
+    scalar.set("variability", variability(entry, sampled))
     if entry.causality in ("parameter", "output"):
         scalar.set("initial", "exact" if entry.causality == "parameter" else "calculated")
     typed = SubElement(scalar, v.type)
+    set_value(typed, entry)
+    return scalar
+
+
+def set_value(typed: Element, entry: Exposed) -> None:
+    """Set the attributes of a variable that depend on its type: start value, range, unit of measure."""
+    v = entry.variable
     if v.enumeration is not None:
         typed.set("declaredType", v.enumeration.__name__)
     if v.type == "Real":
@@ -165,10 +197,10 @@ def _scalar_variable(entry: Exposed, sampled: bool) -> Element:
         _set(typed, v, "min", "max")
     if entry.causality in ("parameter", "input"):
         typed.set("start", _number(v.start, v.type))
-    return scalar
 
 
-def _variability(entry: Exposed, sampled: bool) -> str:
+def variability(entry: Exposed, sampled: bool) -> str:
+    """Return FMI's word for when a variable changes."""
     if entry.causality == "parameter":
         return "fixed"
     if entry.variable.type != "Real" or (sampled and entry.causality == "output"):
@@ -191,17 +223,30 @@ def _number(value: float, kind: str) -> str:
 
 
 def _structure(root: Element, model: type[Model], variables: tuple[Exposed, ...]) -> None:
-    index = {entry.variable.name: str(entry.reference + 1) for entry in variables}  # FMI counts from 1
-    parameters = [entry.variable.name for entry in variables if entry.causality == "parameter"]
-    outputs = [entry.variable for entry in variables if entry.causality == "output"]
     structure = SubElement(root, "ModelStructure")
-    if not outputs:
+    unknowns = dependencies(model, variables)
+    if not unknowns:
         return
-    now = SubElement(structure, "Outputs")
-    initially = SubElement(structure, "InitialUnknowns")
-    for v in outputs:
+    now, initially = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
+    for output, at_once, at_first in unknowns:
+        for parent, known in ((now, at_once), (initially, at_first)):
+            listed = " ".join(str(reference + 1) for reference in known)  # FMI 2.0 counts from 1
+            SubElement(parent, "Unknown", index=str(output + 1), dependencies=listed)
+
+
+def dependencies(model: type[Model], variables: Iterable[Exposed]) -> list[tuple[int, list[int], list[int]]]:
+    """Return by value references each output, and on what it depends within an instant and at the start."""
+    reference = {entry.variable.name: entry.reference for entry in variables}
+    parameters = [entry.variable.name for entry in variables if entry.causality == "parameter"]
+    found = []
+    for entry in variables:
+        v = entry.variable
+        if entry.causality != "output":
+            continue
         instant = () if model.sampled else v.depends
         reached = v.initially if v.initially is not None else (*model.initial_inputs, *v.depends)
-        for parent, names in ((now, instant), (initially, (*parameters, *reached))):
-            known = sorted({int(index[name]) for name in names})
-            SubElement(parent, "Unknown", index=index[v.name], dependencies=" ".join(map(str, known)))
+        at_once, at_first = (
+            sorted({reference[name] for name in names}) for names in (instant, (*parameters, *reached))
+        )
+        found.append((entry.reference, at_once, at_first))
+    return found

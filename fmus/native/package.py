@@ -20,18 +20,18 @@ import uuid
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from ...models.base import Model
 from .. import cache, runtime
 from ..archive import packed
 from ..catalog import Experiment
-from ..description import Origin, describe
+from ..description import Origin, describe, written
 from . import toolchain
+from .description3 import describe_3
 
 _RUNTIME = Path(__file__).with_name("c")
-_OF_FMI = {2: ("fmi2.c", "fmi2_types.h")}
+_OF_FMI = {2: ("fmi2.c", "fmi2_types.h"), 3: ("fmi3.c", "fmi3_types.h")}
 """The files of the runtime that only one version of FMI needs."""
 
 
@@ -80,6 +80,8 @@ def build_native(
 
 def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: int = 2) -> bytes:
     """Return the bytes of a native FMU. Raises what `build_native` raises."""
+    if fmi not in _OF_FMI:
+        raise ValueError(f"there are native FMUs of FMI 2 and 3, not of {fmi}")
     name = parts.model.__name__
     targets = [toolchain.platform_named(each) for each in platforms] or [toolchain.here()]
     files = sources(parts.source, fmi)
@@ -89,7 +91,11 @@ def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: in
     )
     entries = {f"sources/{file}": content for file, content in files.items()}
     entries["sources/buildDescription.xml"] = build_description(name, c_files)
-    entries["modelDescription.xml"] = describe(parts.model, origin, parts.experiment, c_files)
+    entries["modelDescription.xml"] = (
+        describe(parts.model, origin, parts.experiment, c_files)
+        if fmi == 2
+        else describe_3(parts.model, origin, parts.experiment)
+    )
     entries["documentation/licenses/evcosim.txt"] = runtime.licenses()["evcosim.txt"]
     with tempfile.TemporaryDirectory(prefix="evcosim-") as folder:
         for file, content in files.items():
@@ -122,6 +128,4 @@ def build_description(name: str, c_files: Iterable[str]) -> bytes:
     for file in c_files:
         SubElement(files, "SourceFile", name=file)
     SubElement(build, "Library", name="m", external="true", description="The mathematical functions of C")
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, "utf-8")
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + content + b"\n"
+    return written(root)

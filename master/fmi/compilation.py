@@ -138,7 +138,9 @@ def _declared(fmu: Fmu) -> tuple[list[str], list[str]]:
 
     Raises FmuError for a declared file that is not in the archive.
     """
-    names, flags = (_of_fmi_3 if fmu.description.fmiVersion.startswith("3") else _of_fmi_2)(fmu)
+    names, flags = _of_build_description(fmu)
+    if fmu.description.fmiVersion.startswith("2"):
+        names = _of_fmi_2(fmu)
     if lacking := [name for name in names if name not in fmu.entries]:
         raise FmuError(f"{fmu.path}: declares the source {lacking[0]}, which is not in it")
     return names or _not_included(fmu), flags
@@ -158,10 +160,9 @@ def _root(fmu: Fmu, entry: str) -> Any:
     return parsed_xml(f"{fmu.path}: {entry}", read_entry(fmu.path, entry))
 
 
-def _of_fmi_2(fmu: Fmu) -> tuple[list[str], list[str]]:
+def _of_fmi_2(fmu: Fmu) -> list[str]:
     tag = "CoSimulation" if fmu.interface_type == "co_simulation" else "ModelExchange"
-    files = _root(fmu, "modelDescription.xml").findall(f"{tag}/SourceFiles/File")
-    return _entries(files), []
+    return _entries(_root(fmu, "modelDescription.xml").findall(f"{tag}/SourceFiles/File"))
 
 
 def _entries(files: Iterable[Any]) -> list[str]:
@@ -170,8 +171,11 @@ def _entries(files: Iterable[Any]) -> list[str]:
     return list(dict.fromkeys(posixpath.normpath(f"sources/{name}") for name in names))
 
 
-def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
-    """Return sources and definitions of the first build configuration for the library."""
+def _of_build_description(fmu: Fmu) -> tuple[list[str], list[str]]:
+    """Return sources and flags of the first build configuration for the library.
+
+    It is a part of FMI 3.0, and some FMUs of FMI 2.0, as the native ones of evcosim, have one for the flags.
+    """
     entry = "sources/buildDescription.xml"
     if entry not in fmu.entries:
         return [], []
@@ -179,11 +183,22 @@ def _of_fmi_3(fmu: Fmu) -> tuple[list[str], list[str]]:
     mine = [c for c in found if c.get("modelIdentifier") == fmu.kind.modelIdentifier]
     sets = mine[0].findall("SourceFileSet") if mine else []
     names = _entries(file for each in sets for file in each.findall("SourceFile"))
-    flags = []
+    flags = [option for each in sets for option in _options(each)]
     for definition in [d for each in sets for d in each.findall("PreprocessorDefinition")]:
         value = definition.get("value")
         flags.append(f"-D{definition.get('name')}" + ("" if value is None else f"={value}"))
     return names, flags
+
+
+def _options(source_set: Any) -> list[str]:
+    """Return the options for a compiler in the manner of gcc that change what the code computes."""
+    if source_set.get("compiler", "gcc").lower() not in ("gcc", "clang", "cc"):
+        return []
+    given = (source_set.get("compilerOptions") or "").split()
+    return [option for option in given if option.startswith(_COMPUTING)]
+
+
+_COMPUTING = ("-std=", "-ffp-", "-fno-", "-frounding-math", "-fsignaling-nans", "-fwrapv", "-D", "-U")
 
 
 def _written(path: Path, output: Path, made: dict[str, bytes]) -> Path:

@@ -35,29 +35,21 @@ static outer *outer_of(const instance *m)
     return m->own;
 }
 
-/* -- messages ---------------------------------------------------------------------------------- */
+/* -- messages ------------------------------------------------------------------------------------- */
 
-/* Send `call: text` to the importer's log. */
-static void send(instance *m, fmi2Status status, const char *category, const char *call, const char *text)
+/* Send a message to the importer's log. */
+static void send(const instance *m, fmi2Status status, const char *category, const char *text)
 {
     const outer *o = outer_of(m);
-    size_t length = (size_t)snprintf(m->line, m->line_size, "%s%s", call, call[0] ? ": " : "");
-    if (!o->callbacks.logger)
-        return;
-    for (const char *c = text; *c && length + 2 < m->line_size; c++) {
-        if (*c == '%')
-            m->line[length++] = '%';
-        m->line[length++] = *c;
-    }
-    m->line[length] = '\0';
-    o->callbacks.logger(o->callbacks.componentEnvironment, o->name, status, category, m->line);
+    if (o->callbacks.logger)
+        o->callbacks.logger(o->callbacks.componentEnvironment, o->name, status, category, text);
 }
 
 /* Tell why a call failed, and return its status. */
 static fmi2Status error(instance *m, const char *call)
 {
     if (outer_of(m)->tells_errors)
-        send(m, fmi2Error, errors, call, m->text);
+        send(m, fmi2Error, errors, instance_message(m, call, m->text, true));
     return fmi2Error;
 }
 
@@ -69,29 +61,7 @@ static fmi2Status unsupported(fmi2Component c, const char *call)
     return error(c, call);
 }
 
-/* -- phases ---------------------------------------------------------------------------------- */
-
-enum {
-    IN_CREATED = 1 << CREATED,
-    IN_INITIALIZING = 1 << INITIALIZING,
-    IN_STEPPING = 1 << STEPPING,
-    IN_ENDED = 1 << ENDED
-};
-enum {
-    KNOWN = IN_INITIALIZING | IN_STEPPING | IN_ENDED,
-    SETTABLE = IN_CREATED | IN_INITIALIZING | IN_STEPPING
-};
-
-static bool allowed(instance *m, int phases)
-{
-    static const char *const now[] = {
-        "the initialization mode has not been entered",
-        "the initialization mode has not been left",
-        "the initialization mode has been left",
-        "it was terminated",
-    };
-    return (phases & 1 << m->phase) != 0 || instance_refuse(m, "%s", now[m->phase]);
-}
+/* -- phases --------------------------------------------------------------------------------------- */
 
 EXPORT const char *fmi2GetTypesPlatform(void)
 {
@@ -122,7 +92,7 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
                                      fmi2Boolean log)
 {
     const size_t length = name ? strlen(name) : 0;
-    instance *m = instance_new("Integer", sizeof(outer) + length + 1);
+    instance *m = instance_new("Integer", false, sizeof(outer) + length + 1);
     (void)resources, (void)visible;
     if (!m)
         return NULL;
@@ -138,7 +108,8 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
         instance_refuse(m, "%s is an FMU for Co-Simulation", model.name);
     else
         instance_refuse(m, "the guid is '%s', that of %s is '%s'", guid ? guid : "", model.name, model.token);
-    send(m, fmi2Error, errors, "fmi2Instantiate", m->text); /* in any case, as the standard asks */
+    /* in any case, as the standard asks */
+    send(m, fmi2Error, errors, instance_message(m, "fmi2Instantiate", m->text, true));
     instance_free(m);
     return NULL;
 }
@@ -154,7 +125,7 @@ EXPORT fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance
     (void)has_tolerance, (void)tolerance, (void)has_stop, (void)stop;
     if (!c)
         return fmi2Error;
-    if (!allowed(c, IN_CREATED))
+    if (!instance_is(c, IN_CREATED))
         return error(c, "fmi2SetupExperiment");
     instance_set_start(c, start);
     return fmi2OK;
@@ -165,7 +136,7 @@ EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c)
     instance *m = c;
     if (!m)
         return fmi2Error;
-    if (!allowed(m, IN_CREATED))
+    if (!instance_is(m, IN_CREATED))
         return error(m, "fmi2EnterInitializationMode");
     m->phase = INITIALIZING;
     return fmi2OK;
@@ -175,7 +146,7 @@ EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     if (!c)
         return fmi2Error;
-    if (!allowed(c, IN_INITIALIZING) || !instance_start(c))
+    if (!instance_is(c, IN_INITIALIZING) || !instance_start(c))
         return error(c, "fmi2ExitInitializationMode");
     return fmi2OK;
 }
@@ -185,7 +156,7 @@ EXPORT fmi2Status fmi2Terminate(fmi2Component c)
     instance *m = c;
     if (!m)
         return fmi2Error;
-    if (!allowed(m, IN_STEPPING))
+    if (!instance_is(m, IN_STEPPING))
         return error(m, "fmi2Terminate");
     m->phase = ENDED;
     return fmi2OK;
@@ -200,20 +171,20 @@ EXPORT fmi2Status fmi2Reset(fmi2Component c)
     return fmi2OK;
 }
 
-/* -- values ---------------------------------------------------------------------------------- */
+/* -- values --------------------------------------------------------------------------------------- */
 
 typedef const fmi2ValueReference references[];
 
 /* Return true where these values can be read now, and make them current. */
 static bool readable(instance *m, instance_kind kind, references r, size_t count)
 {
-    return allowed(m, KNOWN) && instance_ready(m) && instance_has(m, kind, r, count);
+    return instance_is(m, KNOWN) && instance_ready(m) && instance_has(m, kind, r, count);
 }
 
 /* Return true where these variables can be set now. */
 static bool settable(instance *m, instance_kind kind, references r, size_t count)
 {
-    return allowed(m, SETTABLE) && instance_can_set(m, kind, r, count);
+    return instance_is(m, SETTABLE) && instance_can_set(m, kind, r, count);
 }
 
 EXPORT fmi2Status fmi2GetReal(fmi2Component c, references r, size_t count, fmi2Real values[])
@@ -329,17 +300,14 @@ EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, references unkno
     return unsupported(c, "fmi2GetDirectionalDerivative");
 }
 
-/* -- steps ---------------------------------------------------------------------------------- */
+/* -- steps ---------------------------------------------------------------------------------------- */
 
 /* Tell why the step at t failed. */
 static fmi2Status discarded(instance *m, fmi2Real t)
 {
-    char call[64], shown[PY_REPR_SIZE];
     outer_of(m)->asks_to_end = true;
-    py_repr_float(shown, sizeof shown, t);
-    snprintf(call, sizeof call, "fmi2DoStep at t = %s s", shown);
     if (outer_of(m)->tells_errors)
-        send(m, fmi2Error, errors, call, m->text);
+        send(m, fmi2Error, errors, instance_step_message(m, "fmi2DoStep", t, true));
     return fmi2Discard;
 }
 
@@ -353,7 +321,7 @@ EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real step, fmi2Boo
         return discarded(m, t);
     outer_of(m)->asks_to_end = false;
     if (m->notice && outer_of(m)->tells_warnings)
-        send(m, fmi2Warning, warnings, "", m->notice);
+        send(m, fmi2Warning, warnings, instance_message(m, "", m->notice, true));
     return fmi2OK;
 }
 
@@ -406,7 +374,7 @@ EXPORT fmi2Status fmi2GetStringStatus(fmi2Component c, fmi2StatusKind kind, fmi2
     return not_known(c, "fmi2GetStringStatus");
 }
 
-/* -- saved states ---------------------------------------------------------------------------------- */
+/* -- saved states --------------------------------------------------------------------------------- */
 
 EXPORT fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
 {

@@ -10,7 +10,7 @@
 
 enum { ALIGNMENT = 16, NUMBER_TEXT = PY_REPR_SIZE };
 
-/* -- texts ---------------------------------------------------------------------------------- */
+/* -- texts ---------------------------------------------------------------------------------------- */
 
 /* Cut off the part of a character of UTF-8 that stands at the end of a text that was cut. */
 static void end_whole(char *text, size_t size)
@@ -26,6 +26,14 @@ static void end_whole(char *text, size_t size)
     const size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
     if (start - 1 + length > end)
         text[start - 1] = '\0';
+}
+
+/* Write a real by a format of Python: "" is str(). */
+static const char *real_text(double value, const char *format, char *to)
+{
+    model_text text = model_begin(to, NUMBER_TEXT);
+    model_put_real(&text, value, format);
+    return to;
 }
 
 /* Append to the reason, printf's way. */
@@ -61,7 +69,38 @@ static bool failed(instance *m)
                            m->failure.line);
 }
 
-/* -- creation ---------------------------------------------------------------------------------- */
+const char *instance_message(instance *m, const char *call, const char *text, bool percent_doubled)
+{
+    const int written = snprintf(m->line, m->line_size, "%s%s", call, call[0] ? ": " : "");
+    size_t length = written > 0 ? (size_t)written : 0;
+    for (const char *c = text; *c && length + 2 < m->line_size; c++) {
+        if (*c == '%' && percent_doubled)
+            m->line[length++] = '%';
+        m->line[length++] = *c;
+    }
+    m->line[length] = '\0';
+    return m->line;
+}
+
+const char *instance_step_message(instance *m, const char *call, double t, bool percent_doubled)
+{
+    char place[2 * NUMBER_TEXT], shown[NUMBER_TEXT];
+    snprintf(place, sizeof place, "%.20s at t = %s s", call, real_text(t, "", shown));
+    return instance_message(m, place, m->text, percent_doubled);
+}
+
+bool instance_not_now(instance *m)
+{
+    static const char *const now[] = {
+        "the initialization mode has not been entered",
+        "the initialization mode has not been left",
+        "the initialization mode has been left",
+        "it was terminated",
+    };
+    return instance_refuse(m, "%s", now[m->phase]);
+}
+
+/* -- creation ------------------------------------------------------------------------------------- */
 
 static size_t aligned(size_t size)
 {
@@ -84,8 +123,9 @@ static size_t longest_text(void)
     return 2 * MODEL_TEXT + all;
 }
 
-static void fill_places(instance_place *places, uint32_t *integers, uint32_t *integer_count)
+static void fill_places(instance *m, instance_place *places, uint32_t *integers)
 {
+    m->count = (uint32_t)model.variable_count;
     for (size_t k = 0; k < model.variable_count; k++) {
         const model_variable *v = &model.variables[k];
         const uint8_t type = v->type == 'r'   ? REAL
@@ -98,7 +138,9 @@ static void fill_places(instance_place *places, uint32_t *integers, uint32_t *in
         places[k].settable_later = v->causality == 'i' ? type : 0;
         places[k].settable_at_first = v->causality == 'p' ? type : places[k].settable_later;
         if (v->causality == 'o' && v->type == 'i')
-            integers[(*integer_count)++] = (uint32_t)k;
+            integers[m->integer_count++] = (uint32_t)k;
+        if (v->causality == 't')
+            m->clock = instance_at(m, (uint32_t)k);
     }
 }
 
@@ -114,7 +156,7 @@ static void *part(unsigned char *memory, size_t *used, size_t size)
 static size_t lay_out(instance *m, unsigned char *memory, size_t own_size)
 {
     size_t used = 0;
-    const size_t count = model.variable_count;
+    const size_t count = model.variable_count + 1; /* and the time */
     part(memory, &used, sizeof *m);
     m->records[PARAMETERS] = part(memory, &used, model.parameters_size);
     m->records[INPUTS] = part(memory, &used, model.inputs_size);
@@ -134,21 +176,24 @@ static size_t lay_out(instance *m, unsigned char *memory, size_t own_size)
     return used;
 }
 
-instance *instance_new(const char *integer_word, size_t own_size)
+instance *instance_new(const char *integer_word, bool with_time, size_t own_size)
 {
     instance counting;
     unsigned char *memory = calloc(1, lay_out(&counting, NULL, own_size));
     if (!memory)
         return NULL;
     instance *m = (instance *)(void *)memory;
+    instance_place *places;
     lay_out(m, memory, own_size);
-    m->count = (uint32_t)model.variable_count;
+    places = (instance_place *)m->places;
+    m->records[TIME] = (unsigned char *)&m->reached;
     m->follows = model.feeds_through && !model.sampled;
     m->integer_word = integer_word;
-    fill_places((instance_place *)m->places, (uint32_t *)m->integers, &m->integer_count);
-    for (size_t k = 0; k < model.variable_count; k++)
-        if (model.variables[k].causality == 't')
-            m->clock = instance_at(m, (uint32_t)k);
+    fill_places(m, places, (uint32_t *)m->integers);
+    if (with_time && !m->clock) {
+        places[m->count].type = REAL;
+        places[m->count++].record = TIME;
+    }
     instance_reset(m);
     return m;
 }
@@ -161,7 +206,7 @@ void instance_free(instance *m)
 void instance_reset(instance *m)
 {
     memset(m->state, 0, model.state_size);
-    for (uint32_t k = 0; k < m->count; k++) {
+    for (uint32_t k = 0; k < model.variable_count; k++) {
         const double start = model.variables[k].start;
         switch (m->places[k].type) {
         case REAL:    instance_put_real(m, k, start); break;
@@ -177,7 +222,7 @@ void instance_reset(instance *m)
     m->notice = NULL;
 }
 
-/* -- time and steps ---------------------------------------------------------------------------------- */
+/* -- time and steps ------------------------------------------------------------------------------- */
 
 static inline void set_time(instance *m, double time)
 {
@@ -233,7 +278,7 @@ static inline void keep_state(instance *m)
 static void value_text(const instance *m, uint32_t k, char *text)
 {
     switch (m->places[k].type) {
-    case REAL:    py_repr_float(text, NUMBER_TEXT, instance_real(m, k)); break;
+    case REAL:    real_text(instance_real(m, k), "", text); break;
     case BOOLEAN: snprintf(text, NUMBER_TEXT, "%s", instance_boolean(m, k) ? "True" : "False"); break;
     default:      snprintf(text, NUMBER_TEXT, "%" PRId64, instance_integer(m, k));
     }
@@ -253,7 +298,7 @@ static bool in_range(instance *m)
 {
     char value[NUMBER_TEXT];
     m->text[0] = '\0';
-    for (uint32_t k = 0; k < m->count; k++) {
+    for (uint32_t k = 0; k < model.variable_count; k++) {
         const model_variable *v = &model.variables[k];
         const double x = number(m, k);
         const char *space = v->unit[0] ? " " : "", *joint = m->text[0] ? "; " : "";
@@ -322,7 +367,7 @@ static void tell(instance *m, double time)
     if (!is_new(m, m->sentence))
         return;
     char shown[NUMBER_TEXT];
-    py_format_float(shown, sizeof shown, time, ".9g");
+    real_text(time, ".9g", shown);
     end_whole(m->sentence, MODEL_TEXT);
     instance_refuse(m, "first at t = %s s: %s", shown, m->sentence);
     if (m->said_count == SAID_SENTENCES)
@@ -339,8 +384,8 @@ static bool may_step(instance *m, double dt)
         return instance_refuse(m, "it was terminated");
     if (0.0 < dt && dt < INFINITY)
         return true;
-    py_repr_float(shown, sizeof shown, dt);
-    return instance_refuse(m, "the step is %s s: it must be finite and longer than 0", shown);
+    return instance_refuse(m, "the step is %s s: it must be finite and longer than 0",
+                           real_text(dt, "", shown));
 }
 
 bool instance_step(instance *m, double t, double dt)
@@ -368,7 +413,7 @@ bool instance_step(instance *m, double t, double dt)
     return true;
 }
 
-/* -- references ---------------------------------------------------------------------------------- */
+/* -- references ----------------------------------------------------------------------------------- */
 
 static bool is_known(const instance *m, instance_kind kind, uint32_t reference)
 {
@@ -406,11 +451,11 @@ bool instance_not_settable(instance *m, instance_kind kind, const uint32_t *refe
         if (!instance_can_set_one(m, kind, references[k]) && references[k] < first)
             first = references[k];
     }
-    const model_variable *v = &model.variables[first];
-    if (v->causality == 'p')
-        return instance_refuse(m, "%s is a fixed parameter: it cannot be set after the initialization",
-                               v->name);
-    return instance_refuse(m, "%s is neither parameter nor input: it cannot be set", v->name);
+    const bool is_time = first == model.variable_count;
+    const char *name = is_time ? "the time" : model.variables[first].name;
+    if (!is_time && model.variables[first].causality == 'p')
+        return instance_refuse(m, "%s is a fixed parameter: it cannot be set after the initialization", name);
+    return instance_refuse(m, "%s is neither parameter nor input: it cannot be set", name);
 }
 
 bool instance_has_item(instance *m, uint32_t reference, int64_t value)

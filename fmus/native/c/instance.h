@@ -27,10 +27,10 @@ typedef struct {
     uint8_t settable_at_first, settable_later;
 } instance_place;
 
-enum { PARAMETERS, INPUTS, OUTPUTS, RECORDS };
+enum { PARAMETERS, INPUTS, OUTPUTS, TIME, RECORDS };
 
 typedef struct {
-    unsigned char *records[RECORDS]; /* the parameters, the inputs with the time, the outputs */
+    unsigned char *records[RECORDS]; /* the parameters, the inputs with the time, the outputs, `reached` */
     const instance_place *places;
     uint32_t count; /* of variables */
     bool stale;     /* the outputs (and before the start the state) do not belong to the inputs */
@@ -59,9 +59,29 @@ typedef struct {
 typedef struct instance_snapshot instance_snapshot;
 
 /* Create an instance, with `own_size` bytes for the outer interface, whose word for a whole number of 32 bits
-   is `integer_word`. NULL where there is no memory. */
-instance *instance_new(const char *integer_word, size_t own_size);
+   is `integer_word`. Where the interface has a variable for the time, and the model none, its reference is the
+   one after the model's. NULL where there is no memory. */
+instance *instance_new(const char *integer_word, bool with_time, size_t own_size);
 void instance_free(instance *m);
+
+enum { /* phases in which a function of the outer interface may be called */
+       IN_CREATED = 1 << CREATED,
+       IN_INITIALIZING = 1 << INITIALIZING,
+       IN_STEPPING = 1 << STEPPING,
+       IN_ENDED = 1 << ENDED,
+       KNOWN = IN_INITIALIZING | IN_STEPPING | IN_ENDED,     /* values can be read */
+       SETTABLE = IN_CREATED | IN_INITIALIZING | IN_STEPPING /* and set */
+};
+
+/* Refuse a call unless the instance is in one of these phases. */
+bool instance_not_now(instance *m);
+static inline bool instance_is(instance *m, int phases)
+{
+    return (phases & 1 << m->phase) != 0 || instance_not_now(m);
+}
+
+/* Put `call: text` together, or `text` where `call` is empty, and return it. */
+const char *instance_message(instance *m, const char *call, const char *text, bool percent_doubled);
 
 /* Go back to the start values. */
 void instance_reset(instance *m);
@@ -75,6 +95,9 @@ bool instance_start(instance *m);
 /* Advance from t by dt. A step that fails leaves state and outputs as they were. */
 bool instance_step(instance *m, double t, double dt);
 
+/* Put together why the step at t failed: `call at t = ... s: ...` */
+const char *instance_step_message(instance *m, const char *call, double t, bool percent_doubled);
+
 /* Compute the outputs (before the start also the state) anew where they are stale. */
 bool instance_refresh(instance *m);
 
@@ -83,7 +106,7 @@ static inline bool instance_ready(instance *m)
     return !m->stale || instance_refresh(m);
 }
 
-/* -- values: check the references, then read or write each, then say that something was set -------- */
+/* -- values: check the references, then read or write each, then say that something was set ------- */
 
 bool instance_unknown(instance *m, instance_kind kind, const uint32_t *references, size_t count);
 bool instance_not_settable(instance *m, instance_kind kind, const uint32_t *references, size_t count);
@@ -164,7 +187,7 @@ static inline void instance_was_set(instance *m)
     }
 }
 
-/* -- saved states ---------------------------------------------------------------------------------- */
+/* -- saved states --------------------------------------------------------------------------------- */
 
 /* Save the state, in `old` where that is not NULL. NULL where there is no memory. */
 instance_snapshot *instance_save(instance *m, instance_snapshot *old);

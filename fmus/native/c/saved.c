@@ -14,7 +14,7 @@ struct instance_snapshot {
     bool stale;
 };
 
-enum { ALIGNMENT = 16, FLAG_BYTES = 2, NUMBER_BYTES = 8, STATE = RECORDS, BLOCKS = RECORDS + 1 };
+enum { ALIGNMENT = 16, FLAG_BYTES = 2, NUMBER_BYTES = 8, STATE = TIME, BLOCKS = RECORDS };
 
 static size_t block_size(int block)
 {
@@ -103,7 +103,7 @@ bool instance_restore(instance *m, const instance_snapshot *saved)
     return true;
 }
 
-/* -- bytes ---------------------------------------------------------------------------------- */
+/* -- bytes ---------------------------------------------------------------------------------------- */
 
 /* Goes through bytes, to write or to read them: one description of the form for both. */
 typedef struct {

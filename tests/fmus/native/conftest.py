@@ -79,18 +79,16 @@ def parts(handmade: None) -> Callable[..., NativeParts]:
 
 
 @pytest.fixture(scope="session")
-def pairs(
-    parts: Callable[..., NativeParts], tmp_path_factory: pytest.TempPathFactory
-) -> Callable[[str], Pair]:
-    """Build both FMUs of a kind, once."""
-    made: dict[str, Pair] = {}
+def pairs(parts: Callable[..., NativeParts], tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Pair]:
+    """Build both FMUs of a kind, once; the native one is of FMI 2.0 or 3.0."""
+    made: dict[tuple[str, int], Pair] = {}
 
-    def pair(name: str) -> Pair:
-        if name not in made:
-            of_this = parts(name)
+    def pair(name: str, fmi: int = 2) -> Pair:
+        if (name, fmi) not in made:
+            of_this, folder = parts(name), tmp_path_factory.mktemp("native")
             python = build_model(of_this.model, tmp_path_factory.mktemp("python"))
-            made[name] = Pair(of_this.model, python, build_native(of_this, tmp_path_factory.mktemp("native")))
-        return made[name]
+            made[name, fmi] = Pair(of_this.model, python, build_native(of_this, folder, fmi=fmi))
+        return made[name, fmi]
 
     return pair
 

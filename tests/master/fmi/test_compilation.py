@@ -108,6 +108,23 @@ def test_the_files_and_definitions_that_an_fmu_of_fmi_3_declares(tmp_path: Path)
     assert answer(made) == answer(tmp_path / "full.fmu")
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_the_options_that_a_build_description_declares(tmp_path: Path, fmi: int) -> None:
+    needed = "#ifndef WANTED\n#error no option\n#endif\n#ifdef WRONG\n#error of another compiler\n#endif\n"
+    options = f'language="C99" compilerOptions="-DWANTED=1 -ffp-contract=off -o {tmp_path}/elsewhere -O9"'
+    build = BUILD.replace("<SourceFileSet>", f"<SourceFileSet {options}>")
+    assert build != BUILD
+    other = '<SourceFileSet compiler="MSVC" compilerOptions="/O2 -DWRONG"></SourceFileSet></BuildConf'
+    build = build.replace("</BuildConf", other)
+    sources = {
+        "mixed.c": needed + source(fmi).replace("#define MODEL mixed", ""),
+        "buildDescription.xml": build,
+    }
+    made = compile_fmu(bare(tmp_path / "bare.fmu", fmi, sources))
+    assert answer(made) == answer(tmp_path / "full.fmu")
+    assert not (tmp_path / "elsewhere").exists()
+
+
 @pytest.mark.parametrize(
     ("sources", "message"),
     [
