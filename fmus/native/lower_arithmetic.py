@@ -101,7 +101,7 @@ def _folded(op: ast.operator, left: object, right: object) -> Known | None:
         result = _PYTHON[type(op)](left, right)
     except (ArithmeticError, TypeError, ValueError):
         return None
-    return Known(result) if not numbers or number_type(result) is not None else None
+    return Known(result)
 
 
 def _real(

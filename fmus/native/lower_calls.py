@@ -73,7 +73,9 @@ def call_value(
     found = _of_function(frame, node, function, given, named)
     if found is not None:
         return found
-    module = str(getattr(function, "__module__", "") or type(function).__module__).partition(".")[0]
+    owner = getattr(function, "__self__", None)
+    module = getattr(function, "__module__", None) or type(owner or function).__module__
+    module = str(module).partition(".")[0]
     instead = _INSTEAD.get(module, "write it in the model's module, in plain Python")
     raise frame.refuse(node, f"{module}.{_name(function)} is not lowered", instead)
 

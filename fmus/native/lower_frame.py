@@ -22,6 +22,7 @@ from .lower_values import (
     Missing,
     Run,
     Value,
+    number_type,
     reads_list,
     type_name,
 )
@@ -353,11 +354,14 @@ def _known_words(value: object) -> str:
         return "a text"
     if value is None:
         return "None"
-    if isinstance(value, int) and not isinstance(value, bool):
+    type_ = number_type(value)
+    if type_ is not None:
+        return type_name(type_)
+    if isinstance(value, int):
         return "an int beyond 64 bits"
-    module = type(value).__module__
-    if module == "numpy":
-        return f"a number of numpy ({type(value).__name__})"
+    if type(value).__module__ == "numpy":
+        kind = "an array" if getattr(value, "shape", ()) else "a number"
+        return f"{kind} of numpy ({type(value).__name__})"
     name = getattr(value, "__qualname__", None) or getattr(value, "__name__", None)
     return str(name) if name else f"a {type(value).__name__}"
 

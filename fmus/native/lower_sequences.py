@@ -9,6 +9,7 @@ from typing import Any
 from . import ir
 from .lower_frame import Frame, described
 from .lower_intervals import interval
+from .lower_text import is_text
 from .lower_types import is_enumeration, is_named_tuple
 from .lower_values import Group, Known, Run, Value, as_integer, literal
 from .values import BOOLEAN, INTEGER, ArrayType, EnumType, ListType, StructType, is_integral
@@ -209,6 +210,8 @@ def listed(frame: Frame, node: ast.AST, values: list[Value]) -> Value:
         raise frame.refuse(
             node, "a list without items never has any", "write [0.0] * N, the most that it holds"
         )
+    if all(is_text(value) for value in values):
+        return Group(tuple(values))  # it is joined where it is shown
     made = [frame.expr(node, value) for value in values]
     if any(e.type != made[0].type for e in made):
         raise frame.refuse(node, "items of different types", "write 0.0 where an item is a float")

@@ -108,6 +108,8 @@ def source_of(function: types.FunctionType) -> tuple[FunctionNode, Module]:
     code = function.__code__
     module = module_of(function.__globals__, inspect.getsourcefile(function) or code.co_filename)
     found = [node for node in ast.walk(module.tree) if _is_of(node, code)]
+    if len(found) == 1 and isinstance(found[0], ast.AsyncFunctionDef):
+        raise module.refuse(found[0], "`async`", "write a plain function")
     if len(found) != 1:
         raise Unsupported(
             f"{module.file.rpartition('/')[2]}:{code.co_firstlineno}: {function.__qualname__}: its source is "
@@ -121,7 +123,7 @@ def source_of(function: types.FunctionType) -> tuple[FunctionNode, Module]:
 def _is_of(node: ast.AST, code: types.CodeType) -> bool:
     if isinstance(node, ast.Lambda):
         return code.co_name == "<lambda>" and node.lineno == code.co_firstlineno
-    if not isinstance(node, ast.FunctionDef):
+    if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         return False
     first = min([node.lineno, *(d.lineno for d in node.decorator_list)])
     return node.name == code.co_name and first == code.co_firstlineno

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import cmath
+import functools
 import math
 import operator
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -23,37 +25,6 @@ from evcosim.fmus.native.values import (
 
 class Failed(Exception):
     """An exception of the model: its class's name, its text, file and line."""
-
-
-class _Return(Exception):
-    pass
-
-
-class _Break(Exception):
-    pass
-
-
-class _Continue(Exception):
-    pass
-
-
-_OPERATIONS: dict[str, Callable[..., Any]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "==": operator.eq,
-    "!=": operator.ne,
-}
-
-
-def _place(index: int, length: int) -> int:
-    (0,) * length
-    return range(length)[index]
 
 
 def _index(kind: str) -> Callable[[int, int], int]:
@@ -124,195 +95,191 @@ def function_named(name: str) -> Callable[..., Any]:
 
 
 class Interpreter:
-    """A program with one set of parameters."""
+    """A program with one set of parameters, each of its functions as one of Python."""
 
     def __init__(self, program: ir.Program, parameters: object) -> None:
         self.program = program
-        self.functions = {f.name: f for f in program.functions}
-        self.tables = {t.name: self._constant(t.value) for t in program.tables}
-        names = [name for name, _ in program.parameters.fields]
-        self.parameters = {name: _plain(getattr(parameters, name)) for name in names}
+        self.parameters = {name: _plain(getattr(parameters, name)) for name, _ in program.parameters.fields}
         self.derived: dict[str, Any] = {}
         self.memory: dict[str, tuple[Any, Any]] = {}
+        self.scope = dict(_compiled(program))
+        self.scope.update(derive=self._derive, remembered=self._remembered)
+        for name, function in _code(program).items():
+            exec(function, self.scope)
+            assert callable(self.scope[name])
 
-    def initial(self, u: object) -> dict[str, Any]:
+    def initial(self, u: object) -> Any:
         """Return x_0."""
-        return self._call(self.program.initial, [self.parameters, _fields(u)])
+        return self._call(self.program.initial, self.parameters, _fields(u))
 
-    def step(self, x: dict[str, Any], u: object, dt: float) -> dict[str, Any]:
+    def step(self, x: dict[str, Any], u: object, dt: float) -> Any:
         """Return the state after a step."""
-        return self._call(self.program.step, [self.parameters, x, _fields(u), dt])
+        return self._call(self.program.step, self.parameters, x, _fields(u), dt)
 
-    def outputs(self, x: dict[str, Any], u: object) -> dict[str, Any]:
+    def outputs(self, x: dict[str, Any], u: object) -> Any:
         """Return the outputs."""
-        more = [_fields(u)] if len(self.functions[self.program.outputs].arguments) == 3 else []
-        return self._call(self.program.outputs, [self.parameters, x, *more])
+        function = next(f for f in self.program.functions if f.name == self.program.outputs)
+        more = [_fields(u)] if len(function.arguments) == 3 else []
+        return self._call(self.program.outputs, self.parameters, x, *more)
 
-    def notice(self, before: dict[str, Any], after: dict[str, Any], u: object) -> str:
+    def notice(self, before: dict[str, Any], after: dict[str, Any], u: object) -> Any:
         """Return the sentence."""
         assert self.program.notice is not None
-        return self._call(self.program.notice, [self.parameters, before, after, _fields(u)])
+        return self._call(self.program.notice, self.parameters, before, after, _fields(u))
 
-    # -- functions -----------------------------------------------------------------------------------------
-
-    def _call(self, name: str, arguments: list[Any]) -> Any:
-        function = self.functions[name]
-        key = [a for a, local in zip(arguments, function.arguments, strict=True) if a is not self.parameters]
-        if function.remembers and name in self.memory and self.memory[name][0] == key:
-            return self.memory[name][1]
-        env = {local.name: a for local, a in zip(function.arguments, arguments, strict=True)}
-        known = {local.name for local in (*function.arguments, *function.locals)}
-        assert len(known) == len(function.arguments) + len(function.locals), "two variables of one name"
-        result = None
-        try:
-            self._run(function.body, env)
-        except _Return as returned:
-            result = returned.args[0]
-        assert set(env) <= known, f"{name} uses {set(env) - known}"
-        if function.remembers:
-            self.memory[name] = (key, result)
+    def _call(self, name: str, *arguments: Any) -> Any:
+        function = next(f for f in self.program.functions if f.name == name)
+        result = self.scope[f"f_{name}"](*arguments)
+        assert function.returns is None or _fits(result, function.returns), (name, result)
         return result
 
-    def _run(self, block: ir.Block, env: dict[str, Any]) -> None:
-        for statement in block:
-            self._statement(statement, env)
+    def _derive(self, p: Any, name: str) -> Any:
+        type_, function = self.program.parameters.derived[name]
+        if name not in self.derived:
+            self.derived[name] = self.scope[f"f_{function}"](p)
+            assert _fits(self.derived[name], type_), name
+        return self.derived[name]
 
-    def _statement(self, s: ir.Statement, env: dict[str, Any]) -> None:
-        match s:
-            case ir.Assign():
-                env[s.target.name] = self._value(s.value, env)
-            case ir.SetItem():
-                env[s.list.name][self._value(s.index, env)] = self._value(s.value, env)
-            case ir.Checked():
-                arguments = [self._value(a, env) for a in s.arguments]
-                env[s.target.name] = self._checked(s, arguments)
-            case ir.Call():
-                result = self._call(s.function, [self._argument(a, env) for a in s.arguments])
-                if s.target is not None:
-                    env[s.target.name] = result
-            case ir.Derive():
-                if s.name not in self.derived:
-                    function = self.program.parameters.derived[s.name][1]
-                    self.derived[s.name] = self._call(function, [self._value(s.parameters, env)])
-                env[s.target.name] = self.derived[s.name]
-            case ir.If():
-                self._run(s.then if self._value(s.test, env) else s.otherwise, env)
-            case ir.Return():
-                raise _Return(None if s.value is None else self._value(s.value, env))
-            case ir.Raise():
-                raise Failed(s.exception, self._text(s.text, env), s.place.file, s.place.line)
-            case ir.Say():
-                raise _Return(self._text(s.text, env))
-            case ir.For() | ir.While():
-                self._loop(s, env)
-            case ir.Break():
-                raise _Break
-            case ir.Continue():
-                raise _Continue
-            case _:
-                raise AssertionError(s)
+    def _remembered(self, name: str, *arguments: Any) -> Any:
+        key = [a for a in arguments if a is not self.parameters]
+        if name not in self.memory or self.memory[name][0] != key:
+            self.memory[name] = (key, self.scope[f"again_{name}"](*arguments))
+        return self.memory[name][1]
 
-    @staticmethod
-    def _checked(s: ir.Checked, arguments: list[Any]) -> Any:
+
+@functools.cache
+def _code(program: ir.Program) -> dict[str, Any]:
+    """Return the functions of a program as Python's code."""
+    return {f"f_{f.name}": compile(_function(f), f.name, "exec") for f in program.functions}
+
+
+@functools.cache
+def _compiled(program: ir.Program) -> dict[str, Any]:
+    """Return what the functions of a program need: tables, and functions of python_arithmetic.h."""
+    scope: dict[str, Any] = {f"t_{t.name}": eval(_e(t.value), {}) for t in program.tables}
+    names = set(re.findall(r"\b(py_\w+)\(", "".join(_function(f) for f in program.functions)))
+    checked = {re.sub("^py_", "checked_", name): _checked(function_named(name)) for name in names}
+    return (
+        scope | checked | {name: function_named(name) for name in names} | {"Failed": Failed, "shown": _shown}
+    )
+
+
+def _checked(function: Callable[..., Any]) -> Callable[..., Any]:
+    def call(file: str, line: int, is_integer: bool, *arguments: Any) -> Any:
         try:
-            result = function_named(s.function)(*arguments)
+            result = function(*arguments)
         except Exception as error:
-            raise Failed(type(error).__name__, str(error), s.place.file, s.place.line) from error
-        if s.target.type is INTEGER and not -(2**63) <= result < 2**63:
-            raise Failed("OverflowError", "an int beyond 64 bits", s.place.file, s.place.line)
-        assert _fits(result, s.target.type), (s, result)
+            raise Failed(type(error).__name__, str(error), file, line) from error
+        if is_integer and not -(2**63) <= result < 2**63:
+            raise Failed("OverflowError", "an int beyond 64 bits", file, line)
+        assert type(result) in (float, int, complex)
         return result
 
-    def _loop(self, s: ir.For | ir.While, env: dict[str, Any]) -> None:
-        if isinstance(s, ir.For):
-            turns = iter(range(self._value(s.start, env), self._value(s.stop, env), s.step))
-        while True:
-            if isinstance(s, ir.For):
-                k = next(turns, None)
-                if k is None:
-                    return
-                env[s.local.name] = k
-            else:
-                self._run(s.before, env)
-                if not self._value(s.test, env):
-                    return
-            try:
-                self._run(s.body, env)
-            except _Break:
-                return
-            except _Continue:
-                pass
+    return call
 
-    def _text(self, text: ir.Text, env: dict[str, Any]) -> str:
-        return "".join(piece if isinstance(piece, str) else self._shown(piece, env) for piece in text)
 
-    def _shown(self, shown: ir.Shown, env: dict[str, Any]) -> str:
-        value = self._value(shown.value, env)
-        return repr(value) if shown.spec == "!r" else format(value, shown.spec)
+def _shown(value: Any, spec: str) -> str:
+    return repr(value) if spec == "!r" else format(value, spec)
 
-    # -- expressions ---------------------------------------------------------------------------------------
 
-    def _constant(self, e: ir.Literal | ir.Make) -> Any:
-        return self._value(e, {})
+# -- as Python -----------------------------------------------------------------------------------------------
 
-    def _argument(self, e: ir.Expression, env: dict[str, Any]) -> Any:
-        return env[e.name] if isinstance(e, ir.Local) else self._value(e, env)
 
-    def _value(self, e: ir.Expression, env: dict[str, Any]) -> Any:
-        value = self._computed(e, env)
-        assert _fits(value, e.type), (e, value)
-        return list(value) if isinstance(e.type, ListType) else value
+def _function(f: ir.Function) -> str:
+    arguments = ", ".join(f"v_{a.name}" for a in f.arguments)
+    name = f"again_{f.name}" if f.remembers else f"f_{f.name}"
+    lines = [f"def {name}({arguments}):", *_block(f.body)]
+    if f.remembers:
+        lines += [f"def f_{f.name}({arguments}):", f"    return remembered({f.name!r}, {arguments})"]
+    return "\n".join(lines)
 
-    def _computed(self, e: ir.Expression, env: dict[str, Any]) -> Any:
-        match e:
-            case ir.Literal():
-                return e.value
-            case ir.Local():
-                return env[e.name]
-            case ir.TableItem():
-                return self.tables[e.name]
-            case ir.Field():
-                of = self._argument(e.of, env)
-                return (
-                    getattr(of, {"re": "real", "im": "imag"}[e.name]) if e.of.type is COMPLEX else of[e.name]
-                )
-            case ir.Item():
-                of, index = self._argument(e.of, env), self._value(e.index, env)
-                assert 0 <= index < len(of), e
-                return of[index]
-            case ir.Operation():
-                return self._operation(e, env)
-            case ir.Apply():
-                return function_named(e.function)(*(self._value(a, env) for a in e.arguments))
-            case ir.Invoke():
-                assert not self.functions[e.function].can_fail
-                return self._call(e.function, [self._argument(a, env) for a in e.arguments])
-            case ir.Select():
-                return self._value(e.then if self._value(e.test, env) else e.otherwise, env)
-            case ir.Convert():
-                value = self._value(e.value, env)
-                return float(value) if e.type is REAL else int(value)
-            case ir.Make():
-                values = [self._value(item, env) for item in e.items]
-                if isinstance(e.type, StructType):
-                    names = [name for name, _ in e.type.fields]
-                    return dict(zip(names, values, strict=True))
-                return values if isinstance(e.type, ListType) else tuple(values)
-        raise AssertionError(e)
 
-    def _operation(self, e: ir.Operation, env: dict[str, Any]) -> Any:
-        types = {operand.type for operand in e.operands}
-        assert len(types) == 1, e
-        if e.operator == "and":
-            return self._value(e.operands[0], env) and self._value(e.operands[1], env)
-        if e.operator == "or":
-            return self._value(e.operands[0], env) or self._value(e.operands[1], env)
-        values = [self._value(operand, env) for operand in e.operands]
-        if e.operator == "not":
-            return not values[0]
-        if len(values) == 1:
-            return -values[0]
-        return _OPERATIONS[e.operator](*values)
+def _block(block: ir.Block) -> list[str]:
+    return [f"    {line}" for s in block for line in _statement(s)] or ["    pass"]
+
+
+def _statement(s: ir.Statement) -> list[str]:
+    match s:
+        case ir.Assign():
+            copied = f"list({_e(s.value)})" if isinstance(s.target.type, ListType) else _e(s.value)
+            return [f"v_{s.target.name} = {copied}"]
+        case ir.SetItem():
+            return [f"v_{s.list.name}[{_e(s.index)}] = {_e(s.value)}"]
+        case ir.Checked():
+            place = f"{s.place.file!r}, {s.place.line}, {s.target.type is INTEGER}"
+            name = s.function.replace("py_", "checked_", 1)
+            # py_ stands in the text so that the name is found
+            return [f"v_{s.target.name} = {name}({place}, {_all(s.arguments)})  # {s.function}("]
+        case ir.Call():
+            target = "" if s.target is None else f"v_{s.target.name} = "
+            return [f"{target}f_{s.function}({_all(s.arguments)})"]
+        case ir.Derive():
+            return [f"v_{s.target.name} = derive({_e(s.parameters)}, {s.name!r})"]
+        case ir.If():
+            return [f"if {_e(s.test)}:", *_block(s.then), "else:", *_block(s.otherwise)]
+        case ir.For():
+            turns = f"range({_e(s.start)}, {_e(s.stop)}, {s.step})"
+            return [f"for v_{s.local.name} in {turns}:", *_block(s.body)]
+        case ir.While():
+            test = [f"    {line}" for before in s.before for line in _statement(before)]
+            return ["while True:", *test, f"    if not {_e(s.test)}: break", *_block(s.body)]
+        case ir.Return():
+            return ["return" if s.value is None else f"return {_e(s.value)}"]
+        case ir.Raise():
+            place = f"{s.place.file!r}, {s.place.line}"
+            return [f"raise Failed({s.exception!r}, {_text(s.text)}, {place})"]
+        case ir.Say():
+            return [f"return {_text(s.text)}"]
+        case ir.Break():
+            return ["break"]
+        case ir.Continue():
+            return ["continue"]
+    raise AssertionError(s)
+
+
+def _text(text: ir.Text) -> str:
+    pieces = (repr(p) if isinstance(p, str) else f"shown({_e(p.value)}, {p.spec!r})" for p in text)
+    return " + ".join(pieces) or "''"
+
+
+def _all(arguments: tuple[ir.Expression, ...]) -> str:
+    return ", ".join(_e(a) for a in arguments)
+
+
+def _e(e: ir.Expression) -> str:
+    """Return an expression as Python."""
+    match e:
+        case ir.Literal():
+            return f"float({str(e.value)!r})" if isinstance(e.value, float) else repr(e.value)
+        case ir.Local():
+            return f"v_{e.name}"
+        case ir.TableItem():
+            return f"t_{e.name}"
+        case ir.Field():
+            name = {"re": "real", "im": "imag"}.get(e.name)
+            return f"{_e(e.of)}.{name}" if e.of.type is COMPLEX else f"{_e(e.of)}[{e.name!r}]"
+        case ir.Item():
+            return f"{_e(e.of)}[{_e(e.index)}]"
+        case ir.Operation():
+            if len(e.operands) == 1:
+                return f"({e.operator} {_e(e.operands[0])})"
+            return f"({_e(e.operands[0])} {e.operator} {_e(e.operands[1])})"
+        case ir.Apply():
+            return f"{e.function}({_all(e.arguments)})"
+        case ir.Invoke():
+            return f"f_{e.function}({_all(e.arguments)})"
+        case ir.Select():
+            return f"({_e(e.then)} if {_e(e.test)} else {_e(e.otherwise)})"
+        case ir.Convert():
+            return f"{'float' if e.type is REAL else 'int'}({_e(e.value)})"
+        case ir.Make():
+            items = [_e(item) for item in e.items]
+            if isinstance(e.type, StructType):
+                names = [name for name, _ in e.type.fields]
+                return "{" + ", ".join(f"{n!r}: {x}" for n, x in zip(names, items, strict=True)) + "}"
+            inner = ", ".join(items)
+            return f"[{inner}]" if isinstance(e.type, ListType) else f"({inner},)"
+    raise AssertionError(e)
 
 
 def _fits(value: Any, type_: Any) -> bool:

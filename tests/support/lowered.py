@@ -23,7 +23,9 @@ def outcome(function: Any, *arguments: Any) -> Outcome:
     except Failed as failed:
         return ("failure", *failed.args)
     except Exception as error:
-        frame = traceback.extract_tb(error.__traceback__)[-1]
+        # an enumeration raises within Python's enum.py, the program where it is called
+        frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != enum.__file__]
+        frame = frames[-1]
         return ("failure", type(error).__name__, str(error), frame.filename, frame.lineno)
     return ("value", bits(value))
 

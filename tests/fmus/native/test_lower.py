@@ -12,21 +12,10 @@ from evcosim.fmus.catalog import CATALOG
 from evcosim.fmus.native import ir
 from evcosim.fmus.native.lower import lower
 from evcosim.models.base import Model
+from support.ir_types import check
 from support.lowered import compare
 
-LOWERED = [
-    "Battery",
-    "BoundController",
-    "BoundPlanner",
-    "ElectronicDifferential",
-    "Rider",
-    "Scooter",
-    "SlipController",
-    "TwoMotorVehicle",
-    "TwoWheelerBraking",
-    "WheelSpeedController",
-    "WheelSpeedEstimator",
-]
+LOWERED = [name for name in CATALOG if name not in ("LaneKeepingController", "LateralVehicle")]
 PROGRAMS: dict[str, ir.Program] = {}
 
 
@@ -44,7 +33,12 @@ def program(name: str) -> ir.Program:
 
 
 @pytest.mark.parametrize("name", LOWERED)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_program_computes_what_its_model_does(name: str, seed: int) -> None:
-    compare(model_named(name), program(name), seed, steps=1 if name.startswith("Two") else 8)
+    compare(model_named(name), program(name), seed, steps=8)
+
+
+@pytest.mark.parametrize("name", LOWERED)
+def test_a_program_keeps_the_rules_of_its_types(name: str) -> None:
+    check(program(name))
