@@ -70,7 +70,7 @@ def fetch(name: str, make: Callable[[], bytes], anew: bool = False) -> Path:
     """
     path, content = folder() / name, None
     try:
-        if not anew and _kept(path):
+        if not anew and holds(path):
             return path
         if path.parent not in _replaced:
             _make_folder()
@@ -118,15 +118,34 @@ _JUST_NOW = 100_000_000
 
 
 def settled(path: Path) -> tuple[int, ...] | None:
-    """Return what stays the same as long as a file is not written, or replaced; None if it just was.
+    """Return the state of a file; None if it was written just now. Raises OSError where there is none."""
+    found = state(path)
+    return None if time.time_ns() - max(found[-2:]) < _JUST_NOW else found
 
-    Raises OSError where there is none.
-    """
+
+def state(path: Path) -> tuple[int, ...]:
+    """Return what stays the same as long as a file is neither written nor replaced. Raises OSError."""
     about = os.lstat(path)
-    if time.time_ns() - max(about.st_mtime_ns, about.st_ctime_ns) < _JUST_NOW:
-        return None
     times = about.st_mtime_ns, about.st_ctime_ns
     return about.st_dev, about.st_ino, about.st_mode, about.st_uid, about.st_size, *times
+
+
+def draft_folder(name: str) -> Path:
+    """Make a folder in the cache for what is not whole yet; `remove_draft` ends it. Raises OSError."""
+    import tempfile
+
+    _make_folder()
+    draft = Path(tempfile.mkdtemp(prefix=f".{name}.", dir=folder()))
+    _unfinished.add(draft)
+    return draft
+
+
+def remove_draft(draft: Path) -> None:
+    """Remove a folder that was not finished; one that is there under its own name stays."""
+    import shutil
+
+    shutil.rmtree(draft, ignore_errors=True)
+    _unfinished.discard(draft)
 
 
 def write(path: Path, content: bytes, mode: int = 0o666) -> Path:
@@ -174,14 +193,17 @@ def take_away() -> None:
 _DAMAGED = "is damaged: its digest is not the one with which it was kept"
 
 
-def _kept(path: Path) -> bool:
-    """Return True for a file whose digest stands in the record beside it; drop any other. Raises OSError."""
+def holds(path: Path) -> bool:
+    """Return True for a file of the cache whose digest stands in the record beside it; drop any other.
+
+    Raises OSError.
+    """
     beside = path.with_name(path.name + _RECORD)
     states: tuple[object, object] = None, None
     with contextlib.suppress(OSError):  # what it is, reading says
         states = settled(path), settled(beside)
         if all(states) and _known.get(path) == states:
-            _require_our_folder(path.parent)
+            require_our_folder(path.parent)
             return True
     content = _read(path)
     record = _read(beside)
@@ -209,7 +231,7 @@ def _read(path: Path) -> bytes | None:
     """
     if not path.parent.exists():
         return None
-    _require_our_folder(path.parent)
+    require_our_folder(path.parent)
     try:
         with open(path, "rb", opener=_open_no_link) as file:
             about = os.fstat(file.fileno())
@@ -262,10 +284,10 @@ def _make_folder() -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with contextlib.suppress(FileExistsError):
         path.mkdir(mode=0o700)
-    _require_our_folder(path)
+    require_our_folder(path)
 
 
-def _require_our_folder(path: Path) -> None:
+def require_our_folder(path: Path) -> None:
     """Raise OSError for what is no folder, or one in which somebody else can write."""
     about = path.stat()
     if not stat.S_ISDIR(about.st_mode):

@@ -12,7 +12,6 @@ from pathlib import Path
 from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.file_names import check_name, near_file
 from ..cosim.reading import is_file
-from ..cosim.system.kinds import kind_of, other_file
 from ..cosim.writing import reason
 
 
@@ -62,6 +61,16 @@ def is_builtin(name: str, path: Path) -> bool:
         return False
     built = build.built(name)
     return built == path or built.read_bytes() == path.read_bytes()
+
+
+def unpacked(path: Path, binary: str) -> Path | None:
+    """Return a folder with the files of an FMU, in which nothing may be written; None if it has none.
+
+    Built-in FMUs have one in the cache, with the entry `binary` as their library.
+    """
+    from ..fmus import unpacked
+
+    return unpacked.unpacked(path, binary)
 
 
 def is_ours(name: str, path: Path, digest: str) -> bool:
@@ -165,6 +174,8 @@ def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
         return build.built(name)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
         if is_file(path):
+            from ..cosim.system.kinds import kind_of, other_file  # heavy for the process of a unit
+
             if path.suffix.lower() == ".toml" and (said := other_file(path)):
                 raise ConfigError(f"{start}{said}")
             if path.suffix.lower() not in (".fmu", ".zip") and (said := kind_of(path, "FMU")):

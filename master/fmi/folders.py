@@ -1,7 +1,7 @@
 """The folders that FMUs are extracted to: all units of an FMU in this process have one, and so one library.
 
-Its code then stands in the processor's caches once, however many units there are. The library is unloaded and
-the folder removed with the last of them.
+Its code then stands in the processor's caches once, however many units there are. The library is unloaded
+with the last of them, and the folder removed, unless it is the one in the cache that a built-in FMU has.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from .fmu import Fmu, FmuError, is_true
 @dataclasses.dataclass
 class _Folder:
     path: Path
+    kept: bool
     units: list[str] = dataclasses.field(default_factory=list)  # their names, which two systems may share
 
 
@@ -39,15 +40,20 @@ def take(fmu: Fmu, unit: str) -> Path:
                 f"(canBeInstantiatedOnlyOncePerProcess), and unit '{there.units[0]}' is it already: unit "
                 f"'{unit}' needs isolation = \"process\""
             )
-        folder = there or _Folder(_extracted(fmu, unit))
+        folder = there or _folder(fmu, unit)
         _folders[fmu.digest] = folder
         folder.units.append(unit)
         return folder.path
 
 
-def _extracted(fmu: Fmu, unit: str) -> Path:
+def _folder(fmu: Fmu, unit: str) -> _Folder:
+    if fmu.holds_python:
+        from ..builtin import unpacked  # which units in C do without
+
+        if (kept := unpacked(fmu.path, fmu.binary)) is not None:
+            return _Folder(kept, kept=True)
     try:
-        return fmu.extract()
+        return _Folder(fmu.extract(), kept=False)
     except ShortageError as error:
         raise ShortageError(f"unit '{unit}': {error}") from error
 
@@ -59,4 +65,5 @@ def give_back(fmu: Fmu, unit: str) -> None:
         folder.units.remove(unit)
         if not folder.units:
             del _folders[fmu.digest]
-            remove_folder(folder.path)
+            if not folder.kept:
+                remove_folder(folder.path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from ...cosim.shortage import reason_of_import
 from .fmu import Fmu, is_true
 
 _GUID = re.compile(rb"[0-9a-fA-F]{8}(?:-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}")
@@ -15,8 +16,11 @@ def why_refused(fmu: Fmu, library: Path, said: str) -> str:
     """Return a clause that begins with ":" and ends with the FMU's own words `said`, where there are any.
 
     The usual reason is a GUID (FMI 3.0: instantiationToken) that is not that of the library: the FMU says so,
-    or its library holds another one. Another is the absence of the tool that the FMU needs.
+    or its library holds another one. Another is the absence of the tool that the FMU needs, or a limit of
+    this process.
     """
+    if short := reason_of_import(Exception(said)):  # of a library, or a file of Python
+        return f": {short}"
     description = fmu.description
     name = "instantiationToken" if description.fmiVersion.startswith("3") else "GUID"
     declared = description.guid or ""

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from evcosim.master.builtin import cache_folder, fmu_file
 from evcosim.master.fmi import folders
 from evcosim.master.fmi.fmu import Fmu, FmuError, read_fmu
 from support.c_fmu import mixed_fmu
@@ -50,3 +51,17 @@ def test_an_fmu_that_is_there_once_in_a_process_has_one_unit(fmu: Fmu) -> None:
     folders.give_back(once, "a")
     folders.take(once, "b")
     folders.give_back(once, "b")
+
+
+def test_a_built_in_fmu_has_a_folder_that_stays(tmp_path: Path) -> None:
+    fmu = read_fmu(fmu_file("Battery"))
+    first = folders.take(fmu, "a")
+    folders.give_back(fmu, "a")
+    assert first.is_dir() and first.is_relative_to(cache_folder())
+    assert folders.take(fmu, "b") == first
+    folders.give_back(fmu, "b")
+    copy = tmp_path / "copy.fmu"
+    copy.write_bytes(fmu.path.read_bytes())
+    own = folders.take(read_fmu(copy), "a")
+    folders.give_back(fmu, "a")
+    assert own != first and not own.exists()

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from evcosim.cosim import shortage
 from evcosim.master.fmi.fmu import Fmu
 from evcosim.master.fmi.refusal import why_refused
 
@@ -53,3 +54,9 @@ def test_an_fmu_whose_tool_is_missing(tmp_path: Path) -> None:
     found = reason(tmp_path, "nothing", tool="true", generation_tool="ACME")
     assert found == ": it needs the tool that made it (ACME) to be installed (needsExecutionTool)"
     assert "(it does not say which)" in reason(tmp_path, "nothing", tool="true")
+
+
+def test_a_limit_of_this_process_is_the_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shortage, "_limit", lambda name: 7.0)
+    found = reason(tmp_path, "nothing", "[Fatal] OSError(24, 'Too many open files')")
+    assert found == ": Too many open files: the limit of open files is 7 (`ulimit -n`)"

@@ -19,7 +19,7 @@ HEAVY = (
     "can", "cantools", "jinja2", "llvmlite", "lxml", "matplotlib", "numba", "pandas", "pint", "pydantic",
     "rich", "scipy", "tomllib", "typer", "evcosim.cosim.can", "evcosim.cosim.results", "evcosim.cosim.system",
     "evcosim.cosim.plan.plan", "evcosim.cosim.plan.resolve", "evcosim.cosim.row_store", "evcosim.fmus.build",
-    "evcosim.master.builtin", "evcosim.master.cli", "evcosim.master.engine", "evcosim.master.prepare",
+    "evcosim.master.cli", "evcosim.master.engine", "evcosim.master.prepare",
     "evcosim.master.simulation", "evcosim.master.isolation.process", "evcosim.master.isolation.unit",
 )  # fmt: skip # one list
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from evcosim.cosim.errors import ShortageError
+from evcosim.master.builtin import build_fmu
 from evcosim.master.fmi.fmu import Fmu, read_fmu
 from evcosim.master.isolation.process import ProcessLimits
 from evcosim.master.isolation.unit import IsolatedUnit
@@ -100,6 +101,8 @@ def test_files_may_have_no_size(fmu: Fmu) -> None:
 
 def test_a_disk_of_every_size_that_is_too_small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = pair(tmp_path, 0)
+    rider = build_fmu("Rider", tmp_path)  # the built-in one is unpacked already
+    path.write_text(path.read_text().replace('fmu = "Rider"', f'fmu = "{rider}"'))
     for pages in (1, 2, 4, 6):
         with small_disk(tmp_path / f"disk{pages}", pages) as folder:
             monkeypatch.setattr(tempfile, "tempdir", str(folder))
