@@ -10,25 +10,19 @@
     resources/<Name>_<digest>/pythonfmu/...
 
 The digest is that of everything that goes in and of the code of this package, which puts it together; it also
-gives the guid. The same sources give the same bytes.
+gives the guid (recipes). The same sources give the same bytes.
 """
 
 from __future__ import annotations
 
-import functools
-import hashlib
 import re
-from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
-from typing import NamedTuple
 
-from . import cache, runtime
-from .catalog import CATALOG, Experiment, model_file
-from .sources import Source, collect, file_of, models_folder, own_roots, rewritten
-
-_OWN_LICENSE = "MIT"
-_HERE = Path(__file__).parent
+from . import cache, records, runtime
+from .catalog import CATALOG, Experiment
+from .recipes import Recipe, catalog_identity, catalog_recipe, recipe_of
+from .sources import file_of, own_roots, rewritten
 
 _ENTRY = '''\
 """The slave class of this FMU."""
@@ -83,23 +77,6 @@ _PACKAGES = ("numpy", "scipy")
 """The packages beside Python's own that a model of ours imports, some of them in a function only."""
 
 
-class Recipe(NamedTuple):
-    """The ingredients of an FMU, known without importing the model; `digest` has 32 hexadecimal digits."""
-
-    name: str
-    module: str
-    sources: tuple[Source, ...]
-    experiment: Experiment
-    version: str
-    license: str
-    digest: str
-
-    @property
-    def identity(self) -> str:
-        """Name of the package inside the FMU, which stands for this version of the model."""
-        return f"{self.name}_{self.digest[:12]}"
-
-
 def names() -> tuple[str, ...]:
     """Return the names of the FMUs that `build` and `built` know, in the catalog's order."""
     return tuple(CATALOG)
@@ -107,7 +84,7 @@ def names() -> tuple[str, ...]:
 
 def build(name: str, folder: str | Path) -> Path:
     """Write `folder/<name>.fmu` and return its path. Raises ValueError for an unknown name, OSError."""
-    return cache.write(Path(folder) / f"{name}.fmu", _content(_catalog_recipe(name)))
+    return cache.write(Path(folder) / f"{name}.fmu", _content(catalog_recipe(name)))
 
 
 def built(name: str, anew: bool = False) -> Path:
@@ -115,7 +92,7 @@ def built(name: str, anew: bool = False) -> Path:
 
     With `anew` it is built in any case. Raises ValueError for an unknown name.
     """
-    return cache.fetch(f"{_identity(name)}.fmu", lambda: _content(_catalog_recipe(name)), anew)
+    return cache.fetch(f"{catalog_identity(name)}.fmu", lambda: _content(catalog_recipe(name)), anew)
 
 
 def build_model(
@@ -134,126 +111,11 @@ def build_model(
     digest, so that evcosim runs it in its own process as it does the built-in ones.
     """
     module, file = file_of(model.__module__)
-    recipe = _recipe(model.__qualname__, module, file, experiment or Experiment(), version, license)
+    recipe = recipe_of(model.__qualname__, module, file, experiment or Experiment(), version, license)
     content = _content(recipe, model)
     path = cache.write(Path(folder) / f"{recipe.name}.fmu", content)
-    noted = f"{recipe.name}\n{own_roots(module, file).folder}\n"
-    cache.keep(_record(hashlib.sha256(content).hexdigest()), noted.encode("utf-8", "surrogateescape"))
+    records.note(content, recipe.name, own_roots(module, file).folder)
     return path
-
-
-def is_own(digest: str) -> bool:
-    """Return True if `build_model` made the file of this SHA-256 for this user on this machine.
-
-    The record of it is in the user's cache, which is trusted as its docstring says. Without a cache that can
-    be used there is none, and the FMU counts as anybody's.
-    """
-    return cache.load(_record(digest)) is not None
-
-
-def folder_of(digest: str) -> list[Path]:
-    """Return the folder of the files of which `build_model` made the FMU of a SHA-256, if it is known."""
-    noted = (cache.load(_record(digest)) or b"").decode("utf-8", "surrogateescape").split("\n")
-    return [Path(noted[1])] if len(noted) > 1 and noted[1] else []
-
-
-def _record(digest: str) -> str:
-    """Return the name in the cache that notes the FMU of a SHA-256 as built here."""
-    return f"built-here-{digest}"
-
-
-def _identity(name: str) -> str:
-    """Return the identity of a catalog FMU, as its recipe says; the cache keeps it by all that may change it.
-
-    To follow the import statements of a model takes longer than all the rest of finding its FMU.
-    Raises ValueError for an unknown name.
-    """
-    if name not in CATALOG:
-        return _catalog_recipe(name).identity
-    about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), _models(models_folder())))
-    if about not in _identities:
-        entry = f"identity-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
-        kept = (cache.load(entry) or b"").decode("ascii", "replace")
-        if not re.fullmatch(rf"{name}_[0-9a-f]{{12}}", kept):
-            kept = _catalog_recipe(name).identity
-            cache.keep(entry, kept.encode())  # a cache that keeps nothing is told with the FMU
-        _identities[about] = kept
-    return _identities[about]
-
-
-_identities: dict[str, str] = {}
-
-
-@functools.cache
-def _common(folder: Path, version: str) -> str:
-    """Return a digest of what all FMUs have in common; `folder` is that of this package."""
-    parts = runtime.binaries(), runtime.python_files(), runtime.licenses()
-    return _digest([version.encode(), *_flat(_own_code(folder)), *(p for part in parts for p in _flat(part))])
-
-
-_digests: dict[Path, tuple[object, str]] = {}
-
-
-def _models(folder: Path) -> str:
-    """Return a digest of the models of this package, read again where one was written since."""
-    files = sorted(folder.rglob("*.py"))
-    state = [(file, cache.settled(file)) for file in files]
-    before, digest = _digests.get(folder, (None, ""))
-    if before != state or not all(about for _, about in state):
-        digest = _digest([part for file in files for part in (str(file).encode(), file.read_bytes())])
-        _digests[folder] = state, digest
-    return digest
-
-
-def _catalog_recipe(name: str) -> Recipe:
-    if name not in CATALOG:
-        import difflib  # slow to import
-
-        near = difflib.get_close_matches(name, CATALOG, n=1, cutoff=0.5)
-        hint = f" (did you mean {near[0]!r}?)" if near else ""
-        raise ValueError(f"there is no built-in FMU {name!r}{hint}; there are {', '.join(CATALOG)}")
-    entry = CATALOG[name]
-    module = f"evcosim.models.{entry.module}"
-    version = runtime.version("evcosim")
-    return _recipe(name, module, model_file(name), entry.experiment, version, _OWN_LICENSE)
-
-
-def _recipe(name: str, module: str, file: Path, experiment: Experiment, version: str, license: str) -> Recipe:
-    if not (name.isidentifier() and name.isascii()):
-        raise ValueError(f"{name}: an FMU is built from a class at the top of its module, with an ASCII name")
-    sources = tuple(collect(module, file))
-    about = (name, module, experiment, version, license, runtime.version("evcosim"))
-    digest = _digest(
-        [
-            repr(about).encode(),
-            *(part for source in sources for part in (source.path.encode(), source.content)),
-            *_flat(_own_code(_HERE)),
-            *_flat(runtime.binaries()),
-            *_flat(runtime.python_files()),
-            *_flat(runtime.licenses()),
-        ]
-    )
-    return Recipe(name, module, sources, experiment, version, license, digest[:32])
-
-
-def _digest(parts: Iterable[bytes]) -> str:
-    """Return SHA-256 of parts, each with its length."""
-    digest = hashlib.sha256()
-    for part in parts:
-        digest.update(len(part).to_bytes(8, "big"))
-        digest.update(part)
-    return digest.hexdigest()
-
-
-@functools.cache
-def _own_code(folder: Path) -> dict[str, bytes]:
-    """Return every module that may decide on the bytes of an FMU of Python, by its path: all but `native`."""
-    files = sorted(file for file in folder.rglob("*.py") if folder / "native" not in file.parents)
-    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
-
-
-def _flat(files: dict[str, bytes]) -> list[bytes]:
-    return [part for name, content in files.items() for part in (name.encode(), content)]
 
 
 def _content(recipe: Recipe, model: type | None = None) -> bytes:

@@ -7,7 +7,7 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from .build import folder_of
+from .records import folder_of
 from .sources import Source, rewritten
 
 _RESOURCES = "resources/"

@@ -78,9 +78,9 @@ def is_ours(name: str, path: Path, digest: str) -> bool:
 
     `name` is that of its model, `digest` the SHA-256 of its file. Nobody else's code passes for ours.
     """
-    from ..fmus import build
+    from ..fmus import records
 
-    return is_builtin(name, path) or build.is_own(digest)
+    return is_builtin(name, path) or records.is_own(digest)
 
 
 def outdated(path: Path, digest: str) -> str:

@@ -14,7 +14,7 @@ import fmpy
 import pytest
 
 from evcosim.fmus import build as building
-from evcosim.fmus import cache
+from evcosim.fmus import cache, recipes
 from evcosim.fmus.build import build, build_model, built, names
 from evcosim.fmus.catalog import CATALOG, text
 from evcosim.fmus.description import headline
@@ -159,44 +159,44 @@ def test_a_second_run_builds_nothing(own_cache, monkeypatch):
 
 def test_a_kept_identity_is_that_of_the_recipe(own_cache, monkeypatch):
     """It is found without following imports, made anew where it is damaged, and another for another model."""
-    monkeypatch.setattr(building, "_identities", {})
+    monkeypatch.setattr(recipes, "_identities", {})
     expected = built("Battery").stem
     (entry,) = own_cache.glob("identity-*")
     followed = []
-    collect = building.collect
-    monkeypatch.setattr(building, "collect", lambda *given: followed.append(given) or collect(*given))
+    collect = recipes.collect
+    monkeypatch.setattr(recipes, "collect", lambda *given: followed.append(given) or collect(*given))
     for content, count in ((entry.read_bytes(), 0), (b"", 1), (b"\n", 1), (entry.read_bytes()[:-1], 1)):
-        monkeypatch.setattr(building, "_identities", {})
+        monkeypatch.setattr(recipes, "_identities", {})
         entry.write_bytes(content)
         followed.clear()
         assert built("Battery").stem == expected
         assert len(followed) == count
     assert cache.keep(entry.name, b"Scooter_0123456789ab") == ""  # whole, and of another model
-    monkeypatch.setattr(building, "_identities", {})
+    monkeypatch.setattr(recipes, "_identities", {})
     assert built("Battery").stem == expected
 
 
 def test_a_model_that_is_written_is_read_again(tmp_path, monkeypatch):
     (tmp_path / "model.py").write_text("a = 1")
-    first = building._models(tmp_path)
+    first = recipes._models(tmp_path)
     (tmp_path / "model.py").write_text("a = 2")  # within the same tick of the file system's clock
-    second = building._models(tmp_path)
+    second = recipes._models(tmp_path)
     monkeypatch.setattr(cache, "_JUST_NOW", -1)
-    assert building._models(tmp_path) == second != first
+    assert recipes._models(tmp_path) == second != first
     (tmp_path / "model.py").write_text("a = 10")
-    assert len({first, second, building._models(tmp_path)}) == 3
+    assert len({first, second, recipes._models(tmp_path)}) == 3
     (tmp_path / "other.py").write_text("")
-    assert len({first, second, building._models(tmp_path)}) == 3
+    assert len({first, second, recipes._models(tmp_path)}) == 3
 
 
-@pytest.mark.parametrize("changed", sorted(file.name for file in building._HERE.glob("*.py")))
+@pytest.mark.parametrize("changed", sorted(file.name for file in recipes._HERE.glob("*.py")))
 def test_another_builder_is_another_file_in_the_cache(changed, own_cache, tmp_path, monkeypatch):
     first = built("Battery")
     for folder, line, equal in (("copy", "", True), ("other", "# another line\n", False)):
-        shutil.copytree(building._HERE, tmp_path / folder)
+        shutil.copytree(recipes._HERE, tmp_path / folder)
         with (tmp_path / folder / changed).open("a") as file:
             file.write(line)
-        monkeypatch.setattr(building, "_HERE", tmp_path / folder)
+        monkeypatch.setattr(recipes, "_HERE", tmp_path / folder)
         assert (built("Battery") == first) is equal
 
 
@@ -269,8 +269,8 @@ def test_the_text_read_without_importing_is_the_one_in_the_description(name):
 
 
 def test_finding_all_built_fmus_reads_our_own_code_once(own_cache):
-    building._own_code.cache_clear()
+    recipes.own_code.cache_clear()
     for name in names() * 2:
         built(name)
-    folders = building._own_code.cache_info().currsize
-    assert building._own_code.cache_info().misses == folders <= 2
+    folders = recipes.own_code.cache_info().currsize
+    assert recipes.own_code.cache_info().misses == folders <= 2

@@ -6,9 +6,9 @@ import sys
 
 import pytest
 
-from evcosim.fmus.build import is_own
 from evcosim.fmus.catalog import CATALOG
 from evcosim.fmus.from_file import build_file, model_source
+from evcosim.fmus.records import is_own
 
 TWICE = """
 from evcosim.models.base import Model, record, var

@@ -1,0 +1,138 @@
+"""Recipes of FMUs: all that goes into one, known without importing the model, and its digest.
+
+The digest is that of the model's sources, of pythonfmu's parts and of the code of this package, which puts
+the FMU together: equal recipes give equal bytes.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from . import cache, runtime
+from .catalog import CATALOG, Experiment, model_file
+from .sources import Source, collect, models_folder
+
+_OWN_LICENSE = "MIT"
+_HERE = Path(__file__).parent
+
+
+class Recipe(NamedTuple):
+    """The ingredients of an FMU, known without importing the model; `digest` has 32 hexadecimal digits."""
+
+    name: str
+    module: str
+    sources: tuple[Source, ...]
+    experiment: Experiment
+    version: str
+    license: str
+    digest: str
+
+    @property
+    def identity(self) -> str:
+        """Name of the package inside the FMU, which stands for this version of the model."""
+        return f"{self.name}_{self.digest[:12]}"
+
+
+def catalog_identity(name: str) -> str:
+    """Return the identity of a catalog FMU, as its recipe says; the cache keeps it by all that may change it.
+
+    To follow the import statements of a model takes longer than all the rest of finding its FMU.
+    Raises ValueError for an unknown name.
+    """
+    if name not in CATALOG:
+        return catalog_recipe(name).identity
+    about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), _models(models_folder())))
+    if about not in _identities:
+        entry = f"identity-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
+        kept = (cache.load(entry) or b"").decode("ascii", "replace")
+        if not re.fullmatch(rf"{name}_[0-9a-f]{{12}}", kept):
+            kept = catalog_recipe(name).identity
+            cache.keep(entry, kept.encode())  # a cache that keeps nothing is told with the FMU
+        _identities[about] = kept
+    return _identities[about]
+
+
+_identities: dict[str, str] = {}
+
+
+@functools.cache
+def _common(folder: Path, version: str) -> str:
+    """Return a digest of what all FMUs have in common; `folder` is that of this package."""
+    parts = runtime.binaries(), runtime.python_files(), runtime.licenses()
+    return digest_of(
+        [version.encode(), *_flat(own_code(folder)), *(p for part in parts for p in _flat(part))]
+    )
+
+
+_digests: dict[Path, tuple[object, str]] = {}
+
+
+def _models(folder: Path) -> str:
+    """Return a digest of the models of this package, read again where one was written since."""
+    files = sorted(folder.rglob("*.py"))
+    state = [(file, cache.settled(file)) for file in files]
+    before, digest = _digests.get(folder, (None, ""))
+    if before != state or not all(about for _, about in state):
+        digest = digest_of([part for file in files for part in (str(file).encode(), file.read_bytes())])
+        _digests[folder] = state, digest
+    return digest
+
+
+def catalog_recipe(name: str) -> Recipe:
+    """Return the recipe of a built-in FMU. Raises ValueError for an unknown name, with the nearest one."""
+    if name not in CATALOG:
+        import difflib  # slow to import
+
+        near = difflib.get_close_matches(name, CATALOG, n=1, cutoff=0.5)
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        raise ValueError(f"there is no built-in FMU {name!r}{hint}; there are {', '.join(CATALOG)}")
+    entry = CATALOG[name]
+    module = f"evcosim.models.{entry.module}"
+    version = runtime.version("evcosim")
+    return recipe_of(name, module, model_file(name), entry.experiment, version, _OWN_LICENSE)
+
+
+def recipe_of(
+    name: str, module: str, file: Path, experiment: Experiment, version: str, license: str
+) -> Recipe:
+    """Return the recipe of a model in a file. Raises ValueError for one that cannot go into an FMU."""
+    if not (name.isidentifier() and name.isascii()):
+        raise ValueError(f"{name}: an FMU is built from a class at the top of its module, with an ASCII name")
+    sources = tuple(collect(module, file))
+    about = (name, module, experiment, version, license, runtime.version("evcosim"))
+    digest = digest_of(
+        [
+            repr(about).encode(),
+            *(part for source in sources for part in (source.path.encode(), source.content)),
+            *_flat(own_code(_HERE)),
+            *_flat(runtime.binaries()),
+            *_flat(runtime.python_files()),
+            *_flat(runtime.licenses()),
+        ]
+    )
+    return Recipe(name, module, sources, experiment, version, license, digest[:32])
+
+
+def digest_of(parts: Iterable[bytes]) -> str:
+    """Return SHA-256 of parts, each with its length."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(len(part).to_bytes(8, "big"))
+        digest.update(part)
+    return digest.hexdigest()
+
+
+@functools.cache
+def own_code(folder: Path) -> dict[str, bytes]:
+    """Return every module that may decide on the bytes of an FMU of Python, by its path: all but `native`."""
+    files = sorted(file for file in folder.rglob("*.py") if folder / "native" not in file.parents)
+    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
+
+
+def _flat(files: dict[str, bytes]) -> list[bytes]:
+    return [part for name, content in files.items() for part in (name.encode(), content)]
