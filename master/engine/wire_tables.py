@@ -18,6 +18,7 @@ from ...cosim.can.quantization import SignalOperation, decode
 from ...cosim.can.timing.lengths import bit_time
 from ...cosim.can.unfilled import raw_values
 from ...cosim.can.wire import tables as T
+from ...cosim.can.wire.buffers import NEVER
 from ...cosim.can.wire.payload import place_of, put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
@@ -53,6 +54,7 @@ def wire_arrays(
         "messages": _table(len(plans), T.MESSAGE),
         "base": _table(len(plans), T.BYTES),
         "waiting": _table(len(plans), T.BYTES),
+        "staged": _table(len(plans), T.BYTES),
         "kept": _table(len(plans), T.BYTES),
         "uses": _table(0, T.USE),
         "ids": np.zeros(max(1, 16 * len(plans)), dtype=np.int64),
@@ -138,7 +140,8 @@ def _add_buses(made: Arrays, plans: Sequence[MessagePlan], step: float) -> None:
             {T.DELAY: delay, T.TIMED: timed, T.FIRST_MESSAGE: own[0], T.MESSAGES: len(own),
              T.BIT: bit_time(settings.bitrate),
              T.DATA_BIT: bit_time(settings.data_bitrate or settings.bitrate),
-             T.SEED: settings.seed, T.NAME: zlib.crc32(bus.encode()), T.NOISY: settings.bit_error_rate > 0.0},
+             T.SEED: settings.seed, T.NAME: zlib.crc32(bus.encode()), T.NOISY: settings.bit_error_rate > 0.0,
+             T.NEXT_QUEUED: NEVER},
         )  # fmt: skip # a row
         right = math.log1p(-settings.bit_error_rate)
         made["chances"][row] = [-math.expm1(bits * right) for bits in range(_MOST_BITS)]

@@ -22,6 +22,7 @@ class Sent:
     jitter: int
     node: str = ""
     waiting: Frame | None = None
+    sampled: list[Frame] = dataclasses.field(default_factory=list)
     replaced: int = 0
     kind: str = "cyclic"
     interval: int = 0
@@ -33,6 +34,12 @@ class Sent:
         if self.extended:
             return f"{self.identifier:029b}"[:11] + "11" + f"{self.identifier:029b}"[11:] + "0"
         return f"{self.identifier:011b}00"
+
+    def queue(self, now: int) -> None:
+        """Let each sampled frame whose time has come take the place of one that waits."""
+        while self.sampled and self.sampled[0].ready <= now:
+            self.replaced += self.waiting is not None
+            self.waiting = self.sampled.pop(0)
 
 
 @dataclasses.dataclass
@@ -196,9 +203,10 @@ def carried(
         while samplings and samplings[0][0] <= now:
             moment, message, payload = samplings.pop(0)
             counts[message.name] += 1
-            message.replaced += message.waiting is not None
             ready = moment + int(drawn(message, counts[message.name]) * message.jitter)
-            message.waiting = Frame(message, payload, moment, ready)
+            message.sampled.append(Frame(message, payload, moment, ready))
+        for message in all_of_them:
+            message.queue(now)
         for babbler in babblers:
             if not babbler.period and babbler.since <= now:
                 babbler.message.waiting = Frame(babbler.message, bytes(babbler.length), now, now)
@@ -206,7 +214,7 @@ def carried(
                 babbler.message.waiting = None
         backs = [(off, off.back(found, bit)) for off in offs]
         away = {off.node for off, back in backs if off.since <= now < back}
-        able = [m for m in all_of_them if m.waiting and m.waiting.ready <= now and m.node not in away]
+        able = [m for m in all_of_them if m.waiting and m.node not in away]
         if free <= now and able:
             winner = min(able, key=lambda m: m.field)
             frame, winner.waiting = winner.waiting, None
@@ -216,7 +224,7 @@ def carried(
             found.append(frame)
             continue
         moments = [free, *(s[0] for s in samplings), *(b.since for b in babblers), *(b for _, b in backs)]
-        moments += [m.waiting.ready for m in all_of_them if m.waiting]
+        moments += [frame.ready for m in all_of_them for frame in m.sampled]
         later = [moment for moment in moments if moment > now]
         if not later or min(later) >= end:
             return found

@@ -74,13 +74,14 @@ class NoisyBus:
 
     `drawn` gives a number in [0, 1) for a message's n-th attempt from 0 on; the frame is right if that is
     beyond the probability that one of its bits is wrong, else its first wrong bit is the one at which that
-    probability passes it.
+    probability passes it. `late` gives the share of the jitter of its n-th frame from 1 on.
     """
 
     messages: list[Sent]
     rates: Rates
     chance: float
     drawn: Callable[[Sent, int], float]
+    late: Callable[[Sent, int], float]
     nodes: dict[str, Node] = dataclasses.field(default_factory=dict)
     on_air: list[Frame] = dataclasses.field(default_factory=list)
     attempts: dict[str, int] = dataclasses.field(default_factory=dict)
@@ -106,8 +107,11 @@ class NoisyBus:
             while samplings and samplings[0][0] <= now:
                 moment, place = samplings.pop(0)
                 message = self.messages[place]
-                message.replaced += message.waiting is not None
-                message.waiting = Frame(message, payloads[message.name, moment // step], moment, moment)
+                number = (moment // step - message.first) // message.cycle + 1
+                ready = moment + int(self.late(message, number) * message.jitter)
+                message.sampled.append(Frame(message, payloads[message.name, moment // step], moment, ready))
+            for message in self.messages:
+                message.queue(now)
             able = [m for m in self.messages if m.waiting and self._may_send(m, now)]
             if free <= now and able:
                 frame = min(able, key=lambda m: m.field).waiting
@@ -121,6 +125,7 @@ class NoisyBus:
                 else:
                     broken = frame
             moments = [free, *(s[0] for s in samplings[:1]), *(n.ready for n in self.nodes.values())]
+            moments += [frame.ready for m in self.messages for frame in m.sampled]
             moments += [n.off.back(self.on_air, self.rates.bit) for n in self.nodes.values() if n.off]
             now = min((moment for moment in moments if moment > now), default=steps * step)
         if broken is not None:  # what has begun before the end is counted to its end

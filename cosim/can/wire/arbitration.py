@@ -14,6 +14,7 @@ from ..timing.draws import drawn
 from ..timing.lengths import INTERFRAME, classic_bits, fd_bits
 from . import tables as T
 from .babble import ended
+from .buffers import NEVER, admit
 from .off import is_off, recover, strike, switch_off
 from .tables import Wire
 
@@ -22,7 +23,6 @@ _ERROR_FRAME = 20  # bits of the flags of all nodes and the delimiter
 _TAIL = 9  # bits behind those that may have the data bit rate
 _SUSPENDED = 8
 _PASSIVE, _OFF = 127, 255
-_NEVER = 0x7FFFFFFFFFFFFFFF
 
 
 def contend(w: Wire, bus: int, end: int) -> int:
@@ -34,9 +34,12 @@ def contend(w: Wire, bus: int, end: int) -> int:
     b = w.buses
     now = b[bus, T.FREE_AT]
     while now < end:
-        i, now = first_of(w, bus, now)
-        if i < 0 or now >= end:
-            break
+        if b[bus, T.NEXT_QUEUED] <= now:
+            admit(w, bus, now)
+        i, soonest = first_of(w, bus, now)
+        if i < 0:
+            now = min(soonest, b[bus, T.NEXT_QUEUED])
+            continue
         if (b[bus, T.STRIKES] and strike(w, bus, now)) or ended(w, i, now):
             now = b[bus, T.FREE_AT]
             continue
@@ -53,27 +56,19 @@ def contend(w: Wire, bus: int, end: int) -> int:
 
 
 def first_of(w: Wire, bus: int, now: int) -> tuple[int, int]:
-    """Return the message that wins the bus, which is idle from `now` on, and when; -1: none waits."""
+    """Return the message that wins the bus, which is idle at `now`, and `now`; -1: none may start yet.
+
+    With it comes the time at which one may that waits.
+    """
     m, first = w.messages, w.buses[bus, T.FIRST_MESSAGE]
-    soonest = _NEVER
+    soonest = NEVER
     for i in range(first, first + w.buses[bus, T.MESSAGES]):
         if m[i, T.QUEUED]:
             since = max(m[i, T.SINCE], w.nodes[m[i, T.NODE], T.READY_AT])
             if since <= now:
                 return i, now
             soonest = min(soonest, since)
-    if soonest == _NEVER:
-        return -1, now
-    return first_of_later(w, bus, soonest), soonest
-
-
-def first_of_later(w: Wire, bus: int, now: int) -> int:
-    """Return the message that wins the bus at a time at which one may start."""
-    m, first = w.messages, w.buses[bus, T.FIRST_MESSAGE]
-    for i in range(first, first + w.buses[bus, T.MESSAGES]):
-        if m[i, T.QUEUED] and max(m[i, T.SINCE], w.nodes[m[i, T.NODE], T.READY_AT]) <= now:
-            return i
-    return -1
+    return -1, soonest
 
 
 def carry(w: Wire, bus: int, i: int, now: int) -> int:

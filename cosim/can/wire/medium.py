@@ -7,6 +7,7 @@ from ..timing.lengths import INTERFRAME
 from . import tables as T
 from .arbitration import contend, number_of
 from .babble import begin, go_on
+from .buffers import admit, enter, stage
 from .faults import hit, spoil, spoil_logged
 from .log import log, log_error
 from .off import hear, is_off, note_hit, strike
@@ -70,32 +71,16 @@ def arrival_of(w: Wire, i: int, end: int, sampled: int) -> int:
 
 
 def queue(w: Wire, i: int, now: int) -> None:
-    """Let the frame at hand, of message i, wait for the bus in place of an earlier one that still waits."""
+    """Let the frame at hand, of message i, wait for the bus: from now on, or by its jitter from later on."""
     m, bus = w.messages, w.messages[i, T.BUS]
-    if m[i, T.QUEUED]:
-        m[i, T.REPLACED] += 1
-    else:
-        if m[i, T.PAGES] > 1:
-            replace_pages(w, i)
-        m[i, T.QUEUED] = 1
-        w.buses[bus, T.PENDING] += 1
-    m[i, T.SAMPLED] = m[i, T.SINCE] = now
     if m[i, T.JITTER]:
         purpose = _JITTER | m[i, T.PAGE] << 8
         draw = drawn(w.buses[bus, T.SEED], w.buses[bus, T.NAME], number_of(w, i), m[i, T.INSTANCE], purpose)
-        m[i, T.SINCE] += int(draw * m[i, T.JITTER])
+        stage(w, i, now, now + int(draw * m[i, T.JITTER]))
+        return
+    enter(w, i, now, now)
     for byte in range(m[i, T.LENGTH]):
         w.waiting[i, byte] = w.frame[byte]
-
-
-def replace_pages(w: Wire, i: int) -> None:
-    """Take another page of the message that still waits out of the buffer, which message i gets."""
-    m = w.messages
-    for j in range(i - m[i, T.PAGE], i - m[i, T.PAGE] + m[i, T.PAGES]):
-        if m[j, T.QUEUED]:
-            m[j, T.QUEUED] = 0
-            m[j, T.REPLACED] += 1
-            w.buses[m[i, T.BUS], T.PENDING] -= 1
 
 
 def run_bus(w: Wire, bus: int, k: int) -> int:
@@ -120,6 +105,8 @@ def run_bus(w: Wire, bus: int, k: int) -> int:
             go_on(w, i)
         else:
             push(w, m[i, T.RING], i, arrival_of(w, i, finish, m[i, T.SAMPLED]), m[i, T.SAMPLED])
+    if w.buses[bus, T.NEXT_QUEUED] < end:
+        admit(w, bus, end - 1)
     if w.buses[bus, T.STRIKES]:
         strike(w, bus, end - 1)
     return T.DONE

@@ -30,6 +30,7 @@ class Wire(NamedTuple):
     listeners: Any
     base: Any
     waiting: Any
+    staged: Any
     kept: Any
     uses: Any
     faults: Any
@@ -101,7 +102,9 @@ looked at."""
 """USES rows of `uses` from FIRST_USE on: one for each unit that receives it."""
 COVERED = 72
 """The bytes that the checksum of a profile covers: without those that the frame adds to its message."""
-MESSAGE = 73
+(STAGED, STAGED_SINCE, STAGED_SAMPLED) = range(73, 76)
+"""1 while a frame stands in `staged` that is not queued yet, when it will be, and the time of its values."""
+MESSAGE = 76
 SUM = 2**62
 CYCLIC, ON_CHANGE, MIXED, IF_ACTIVE, ON_WRITE = range(5)
 VERDICTS = 0x41
@@ -142,8 +145,8 @@ a frame that they took, 1 while they have `fallback`, and how often that was; 1 
 taken, since `watch` looked."""
 
 BYTES = 64
-"""Columns of `base` and `waiting`, of a message's payload: what stands there unless a signal is written, and
-the frame that waits."""
+"""Columns of `base`, `waiting` and `staged`, of a message's payload: what stands there unless a signal is
+written, the frame that waits, and the one that is not queued yet."""
 
 (TURN_EVERY, FIRST_TURN, LATER, USER, USED_AT, USE_SAMPLED, USE_COUNT, USE_LEAST, USE_SUM, USE_MOST) = range(
     10
@@ -165,13 +168,14 @@ FLIGHT = PAYLOAD + BYTES
 """Columns of flights: a message, the time at which its frame reaches receivers, and that of its values."""
 
 (FREE_AT, PENDING, DELAY, TIMED, FIRST_MESSAGE, MESSAGES, BIT, DATA_BIT, SEED, NAME, NOISY) = range(11)
-(BEGUN, STRIKES, OFF_NODES, TO_BABBLE, BEGUN_BY) = range(11, 16)
-BUS_WIDTH = 16
-"""Columns of buses: the time from which on it is idle; the number of messages that wait; what is added to the
-end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on, in the order in which
-they win the bus; the times of a bit; the seed of its draws and a number of its name; 1 if bits may be wrong;
-the start of the last frame; faults to come that take a node off the bus, nodes that are, and faults to come
-that babble; the message of the last frame.
+(BEGUN, STRIKES, OFF_NODES, TO_BABBLE, BEGUN_BY, NEXT_QUEUED) = range(11, 17)
+BUS_WIDTH = 17
+"""Columns of buses: the time from which on it is idle; the number of frames that wait, or are not queued yet;
+what is added to the end of a frame; 1 if frames take time; MESSAGES rows of messages from FIRST_MESSAGE on,
+in the order in which they win the bus; the times of a bit; the seed of its draws and a number of its name; 1
+if bits may be wrong; the start of the last frame; faults to come that take a node off the bus, nodes that
+are, and faults to come that babble; the message of the last frame; the time at which the next frame in
+`staged` is queued.
 Row i of `chances`, float64, has the probability that n bits on bus i are not all right in column n."""
 
 (READY_AT, ERROR_COUNT, RECEIVE_COUNT, BUS_OF, BUS_OFFS) = range(5)

@@ -23,6 +23,7 @@ from ....cosim.can.timing import draws, lengths
 from ....cosim.can.wire import (
     arbitration,
     babble,
+    buffers,
     faults,
     log,
     medium,
@@ -37,8 +38,8 @@ from ...machine.access import call_3
 from .wire_types import BY_ANNOTATION, wire_at
 
 MODULES: tuple[ModuleType, ...] = (
-    draws, lengths, profiles, counters, payload, off, values, log, babble, arbitration, protect, faults,
-    requests, uses, medium,
+    draws, lengths, profiles, counters, payload, off, values, log, babble, buffers, arbitration, protect,
+    faults, requests, uses, medium,
 )  # fmt: skip # by what they need
 """The modules whose functions are compiled."""
 SIGNATURE = "int32(int64, int64, int64, int64)"

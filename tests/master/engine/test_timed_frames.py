@@ -52,7 +52,6 @@ def buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], BusSet
     use = BusSettings(
         timing="frame",
         bitrate=draw(st.sampled_from([83_333, 125_000, 500_000, 1_000_000])),
-        jitter=draw(st.sampled_from([0.0, 2e-4, 9e-4])),
         delay=draw(st.sampled_from([0.0, 1e-3, 2.3e-3])),
         seed=draw(st.integers(0, 3)),
     )
@@ -113,13 +112,24 @@ SENDINGS = st.builds(
 
 
 @settings(deadline=None, max_examples=100)
-@given(faulty_buses(), st.lists(SENDINGS, min_size=6, max_size=6), st.integers(0, 2**32))
-def test_who_is_carried_when_and_what_is_seen(case, sendings, seed):
+@given(
+    faulty_buses(),
+    st.lists(SENDINGS, min_size=6, max_size=6),
+    st.sampled_from([0.0, 0.2, 0.9, 0.999]),
+    st.integers(0, 2**32),
+)
+def test_who_is_carried_when_and_what_is_seen(case, sendings, part, seed):
     messages, times, use, faults = case
     times = [
         (every, first) if sending.kind == "cyclic" else (1, first)
         for (every, first), sending in zip(times, sendings, strict=False)
     ]
+    apart = [
+        every if s.kind == "cyclic" else max(every, s.interval)
+        for (every, _), s in zip(times, sendings, strict=False)
+    ]
+    late = {m.name: {"jitter": part * steps * STEP} for m, steps in zip(messages, apart, strict=True)}
+    use = BusSettings.model_validate(use.model_dump() | {"messages": late})
     path, memory, plans = path_of(messages, times, use, faults, sendings)
     random = np.random.default_rng(seed)
     values = random.integers(0, 2**48, (STEPS, len(messages)))
@@ -138,7 +148,7 @@ def test_who_is_carried_when_and_what_is_seen(case, sendings, seed):
         path.act(*path.operation(Action("contend", 0)), k)
     sent = [
         Sent(m.name, m.frame_id, m.extended, every if one.kind == "cyclic" else one.cycle, first,
-             round(use.jitter * 1e12), m.senders[0], kind=one.kind, interval=one.interval)
+             round(use.jitter_of(m.name) * 1e12), m.senders[0], kind=one.kind, interval=one.interval)
         for m, (every, first), one in zip(messages, times, sendings, strict=False)
     ]  # fmt: skip # one call
     sent_at = {s.name: requested(s, values[:, i].tolist(), 0) for i, s in enumerate(sent)}

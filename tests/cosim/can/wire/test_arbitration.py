@@ -22,7 +22,7 @@ def contend(w, bus, end):
 
 def wire(count: int = 2, chance: float = 0.0) -> SimpleNamespace:
     """Messages of one byte, identifiers 16, 17 ..., each of a node of its own, on one bus; all wait."""
-    tables = {name: np.zeros((8, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((8, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables |= {name: np.zeros(80, dtype=np.int64) for name in ("frame", "state")}
     tables["nodes"][count:, T.BUS_OF] = -1
     tables["chances"] = np.full((1, 1024), chance)

@@ -17,7 +17,7 @@ from support.bus_oracle import struck
 
 def wire(**columns: int) -> SimpleNamespace:
     """Two messages of the nodes 4 and 5 with the keys 7 and 8, and one fault from time 10 to 20."""
-    tables = {name: np.zeros((8, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((8, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables |= {name: np.zeros(80, dtype=np.int64) for name in ("frame", "state")}
     tables["odds"] = np.ones(8)
     tables["messages"][:2, T.NODE], tables["messages"][:2, T.KEY] = (4, 5), (7, 8)

@@ -10,7 +10,7 @@ from evcosim.cosim.can.wire.tables import Wire
 
 
 def wire(helper=None) -> Wire:
-    tables = {name: np.zeros((8, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((8, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables |= {name: np.zeros(80, dtype=np.int64) for name in ("frame", "state")}
     tables["messages"][0, [T.LOGGED, T.LENGTH]] = 1, 12
     return Wire(**tables | {"helper": helper})

@@ -53,12 +53,16 @@ def noisy_buses(draw: st.DrawFn) -> tuple[list[Message], list[tuple[int, int]], 
         identifier = number << 18 | draw(st.integers(0, 2**18 - 1)) if extended else number
         messages.append(message(f"M{i}", identifier, length, "ABCDE"[i % nodes], extended, wide))
     times = [(draw(st.integers(1, 4)), draw(st.integers(0, 3))) for _ in messages]
+    part = draw(st.sampled_from([0.0, 0.0, 0.3, 0.98]))  # of the cycle
     use = BusSettings(
         timing="frame",
         bitrate=draw(st.sampled_from([125_000, 500_000])),
         data_bitrate=draw(st.sampled_from([None, 2_000_000])) if fd else None,
         bit_error_rate=draw(st.sampled_from([1e-5, 1e-3, 4e-3, 0.02, 0.3])),
         seed=draw(st.integers(0, 50)),
+        messages={
+            m.name: {"jitter": part * every * STEP} for m, (every, _) in zip(messages, times, strict=True)
+        },
     )
     return messages, times, use
 
@@ -98,13 +102,15 @@ def test_frames_counters_and_bus_off_are_those_of_the_oracle(case, seed):
     )
     name = int(path.arrays["buses"][0, T.NAME])
     sent = [
-        Sent(m.name, m.frame_id, m.extended, every, first, 0, m.senders[0], fd=m.fd)
+        Sent(m.name, m.frame_id, m.extended, every, first, round(use.jitter_of(m.name) * 1e12), m.senders[0],
+             fd=m.fd)
         for m, (every, first) in zip(messages, times, strict=True)
-    ]
-    bus = NoisyBus(
-        sent, rates, use.bit_error_rate,
-        lambda m, n: drawn(use.seed, name, m.identifier | m.extended << 29, n, 2),
-    )  # fmt: skip # one call
+    ]  # fmt: skip # one call
+    wrong, late = (
+        lambda m, n, purpose=purpose: drawn(use.seed, name, m.identifier | m.extended << 29, n, purpose)
+        for purpose in (2, 1)
+    )
+    bus = NoisyBus(sent, rates, use.bit_error_rate, wrong, late)
     payloads = {
         (m.name, k): int(values[k, i]).to_bytes(6, "little")[: m.length].ljust(m.length, b"\0")
         for i, m in enumerate(messages)

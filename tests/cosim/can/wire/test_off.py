@@ -13,7 +13,7 @@ from evcosim.cosim.can.wire.tables import Wire
 
 def wire(since: int = 1000, until: int = 2000) -> SimpleNamespace:
     """Two nodes on a bus, of which a fault takes the second off; message 0 is heard by both."""
-    tables = {name: np.zeros((4, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((4, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables |= {name: np.zeros(80, dtype=np.int64) for name in ("frame", "state", "statuses")}
     tables["nodes"][2:, T.BUS_OF] = -1
     tables["buses"][0, [T.BIT, T.STRIKES]] = 1, 1

@@ -12,7 +12,7 @@ from evcosim.cosim.can.wire.tables import Wire
 
 def sent(kind: int, values: list[int], cycle: int = 0, interval: int = 0) -> list[int]:
     """The steps at which one message of one signal is sent; 0 is its inactive value."""
-    tables = {name: np.zeros((2, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((2, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables["messages"][0, [T.SEND_TYPE, T.CYCLE, T.INTERVAL, T.SIGNALS]] = kind, cycle, interval, 1
     w = Wire(**tables)
     found = []

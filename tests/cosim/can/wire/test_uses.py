@@ -19,7 +19,7 @@ from evcosim.cosim.can.wire.uses import count_use, note, use
     ],
 )
 def test_a_value_is_used_in_the_next_turn(every, first, later, arrivals, delays):
-    tables = {name: np.zeros((2, 80), dtype=np.int64) for name in Wire._fields}
+    tables = {name: np.zeros((2, T.MESSAGE), dtype=np.int64) for name in Wire._fields}
     tables["state"] = np.ones(8, dtype=np.int64)
     tables["messages"][0, [T.USES, T.LISTENERS]] = 1
     tables["uses"][0, [T.TURN_EVERY, T.FIRST_TURN, T.LATER, T.USED_AT]] = every, first, later, -1
