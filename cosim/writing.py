@@ -1,15 +1,19 @@
-"""The writer of all files, so that the name of one never stands for half a file, and tables in pages."""
+"""The writer of all files, so that the name of one never stands for half a file.
+
+Beside it data as JSON has it, and tables in pages.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import math
 import os
 import secrets
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from . import shortage
 from .errors import ConfigError
@@ -109,3 +113,16 @@ def markdown_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> lis
     escaped = [[cell.replace("|", "\\|").replace("\n", " ") for cell in cells] for cells in (headers, *rows)]
     head, *body = (f"| {' | '.join(cells)} |" for cells in escaped)
     return [head, "|---" * len(headers) + "|", *body]
+
+
+def finite(data: Any) -> Any:
+    """Return data as JSON has it: texts as keys, numbers of numpy as Python's, None for NaN and infinity."""
+    if isinstance(data, Mapping):
+        return {str(key): finite(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [finite(value) for value in data]
+    if type(data).__module__ == "numpy":
+        return finite(data.item())
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    return str(data) if isinstance(data, os.PathLike) else data

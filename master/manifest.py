@@ -55,6 +55,7 @@ def manifest(
         "buses": {name: bus.model_dump() for name, bus in system.file.buses.items()},
         "frames": bus_statistics(engine.frames, engine.k),
         "effective_delays": effective_delays(plan, engine.frames, engine.k),
+        "pages": {f"{m.bus}.{m.label}": [r.signal.name for r in m.routes] for m in plan.messages if m.page},
         "faults": described(plan.faults, hits_of(engine.frames.arrays, plan.faults)),
         "bus_load": [load.as_data() for load in bus_loads(plan.messages, plan.clock.step).values()],
         "events": [

@@ -20,7 +20,7 @@ from typing import Any, Literal
 from ..can.bus_settings import BusVariation
 from ..results.metrics import Metric
 from ..visible import visible
-from ..writing import markdown_table
+from ..writing import finite, markdown_table
 
 _QUANTILE = 0.8
 
@@ -238,17 +238,13 @@ def _point(budget: Budget, point: Point) -> dict[str, Any]:
         "label": point.label,
         "nominal": point.bus == BusVariation(),
         "bus": dataclasses.asdict(point.bus),
-        "value": _finite(point.value),
-        "seeds": [_finite(value) for value in point.values],
-        "quantile": _finite(point.quantile),
+        "value": finite(point.value),
+        "seeds": finite(point.values),
+        "quantile": finite(point.quantile),
         "broken": budget.broken(point),
         "failed": point.failed,
         "reason": point.reason,
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def as_csv(budget: Budget) -> str:

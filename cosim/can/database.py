@@ -132,11 +132,6 @@ class Message:
     own_length: int = 0
 
     @property
-    def multiplexed(self) -> bool:
-        """True when a signal selects which other signals a frame holds."""
-        return any(s.is_multiplexer for s in self.signals.values())
-
-    @property
     def priority(self) -> int:
         """The number by which its frames win the arbitration: the least of those that start at once."""
         return arbitration_key(self.frame_id, self.extended)

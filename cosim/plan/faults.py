@@ -14,8 +14,8 @@ from ..errors import ConfigError, nearest
 from ..system.fault_spec import Babble, BusOff, Corrupt, Delay, Fault, Freeze, Lose, target_of
 from ..system.scenario import Scenario
 from ..system.system import System
+from .nodes import node_of, receiving_nodes
 from .plan import FaultPlan, MessagePlan, Plan
-from .receivers import node_of, receiving_nodes
 
 FOREVER = 2**62
 """The end [ps] of a fault without a duration; no time is farther."""

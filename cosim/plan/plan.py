@@ -101,6 +101,11 @@ class MessagePlan:
     replayed: bool = False
 
     @property
+    def label(self) -> str:
+        """The name of the message, and of a page the raw values of its multiplexers, as "MSG Page = 1"."""
+        return self.message.name + "".join(f" {name} = {raw}" for name, raw in self.page.items())
+
+    @property
     def watched(self) -> bool:
         """True where somebody looks, once a cycle, whether a frame came."""
         own = self.settings.of_message(self.message.name)

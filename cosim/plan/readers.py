@@ -1,4 +1,4 @@
-"""The units that receive the messages of a plan, with the steps at which they take their values."""
+"""The steps at which units take what messages bring, by message and unit (a reader)."""
 
 from __future__ import annotations
 

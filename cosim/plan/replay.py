@@ -24,8 +24,8 @@ from ..system.can_log_spec import CanLogEntry
 from ..system.scenario import Scenario
 from ..system.system import System
 from ..system.toml import data_file
+from .log_receivers import LogReceivers
 from .plan import MessagePlan, ReplayPlan
-from .received import Received
 from .steps import steps_in
 
 _MOST = 8  # names in a sentence
@@ -33,7 +33,9 @@ _COARSE = 0.02  # of a step; times that are rounded to more of it are told
 _LATEST = 4.6e9  # seconds; LATEST of the readers
 
 
-def with_replays(system: System, scenario: Scenario, received: Received, clock: Clock) -> list[ReplayPlan]:
+def with_replays(
+    system: System, scenario: Scenario, received: LogReceivers, clock: Clock
+) -> list[ReplayPlan]:
     """Return the replays of a scenario; add their messages, and what to know of them, to the network.
 
     Raises ConfigError, which names the place in the scenario or in the log, for all that does not fit.

@@ -29,9 +29,9 @@ from .events import scheduled
 from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
 from .initials import check_initials
+from .log_receivers import LogReceivers
 from .network import Network
 from .plan import Drive, InputPlan, Plan
-from .received import Received
 from .recorded import Record
 from .replay import with_replays
 from .slots import Slots, allot
@@ -87,7 +87,7 @@ def _resolved(
     clock = _clock(experiment, len(columns), _stop_time_in(system, scenario, options))
     turns = _turns(system, entries, clock)
     network = connect(system, interfaces, slots, turns, clock, algorithm, ideal)
-    replays = with_replays(system, scenario, Received(system, interfaces, slots, network, ideal), clock)
+    replays = with_replays(system, scenario, LogReceivers(system, interfaces, slots, network, ideal), clock)
     network.warnings += check_initials(system, network.databases, network.messages)
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     named, started = by_kind(options, interfaces, network)

@@ -149,10 +149,26 @@ def units_section(about: Mapping[str, Any]) -> str:
 
 
 def _delay(about: Mapping[str, Any], via: str, unit: str) -> str:
-    """Return least, mean and greatest time [ms] from the sampling of a bus signal to a unit's use of it."""
-    times = dict(items_of(dict(items_of(about.get("effective_delays"))).get(via.rpartition(".")[0]))).get(
-        unit
-    )
+    """Return least, mean and greatest time [ms] from the sampling of a bus signal to a unit's use of it.
+
+    A signal of several pages of a message that differ in it has those of each.
+    """
+    message, _, signal = via.rpartition(".")
+    delays = dict(items_of(about.get("effective_delays")))
+    if message in delays:
+        return _times(dict(items_of(delays[message])).get(unit))
+    found: dict[str, list[str]] = {}
+    for label, signals in items_of(about.get("pages")):
+        page = label.removeprefix(f"{message} ")
+        times = _times(dict(items_of(delays.get(label))).get(unit))
+        if page != label and signal in texts_of(signals) and times:
+            found.setdefault(times, []).append(page)
+    if len(found) == 1:
+        return next(iter(found))
+    return "; ".join(f"{times} where {' or '.join(pages)}" for times, pages in found.items())
+
+
+def _times(times: Any) -> str:
     if not isinstance(times, Mapping):
         return ""
     least, mean, most = (1e3 * times[key] for key in ("min", "mean", "max"))

@@ -5,19 +5,16 @@ from __future__ import annotations
 import dataclasses
 import errno
 import json
-import math
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..errors import ConfigError, short
 from ..reading import content
 from ..row_store import write_all
 from ..visible import visible_json
-from ..writing import replacing
+from ..writing import finite, replacing
 from .variable import ResultVariable
 
 _BEGIN = b'{"evcosim"'  # of a run.json, without white space
@@ -54,7 +51,7 @@ def overwrite_manifest(path: Path, manifest: Mapping[str, Any], variables: Itera
 
 def manifest_text(about: Mapping[str, Any], indent: int | None = 2) -> bytes:
     """Return facts as JSON; without an indent it is one line."""
-    text = json.dumps(_jsonable(about), indent=indent, allow_nan=False, ensure_ascii=False)
+    text = json.dumps(finite(about), indent=indent, allow_nan=False, ensure_ascii=False)
     return visible_json(text).encode()
 
 
@@ -75,19 +72,6 @@ def described(variable: ResultVariable) -> dict[str, Any]:
         if not about[name]:
             del about[name]
     return about
-
-
-def _jsonable(value: Any) -> Any:
-    """Return a value as JSON has it: arrays' numbers as Python's, paths as text, NaN and infinity as None."""
-    if isinstance(value, Mapping):
-        return {str(key): _jsonable(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_jsonable(inner) for inner in value]
-    if isinstance(value, np.generic):
-        return _jsonable(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return str(value) if isinstance(value, os.PathLike) else value
 
 
 def _read(path: Path) -> dict[str, Any]:

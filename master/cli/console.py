@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import os
 import shutil
 import sys
@@ -16,6 +15,7 @@ from typing import Any
 import typer
 
 from ...cosim.visible import flowing, naming, on_one_line, raw_stream, visible, visible_json, visible_stream
+from ...cosim.writing import finite
 from .wrapping import GAP, is_narrow, wrapped, wrapped_below
 
 _UNBOUNDED = 10_000  # columns of a file: a line of a table is a line of the file
@@ -29,17 +29,6 @@ Show = Callable[[float], None]
 def print_json(data: Any) -> None:
     """Print JSON; a number that is not finite becomes null."""
     print(visible_json(json.dumps(finite(data), indent=2, ensure_ascii=False, allow_nan=False)))
-
-
-def finite(data: Any) -> Any:
-    """Return the data with texts as keys, and None for numbers that are not finite: JSON has none."""
-    if isinstance(data, Mapping):
-        return {str(key): finite(value) for key, value in data.items()}
-    if isinstance(data, (list, tuple)):
-        return [finite(value) for value in data]
-    if isinstance(data, float) and not math.isfinite(data):
-        return None
-    return str(data) if isinstance(data, os.PathLike) else data
 
 
 def print_table(headers: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[str] = ()) -> None:

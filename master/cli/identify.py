@@ -240,8 +240,7 @@ def _write(
     folder: Path, found: list[Identification], figures: bool, settings: dict[str, Any]
 ) -> Iterator[str]:
     """Write data and figures and yield the names of the files. Raises ConfigError."""
-    from ...cosim.writing import write_text
-    from .console import finite
+    from ...cosim.writing import finite, write_text
     from .studies import with_settings
 
     data = [with_settings(each.as_data(), settings) for each in found]

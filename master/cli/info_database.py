@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from ...cosim.can.timing.lengths import frame_times
 from ...cosim.errors import ConfigError, counted
 from ...cosim.units.definition import defined
 from ...cosim.units.measure import UnknownUnitError
+from ...cosim.writing import finite
 from .console import number, print_fields, print_paragraph, print_table, print_title
 
 _BUS = BusSettings()  # as a bus is without any
@@ -97,10 +97,10 @@ def _signal(message: Message, signal: Signal) -> dict[str, Any]:
         "little_endian": signal.little_endian,
         "signed": signal.signed,
         "float": signal.is_float,
-        "scale": _finite(signal.scale),
-        "offset": _finite(signal.offset),
-        "minimum": _finite(signal.minimum),
-        "maximum": _finite(signal.maximum),
+        "scale": finite(signal.scale),
+        "offset": finite(signal.offset),
+        "minimum": finite(signal.minimum),
+        "maximum": finite(signal.maximum),
         "unit": signal.unit,
         "unit_known": _is_known(signal.unit),
         "choices": {str(raw): text for raw, text in signal.choices.items()},
@@ -113,11 +113,6 @@ def _signal(message: Message, signal: Signal) -> dict[str, Any]:
         "note": "; ".join(filter(None, (signal.note, "" if refused else limits_note(signal, _BUS)))),
         "refused": refused,
     }
-
-
-def _finite(value: float | None) -> float | None:
-    """Return a number; None for what is none in JSON, which no signal that can be used has."""
-    return value if value is not None and math.isfinite(value) else None
 
 
 def _is_known(unit: str) -> bool:

@@ -48,8 +48,7 @@ def bus_statistics(frames: FramePath, steps: int) -> dict[str, dict[str, Any]]:
         later = max(0, int(bus[T.FREE_AT]) - elapsed) if bus[T.BEGUN_BY] == i and row[T.BUSY] else 0
         load = float(int(row[T.BUSY]) - later) / elapsed
         about["load"] += load
-        page = "".join(f" {name} = {raw}" for name, raw in sender.plan.page.items())
-        about["messages"][sender.plan.message.name + page] = {
+        about["messages"][sender.plan.label] = {
             "load": load,
             **{name: int(row[column]) for name, column in _COUNTS.items()},
             "latency": _times(row, T.LATENCY_LEAST, T.LATENCY_HIGH, int(row[T.CARRIED])),

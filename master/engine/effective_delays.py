@@ -61,9 +61,8 @@ def effective_delays(plan: Plan, frames: FramePath, steps: int) -> dict[str, Del
     found = {}
     for number, (message, own) in enumerate(zip(plan.messages, readers(plan), strict=True)):
         if own:
-            page = "".join(f" {name} = {raw}" for name, raw in message.page.items())
             row = frames.row_of(number)
-            found[f"{message.bus}.{message.message.name}{page}"] = (
+            found[f"{message.bus}.{message.label}"] = (
                 delays_of_values(plan, number, steps) if row is None else delays_of_frames(frames, row, steps)
             )
     return found

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...cosim.can.wire import tables as T
 from ...cosim.clock import picoseconds
+from ...cosim.plan.nodes import node_of
 from ...cosim.plan.plan import FaultPlan, MessagePlan
-from ...cosim.plan.receivers import node_of
 from ...cosim.system.fault_spec import (
     Babble,
     BusOff,

@@ -22,8 +22,8 @@ from ...cosim.can.wire.buffers import NEVER
 from ...cosim.can.wire.payload import place_of, put, words
 from ...cosim.can.wire.tables import Wire
 from ...cosim.clock import picoseconds
+from ...cosim.plan.nodes import node_of
 from ...cosim.plan.plan import FaultPlan, MessagePlan
-from ...cosim.plan.receivers import node_of
 from .fault_tables import Arrays, add_faults, nodes_of
 from .listener_tables import Rows, add_listeners
 from .sender import Sender

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import errno
+import math
 import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.writing import (
     create,
+    finite,
     markdown_table,
     remove_drafts,
     replacing,
@@ -148,3 +151,14 @@ def test_a_cell_stays_a_cell() -> None:
 def test_a_text_keeps_its_line_ends(tmp_path: Path) -> None:
     write_text(tmp_path / "a.txt", "ä\r\nb\n")
     assert (tmp_path / "a.txt").read_bytes() == "ä\r\nb\n".encode()
+
+
+def test_data_as_json_has_it() -> None:
+    data = {
+        1: (np.float64(2.5), math.nan, -math.inf),
+        "path": Path("a"),
+        "flag": np.bool_(True),
+        "none": None,
+    }
+    assert finite(data) == {"1": [2.5, None, None], "path": "a", "flag": True, "none": None}
+    assert type(finite(np.int64(3))) is int and finite(np.float32("nan")) is None

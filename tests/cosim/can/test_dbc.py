@@ -170,7 +170,7 @@ class TestFlaws:
             f"test.dbc: line {line}: message 'M': signal '{used}'" in w and said in w
             for w in database.warnings
         )
-        if not database.messages["M"].multiplexed:
+        if not any(s.is_multiplexer for s in database.messages["M"].signals.values()):
             assert f"test.dbc: line {line}: M.{used}: " in refusal(path, used) and said in refusal(path, used)
             database.require("M").require("Fine")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -10,6 +11,7 @@ from evcosim import Simulation
 from evcosim.cosim.report import facts
 from evcosim.cosim.results.metrics import Metric
 from support.pages import hostile_run
+from support.small_bench import bench
 
 SECTIONS = (
     facts.first_of_all,
@@ -106,3 +108,43 @@ def test_names_are_no_markup():
     for section in set(SECTIONS) - {facts.events_of}:
         made = section(bad)
         assert "<img" not in made and "<script" not in made and "\u202e" not in made
+
+
+PAGED_DBC = """VERSION ""
+NS_ :
+BS_:
+BU_: VCU EMD
+BO_ 328 EMD_Status: 8 EMD
+ SG_ EMD_Page M : 0|4@1+ (1,0) [0|15] "" VCU
+ SG_ EMD_VehicleSpeed m1 : 8|8@1+ (1,0) [0|254] "km/h" VCU
+ SG_ EMD_Throttle m2 : 8|8@1+ (1,0) [0|254] "%" VCU
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+"""
+
+
+def without_heads(page: str) -> str:
+    return re.sub(' data-head="[^"]*"', "", page)
+
+
+def test_signals_of_pages_have_the_times_of_their_pages(tmp_path):
+    (tmp_path / "bench.dbc").write_text(PAGED_DBC)
+    (tmp_path / "bench.toml").write_text(bench())
+    with Simulation(tmp_path / "bench.toml", stop_time=0.1, delay=0.02) as sim:
+        sim.run()
+        about = facts.plain(sim.manifest())
+    assert about["pages"] == {"can0.EMD_Status EMD_Page = 1": ["EMD_VehicleSpeed"]}
+    times = about["effective_delays"]["can0.EMD_Status EMD_Page = 1"]["ecu"]
+    cells = ("can0.EMD_Status.EMD_VehicleSpeed", "as the step begins", f"{1e3 * times['mean']:.3g}")
+    assert "</td><td>".join(cells) in without_heads(facts.units_section(about))
+
+
+def test_a_signal_of_several_pages_has_the_times_of_each_that_differs():
+    delays = {"b.M P = 1": {"u": {"min": 0.0, "mean": 0.0, "max": 0.0}}, "b.M P = 2": {"u": None, "v": None}}
+    delays["b.M P = 3"] = {"u": {"min": 0.01, "mean": 0.015, "max": 0.02}}
+    pages = {"b.M P = 1": ["S", "T"], "b.M P = 2": ["S"], "b.M P = 3": ["S"], "b.N P = 3": ["S"]}
+    connect = [{"from": "w.y", "via": "b.M.S", "to": ["u.x"]}, {"from": "w.z", "via": "b.M.T", "to": ["u.t"]}]
+    made = facts.units_section({"effective_delays": delays, "pages": pages, "connect": connect})
+    assert "0 where P = 1; 15 (10 to 20) where P = 3" in made
+    assert made.count("where") == 2
+    assert "b.M.T</td><td>as the step begins</td><td>0</td>" in without_heads(made)

@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from evcosim.cosim.plan.faults import framed, planned
-from evcosim.cosim.plan.receivers import node_of, receiving_nodes
+from evcosim.cosim.plan.nodes import node_of, receiving_nodes
 from evcosim.cosim.system.fault_spec import BusOff
 from evcosim.cosim.system.system import load_system
 from evcosim.master.prepare import prepare

@@ -11,8 +11,8 @@ import pytest
 from evcosim.cosim.can.database import Message
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.interface import VariableInfo
+from evcosim.cosim.plan.log_receivers import LogReceivers
 from evcosim.cosim.plan.plan import Plan
-from evcosim.cosim.plan.received import Received
 from support.mocks import MockUnit, plan_of, real
 
 DBC = """VERSION ""
@@ -31,7 +31,7 @@ def test_messages_that_units_send_are_known_by_identifier() -> None:
         SimpleNamespace(bus="a", message=Message("f", "N", 6, True), replayed=True),
         SimpleNamespace(bus="b", message=Message("f", "O", 7), replayed=False),
     ]
-    received = Received(None, {}, None, SimpleNamespace(messages=messages), False)
+    received = LogReceivers(None, {}, None, SimpleNamespace(messages=messages), False)
     assert received.sent("a") == {(5, False): "M"}
 
 

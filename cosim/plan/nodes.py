@@ -1,4 +1,4 @@
-"""Nodes of a bus: those that send its messages, and those whose units receive them."""
+"""The nodes of a bus by its messages: which one sends a message, and behind which one an input is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The receivers of frames of a bus whose senders take no part in a run."""
+"""The inputs that receive the frames of a log: those of messages that no unit of the run sends."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class _Receiver:
 
 
 @dataclasses.dataclass
-class Received(Ends):
-    """The receivers of frames that no unit of a run sends; `network` has what the units send.
+class LogReceivers(Ends):
+    """The receivers of frames of a log, which no unit of a run sends; `network` has what the units send.
 
     `ideal`: there are no buses.
     """
