@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -74,7 +75,8 @@ _digests: dict[Path, tuple[object, str]] = {}
 
 def _models(folder: Path) -> str:
     """Return a digest of the models of this package, read again where one was written since."""
-    files = sorted(folder.rglob("*.py"))
+    names = (os.path.join(where, name) for where, _, found in os.walk(folder) for name in found)
+    files = [Path(name) for name in sorted(names) if name.endswith(".py")]
     state = [(file, cache.settled(file)) for file in files]
     before, digest = _digests.get(folder, (None, ""))
     if before != state or not all(about for _, about in state):

@@ -43,6 +43,16 @@ def keep(name: str, content: bytes) -> str:
     return cache.keep(name, content)
 
 
+def state_of(path: str) -> tuple[int, ...] | None:
+    """Return the state of a file, which stays the same until it is written; None if it was just now.
+
+    Raises OSError where there is none.
+    """
+    from ..fmus import cache
+
+    return cache.settled(Path(path))
+
+
 def builtin_text(name: str) -> str:
     """Return one line about a built-in FMU."""
     from ..fmus import catalog

@@ -42,7 +42,12 @@ def load_dbc(path: str | Path) -> Database:
     Raises ConfigError when the file cannot be read, or is no DBC.
     """
     path = Path(path)
-    found = entries(statements(text_of(content(path, "the CAN database "))))
+    return _read(path, text_of(content(path, "the CAN database ")))
+
+
+@functools.lru_cache(maxsize=8)  # a study runs one system often
+def _read(path: Path, text: str) -> Database:
+    found = entries(statements(text))
     if not found.valid:
         line, said = found.notes[0] if found.notes else (1, "not valid in a DBC file: ''")
         raise ConfigError(f"{path}: line {line}: {said}")

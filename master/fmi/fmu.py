@@ -17,7 +17,8 @@ from typing import Any
 from ...cosim.errors import counted, nearest
 from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
-from .archive import FmuError, entries_of, extract, read_entry
+from ..builtin import state_of
+from .archive import FmuError, archive_limits, entries_of, extract, read_entry
 from .description import read_description
 from .types import BOOLEAN, ENUMERATION, INTEGER, REAL, STRING, FmiType, fmi_type
 
@@ -156,13 +157,34 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
     known, place = _once.get(), os.path.realpath(path)
     fmu = (known or {}).get(place)
     if fmu is None:
-        fmu = _read(path)
+        fmu = _unless_written(path, place)
         if known is not None:
             known[place] = fmu
     if strict and fmu.defects:
         said = "; ".join(fmu.defects[:_SHOWN_DEFECTS])
         raise FmuError(f"{path}: strict: {counted(len(fmu.defects), 'defect')}: {said}")
     return fmu if fmu.path == path else dataclasses.replace(fmu, path=path)
+
+
+_kept: dict[str, tuple[object, Fmu]] = {}
+"""FMUs that this process has read, with the states of their files and the limits then; the last one last."""
+_MOST_KEPT = 32
+
+
+def _unless_written(path: Path, place: str) -> Fmu:
+    """Read an FMU, unless its file is as it was when it was read; `place` is its path without links."""
+    try:
+        settled_in = state_of(place)
+    except OSError:  # reading says what is wrong
+        settled_in = None
+    state, (before, fmu) = (settled_in, archive_limits()), _kept.pop(place, (None, None))
+    if fmu is None or settled_in is None or before != state:
+        fmu = _read(path)
+    if settled_in is not None:
+        _kept[place] = state, fmu
+        if len(_kept) > _MOST_KEPT:
+            del _kept[next(iter(_kept))]
+    return fmu
 
 
 def _read(path: Path) -> Fmu:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import os
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from evcosim.cosim.errors import ConfigError
+from evcosim.fmus import cache
 from evcosim.master.builtin import fmu_file
 from evcosim.master.fmi import fmu as module
 from evcosim.master.fmi.fmu import Fmu, FmuError, check_runnable, is_true, read_fmu, reading_once
@@ -236,7 +238,41 @@ def test_a_file_is_read_once_within_a_block(tmp_path: Path) -> None:
         assert linked.path == tmp_path / "again.fmu"  # messages name the file as it was given
         with pytest.raises(FmuError, match=r"again.fmu: strict: 1 defect: m_total: start = 'heavy'"):
             read_fmu(tmp_path / "again.fmu", strict=True)
+    os.utime(fmu)
     assert read_fmu(fmu).description is not first.description
+
+
+def test_a_file_is_read_again_when_it_was_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "_JUST_NOW", -1)
+    fmu = vehicle_fmu(tmp_path / "Vehicle.fmu", 2)
+    first = read_fmu(fmu)
+    assert read_fmu(fmu) is first
+    (tmp_path / "again.fmu").symlink_to(fmu)
+    assert read_fmu(tmp_path / "again.fmu").description is first.description
+    about = fmu.stat()
+    vehicle_fmu(fmu, 2, **{'start="200"': 'start="201"'})
+    os.utime(fmu, ns=(about.st_atime_ns, about.st_mtime_ns))
+    second = read_fmu(fmu)
+    assert (first.interface.variables["m_total"].start, second.interface.variables["m_total"].start) == (
+        200,
+        201,
+    )
+    monkeypatch.setenv("EVCOSIM_FMU_LIMITS", "entries=1")
+    with pytest.raises(FmuError, match="entries, more than 1"):
+        read_fmu(fmu)
+    fmu.unlink()
+    with pytest.raises(FmuError, match="there is no such file"):
+        read_fmu(fmu)
+
+
+def test_the_last_ones_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "_JUST_NOW", -1)
+    monkeypatch.setattr(module, "_MOST_KEPT", 2)
+    monkeypatch.setattr(module, "_kept", {})
+    a, b, c = (vehicle_fmu(tmp_path / f"{name}.fmu", 2) for name in "abc")
+    first, second = read_fmu(a), read_fmu(b)
+    assert read_fmu(a) is first and read_fmu(c).path == c
+    assert read_fmu(a) is first and read_fmu(b) is not second
 
 
 def test_an_fmu_by_itself_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
