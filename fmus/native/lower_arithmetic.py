@@ -8,9 +8,20 @@ from collections.abc import Callable
 from typing import Any
 
 from . import ir
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_intervals import combined, fits, interval
-from .lower_values import Group, Known, Run, Value, as_integer, as_real, is_nonzero, literal, number_type
+from .lower_values import (
+    Group,
+    Known,
+    Run,
+    Value,
+    as_integer,
+    as_real,
+    described,
+    is_nonzero,
+    literal,
+    number_type,
+)
 from .values import BOOLEAN, COMPLEX, INTEGER, REAL, ArrayType, EnumType, is_integral
 
 _PYTHON: dict[type[ast.operator], Callable[[object, object], object]] = {

@@ -11,9 +11,9 @@ from typing import Any
 
 from . import ir
 from .lower_arithmetic import binary, truth_of
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_sequences import items, length_of, listed
-from .lower_values import Group, Known, Run, Value, as_integer, as_real, literal, number_type
+from .lower_values import Group, Known, Run, Value, as_integer, as_real, described, literal, number_type
 from .values import BOOLEAN, COMPLEX, INTEGER, REAL, ArrayType, Type, is_integral
 
 Builtin = Callable[[Frame, ast.Call, Sequence[Value]], Value]

@@ -12,11 +12,23 @@ from collections.abc import Sequence
 
 from . import ir
 from .lower_builtins import find
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_sequences import elements
-from .lower_text import glued, is_text
+from .lower_text import glued, is_text, show
 from .lower_types import is_enumeration, is_named_tuple
-from .lower_values import Callable, Group, Known, LocalFunction, Run, Value, as_integer, literal, number_type
+from .lower_values import (
+    Callable,
+    Group,
+    Known,
+    LocalFunction,
+    Run,
+    Value,
+    Words,
+    as_integer,
+    described,
+    literal,
+    number_type,
+)
 from .values import BOOLEAN, COMPLEX, INTEGER, EnumType, StructType, is_integral
 
 _INSTEAD = {
@@ -223,9 +235,11 @@ def _made(
         return _record(frame, node, python, given, named)
     if issubclass(python, BaseException):
         raise frame.refuse(node, "an exception that is not raised here", "write `raise` before it")
-    if python is str or python is repr:
-        if given and is_text(given[0]):
+    if python is str:
+        if given and is_text(given[0]) and python is str:
             return given[0]
+        if len(given) == 1 and isinstance(given[0], Run):
+            return Words((show(frame, node, given[0]),))
         raise frame.refuse(node, "a text", "write an f-string in the exception")
     init = vars(python).get("__init__")
     if isinstance(init, types.FunctionType) and python.__new__ is object.__new__:

@@ -10,11 +10,11 @@ import types
 from . import ir
 from .lower_arithmetic import binary, compare, negated, truth_of, unary
 from .lower_flow import both, either
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_sequences import comprehension, elements, listed, repeated, subscript
 from .lower_text import added, formatted
 from .lower_types import is_named_tuple
-from .lower_values import Callable, Group, Known, LocalFunction, Missing, Run, Value
+from .lower_values import Callable, Group, Known, LocalFunction, Missing, Run, Value, described
 from .values import BOOLEAN, COMPLEX, INTEGER, REAL, EnumType, ParametersType, StructType
 
 _REFUSED: dict[type[ast.AST], tuple[str, str]] = {
@@ -140,6 +140,11 @@ def attribute(frame: Frame, node: ast.expr, of: Value, attr: str) -> Value:
         if isinstance(of.type, EnumType):
             if attr == "value":
                 return Run(ir.Convert(INTEGER, of.expr))
+            found = _of_class(of.type.enumeration, attr)
+            if isinstance(found, property) and isinstance(found.fget, types.FunctionType):
+                return frame.call(node, Callable(found.fget, (of,)), (), {})
+            if isinstance(found, types.FunctionType):
+                return Callable(found, (of,))
             raise frame.refuse(
                 node, f"the {attr} of an item that is known only when it runs", "write its number"
             )

@@ -16,19 +16,42 @@ from .lower_types import Names, Types
 from .lower_values import (
     Callable,
     Code,
-    Group,
     Known,
-    LocalFunction,
     Missing,
     Run,
     Value,
-    number_type,
+    described,
+    mentions,
     reads_list,
-    type_name,
 )
-from .values import ListType, ParametersType, StructType, Type
+from .values import ListType, StructType, Type
 
 Env = dict[str, Value | Missing]
+
+# names of what functions of python_arithmetic.h give, by the last part of their names
+_RESULTS = {
+    "div": "quotient",
+    "floordiv": "quotient",
+    "mod": "remainder",
+    "pow": "power",
+    "mul": "product",
+    "add": "sum",
+    "sub": "difference",
+    "exp": "exponential",
+    "expm1": "exponential",
+    "sqrt": "root",
+    "log": "logarithm",
+    "sin": "sine",
+    "cos": "cosine",
+    "tan": "tangent",
+    "abs": "size",
+    "index": "place",
+    "floor": "whole",
+    "ceil": "whole",
+    "trunc": "whole",
+    "int": "whole",
+    "round": "whole",
+}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -130,10 +153,6 @@ class Frame(abc.ABC):
         """Return the items of a value whose length is known."""
 
     @abc.abstractmethod
-    def words(self, node: ast.expr) -> ir.Text:
-        """Return a text as its pieces."""
-
-    @abc.abstractmethod
     def assign(self, name: str, value: Value, node: ast.AST) -> None:
         """Give a variable of the function a value."""
 
@@ -169,10 +188,6 @@ class Frame(abc.ABC):
                 node, f"{described(value)} has no native form", "compute with numbers and tuples"
             )
         return found
-
-    def number(self, node: ast.expr) -> ir.Expression:
-        """Return the value of an expression that has a native form."""
-        return self.expr(node, self.value(node))
 
     def settled(self, node: ast.AST, value: Value) -> Run:
         """Return a value that later changes do not reach: a temporary, if needed."""
@@ -242,7 +257,7 @@ class Frame(abc.ABC):
 
     def checked(self, node: ast.AST, type_: Type, function: str, arguments: Sequence[ir.Expression]) -> Run:
         """Return the result of a function of python_arithmetic.h that can fail."""
-        target = self.temporary(type_, function.removeprefix("py_"))
+        target = self.temporary(type_, _RESULTS.get(function.rpartition("_")[2], "number"))
         self.emit(ir.Checked(target, function, tuple(arguments), self.module.place(node)))
         return Run(target)
 
@@ -317,60 +332,7 @@ class Frame(abc.ABC):
                 return
 
 
-def mentions(node: object, name: str) -> bool:
-    """Return True if a statement or an expression reads this variable, or gives it a value."""
-    if isinstance(node, ir.Local):
-        return node.name == name
-    if isinstance(node, tuple):
-        return any(mentions(part, name) for part in node)
-    if not dataclasses.is_dataclass(node) or isinstance(node, ir.Literal | ir.Place):
-        return False
-    return any(mentions(getattr(node, f.name), name) for f in dataclasses.fields(node) if f.name != "type")
-
-
 def _is_plain(e: ir.Expression) -> bool:
     if isinstance(e, ir.Field):
         return _is_plain(e.of)
     return isinstance(e, ir.Literal | ir.Local | ir.TableItem)
-
-
-def described(value: Value) -> str:
-    """Return a few words for what a value is."""
-    match value:
-        case Run():
-            return type_name(value.type)
-        case Known():
-            return _known_words(value.value)
-        case Group():
-            return "a tuple"
-        case Callable():
-            name = value.code.name if isinstance(value.code, LocalFunction) else value.code.__qualname__
-            return f"the function {name}"
-    return "a text"
-
-
-def _known_words(value: object) -> str:
-    if isinstance(value, str):
-        return "a text"
-    if value is None:
-        return "None"
-    type_ = number_type(value)
-    if type_ is not None:
-        return type_name(type_)
-    if isinstance(value, int):
-        return "an int beyond 64 bits"
-    if type(value).__module__ == "numpy":
-        kind = "an array" if getattr(value, "shape", ()) else "a number"
-        return f"{kind} of numpy ({type(value).__name__})"
-    name = getattr(value, "__qualname__", None) or getattr(value, "__name__", None)
-    return str(name) if name else f"a {type(value).__name__}"
-
-
-def is_parameters(value: Value) -> bool:
-    """Return True for the parameters of the model, which are handed on by address."""
-    return isinstance(value, Run) and isinstance(value.type, ParametersType)
-
-
-def is_struct(value: Value) -> bool:
-    """Return True for a record, a NamedTuple, or a tuple of different types."""
-    return isinstance(value, Run) and isinstance(value.type, StructType)

@@ -13,7 +13,7 @@ from . import lower_statements as statements_of
 from .lower_binding import Bound, bind, has_whole_number, native, takes_text
 from .lower_calls import called
 from .lower_flow import different
-from .lower_frame import Env, Frame, Lowered, Lowering, described
+from .lower_frame import Env, Frame, Lowered, Lowering
 from .lower_sequences import items
 from .lower_source import (
     FunctionNode,
@@ -25,8 +25,18 @@ from .lower_source import (
     statements,
     stored,
 )
-from .lower_text import is_text, words
-from .lower_values import Callable, Code, Known, LocalFunction, Missing, Run, Value, number_type
+from .lower_text import is_text
+from .lower_values import (
+    Callable,
+    Code,
+    Known,
+    LocalFunction,
+    Missing,
+    Run,
+    Value,
+    described,
+    number_type,
+)
 from .values import ListType, ParametersType, Type
 
 
@@ -78,10 +88,6 @@ class FunctionFrame(Frame):
     def items(self, node: ast.AST, value: Value) -> list[Value]:
         """Return the items of a value whose length is known."""
         return items(self, node, value)
-
-    def words(self, node: ast.expr) -> ir.Text:
-        """Return a text as its pieces."""
-        return words(self, node)
 
     def called(self, node: ast.Call) -> Value:
         """Return the result of a call."""
@@ -259,7 +265,7 @@ class FunctionFrame(Frame):
             return Known(None)
         if not must:
             return Run(ir.Invoke(function.returns, function.name, tuple(arguments)))
-        target = self.temporary(function.returns, "result")
+        target = self.temporary(function.returns, "returned")
         self.emit(ir.Call(target, function.name, tuple(arguments)))
         return Run(target)
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from . import ir
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_intervals import interval
 from .lower_text import is_text
 from .lower_types import is_enumeration, is_named_tuple
-from .lower_values import Group, Known, Run, Value, as_integer, literal
+from .lower_values import Group, Known, Run, Value, as_integer, described, literal
 from .values import BOOLEAN, INTEGER, ArrayType, EnumType, ListType, StructType, is_integral
 
 LONGEST = 256  # items that are written one by one

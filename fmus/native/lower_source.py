@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import dataclasses
 import functools
+import importlib.util
 import inspect
 import io
 import re
 import sys
 import tokenize
 import types
+from collections.abc import Iterator
 from pathlib import Path
 
 from .ir import Place
@@ -57,7 +59,20 @@ class Module:
 
     def changes(self, name: str) -> bool:
         """Return True if a function of this file gives a global of it another value, or writes in it."""
-        return name in _changed_globals(self.tree)
+        return name in _changed_globals(self.tree) or any(
+            module.changes(own) for module, own in self._origins(name)
+        )
+
+    def _origins(self, name: str) -> Iterator[tuple[Module, str]]:
+        """Return the module from which a global is imported, and its name there."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.ImportFrom):
+                own = next((a.name for a in node.names if (a.asname or a.name) == name), None)
+                package = str(self.scope.get("__package__") or "")
+                module = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+                file = getattr(sys.modules.get(module), "__file__", None)
+                if own is not None and file and Path(file).suffix == ".py" and module not in _STANDARD:
+                    yield module_of(vars(sys.modules[module]), file), own
 
 
 @functools.cache
@@ -74,6 +89,8 @@ def _changed_globals(tree: ast.Module) -> frozenset[str]:
             found.add(node.value.id)
     return frozenset(found)
 
+
+_STANDARD = sys.stdlib_module_names
 
 _MUTATORS = {
     *("append", "extend", "insert", "pop", "remove", "clear", "sort", "reverse"),
@@ -127,12 +144,6 @@ def _is_of(node: ast.AST, code: types.CodeType) -> bool:
         return False
     first = min([node.lineno, *(d.lineno for d in node.decorator_list)])
     return node.name == code.co_name and first == code.co_firstlineno
-
-
-def class_module(python: type) -> Module:
-    """Return the module in which a class stands."""
-    module = sys.modules[python.__module__]
-    return module_of(vars(module), inspect.getsourcefile(python) or "")
 
 
 def first_line(documented: object) -> str:

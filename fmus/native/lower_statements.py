@@ -10,10 +10,21 @@ from collections.abc import Sequence
 from . import ir
 from .lower_arithmetic import binary
 from .lower_flow import branch, loop
-from .lower_frame import Frame, described
+from .lower_frame import Frame
 from .lower_sequences import checked_index
 from .lower_text import pieces_of
-from .lower_values import Group, Known, Missing, Run, Value, Words, node_line, number_type
+from .lower_values import (
+    Group,
+    Known,
+    Missing,
+    Run,
+    Value,
+    Words,
+    described,
+    mentions,
+    node_line,
+    number_type,
+)
 from .values import ListType
 
 _REFUSED: dict[type[ast.stmt], tuple[str, str]] = {
@@ -166,6 +177,10 @@ def _independent(
     frame: Frame, node: ast.AST, parts: Sequence[ast.expr], found: Sequence[Value]
 ) -> list[Value]:
     """Return the values so that no assignment to a name before them changes one of them."""
+    leaves = [leaf for item in found for leaf in _leaves(item)]
+    for name in {leaf.expr.name for leaf in leaves if isinstance(leaf.expr, ir.Local)}:
+        if sum(mentions(leaf.expr, name) for leaf in leaves) > 1:
+            frame.temporaries.discard(name)  # it has two names from now on
     written: set[str] = set()
     kept: list[Value] = []
     for part, item in zip(parts, found, strict=True):
@@ -176,6 +191,13 @@ def _independent(
             written.add("[]")
         written |= {n.id for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
     return kept
+
+
+def _leaves(value: Value) -> list[Run]:
+    """Return the values that the native code computes within a value."""
+    if isinstance(value, Group):
+        return [leaf for item in value.items for leaf in _leaves(item)]
+    return [value] if isinstance(value, Run) else []
 
 
 def assign(frame: Frame, name: str, value: Value, node: ast.AST) -> None:

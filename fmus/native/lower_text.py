@@ -6,9 +6,9 @@ import ast
 import re
 
 from . import ir
-from .lower_frame import Frame, described
-from .lower_values import Known, Run, Value, Words
-from .values import BOOLEAN, INTEGER, REAL, Scalar, is_integral
+from .lower_frame import Frame
+from .lower_values import Known, Run, Value, Words, described
+from .values import BOOLEAN, INTEGER, REAL, EnumType, is_integral
 
 _SPEC = re.compile(r"[-+ ]?0?\d*(\.\d+)?[eEfFgG%]?")
 
@@ -54,8 +54,12 @@ def _shown(frame: Frame, part: ast.FormattedValue) -> ir.Text:
 def show(frame: Frame, node: ast.AST, value: Value, spec: str = "", as_repr: bool = False) -> ir.Shown:
     """Return a number within a text."""
     e = frame.expr(node, value)
-    if not isinstance(e.type, Scalar) and not is_integral(e.type):
+    if e.type is not REAL and not is_integral(e.type):
         raise frame.refuse(node, f"{described(value)} in a text", "show its numbers one by one")
+    if as_repr and isinstance(e.type, EnumType):
+        raise frame.refuse(node, "the name of an item that is known only when it runs", "leave the !r out")
+    if spec == "d" and e.type is not REAL and e.type is not BOOLEAN:
+        spec = ""
     if e.type not in (REAL, BOOLEAN) and is_integral(e.type) and e.type is not INTEGER:
         e = ir.Convert(INTEGER, e)
     if spec and (e.type is not REAL or not _SPEC.fullmatch(spec)):
@@ -70,11 +74,6 @@ def _known_text(frame: Frame, node: ast.AST, spec: ast.expr) -> str:
     if not isinstance(value, Known):
         raise frame.refuse(node, "a format that is known only when it runs", "write it as `.4g` or the like")
     return str(value.value)
-
-
-def words(frame: Frame, node: ast.expr) -> ir.Text:
-    """Return a text as its pieces."""
-    return pieces_of(frame, node, frame.value(node))
 
 
 def pieces_of(frame: Frame, node: ast.expr, value: Value) -> ir.Text:

@@ -217,3 +217,46 @@ def is_nonzero(e: ir.Expression) -> bool:
 def node_line(node: ast.stmt) -> int:
     """Return the last line of a statement."""
     return node.end_lineno or node.lineno
+
+
+def mentions(node: object, name: str) -> bool:
+    """Return True if a statement or an expression reads this variable, or gives it a value."""
+    if isinstance(node, ir.Local):
+        return node.name == name
+    if isinstance(node, tuple):
+        return any(mentions(part, name) for part in node)
+    if not dataclasses.is_dataclass(node) or isinstance(node, ir.Literal | ir.Place):
+        return False
+    return any(mentions(getattr(node, f.name), name) for f in dataclasses.fields(node) if f.name != "type")
+
+
+def described(value: Value) -> str:
+    """Return a few words for what a value is."""
+    match value:
+        case Run():
+            return type_name(value.type)
+        case Known():
+            return _known_words(value.value)
+        case Group():
+            return "a tuple"
+        case Callable():
+            name = value.code.name if isinstance(value.code, LocalFunction) else value.code.__qualname__
+            return f"the function {name}"
+    return "a text"
+
+
+def _known_words(value: object) -> str:
+    if isinstance(value, str):
+        return "a text"
+    if value is None:
+        return "None"
+    type_ = number_type(value)
+    if type_ is not None:
+        return type_name(type_)
+    if type(value) is int:
+        return "an int beyond 64 bits"
+    if type(value).__module__ == "numpy":
+        kind = "an array" if getattr(value, "shape", ()) else "a number"
+        return f"{kind} of numpy ({type(value).__name__})"
+    name = getattr(value, "__qualname__", None) or getattr(value, "__name__", None)
+    return str(name) if name else f"a {type(value).__name__}"

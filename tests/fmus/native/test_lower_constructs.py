@@ -11,6 +11,7 @@ from evcosim.fmus.native.lower import lower
 from support.ir_interpreter import Failed, Interpreter
 from support.ir_types import check, parts
 from support.lowered import compare
+from support.random_steps import random_step
 from support.small_model import cases, small
 
 CASES = cases(Path(__file__).with_name("constructs.txt"))
@@ -53,3 +54,12 @@ def test_a_place_is_that_of_the_traceback() -> None:
     program = lower(small("y = (\n    u.u\n    / u.v\n)\nreturn Small.State(y)"))
     checked = [n for f in program.functions for n in parts(f.body) if isinstance(n, ir.Checked)]
     assert len(checked) == 1 and checked[0].place.file.startswith("small_")
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_random_step_computes_what_python_does(seed: int) -> None:
+    model = small(*random_step(seed))
+    program = lower(model)
+    check(program)
+    for draw in range(4):
+        compare(model, program, draw, steps=4)
