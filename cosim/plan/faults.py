@@ -14,7 +14,8 @@ from ..errors import ConfigError, nearest
 from ..system.fault_spec import Babble, BusOff, Corrupt, Delay, Fault, Freeze, Lose, target_of
 from ..system.scenario import Scenario
 from ..system.system import System
-from .nodes import node_of, receiving_nodes
+from .idle_faults import idle_faults
+from .nodes import hits, node_of, receiving_nodes
 from .plan import FaultPlan, MessagePlan, Plan
 
 FOREVER = 2**62
@@ -38,10 +39,12 @@ def with_faults(plan: Plan, system: System, scenario: Scenario, varied: BusVaria
         for loss in planned(losses, plan.messages, plan.clock.start, "bus variation: loss")
     )
     messages = framed(plan.messages, faults)
+    given = faults[: len(scenario.file.faults)]
     struck = {fault.bus for fault in faults if isinstance(fault.fault, BusOff)}
     return dataclasses.replace(
         plan,
         messages=messages,
+        warnings=(*plan.warnings, *idle_faults(given, messages, plan.clock, str(scenario.path))),
         faults=faults,
         babblers=babblers(faults, messages),
         receiving_nodes=receiving_nodes(messages, plan.inputs, system, struck),
@@ -180,14 +183,6 @@ def _same(one: FaultPlan, other: FaultPlan, messages: Sequence[MessagePlan]) -> 
             other.fault.extended,
         )
     return any(hits(one, message) and hits(other, message) for message in messages)
-
-
-def hits(fault: FaultPlan, message: MessagePlan) -> bool:
-    """Return True if a fault acts on frames of a message, as its sender sends them."""
-    if isinstance(fault.fault, Babble):
-        return False
-    name = fault.message == message.message.name if fault.message else fault.node == node_of(message)
-    return message.bus == fault.bus and name
 
 
 def framed(messages: Sequence[MessagePlan], faults: Sequence[FaultPlan]) -> tuple[MessagePlan, ...]:

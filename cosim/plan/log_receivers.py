@@ -71,9 +71,15 @@ class LogReceivers(Ends):
         messages: dict[str, Message] = {}
         for receiver in (*self._of_file(entry, place), *self._of_connections(entry.bus)):
             name = receiver.signal.partition(".")[0]
-            if name in taken and receiver.place.startswith(place):
+            of_file = receiver.place.startswith(place)
+            if name in taken and of_file:
                 raise ConfigError(
                     f"{receiver.place}: {entry.bus}.{name} is sent by a unit of this run already"
+                )
+            if of_file and entry.messages is not None and name not in entry.messages:
+                raise ConfigError(
+                    f"{receiver.place}: {', '.join(receiver.to)} would receive {receiver.signal}, and "
+                    f"`messages` leaves {name} out; name it there, or not here"
                 )
             if name in taken or (entry.messages is not None and name not in entry.messages):
                 continue
@@ -89,6 +95,12 @@ class LogReceivers(Ends):
                 f"{', of those in `messages`' if entry.messages is not None else ''}; `leave_out` the unit "
                 "that sends it, or name inputs and signals in `to`"
             )
+        self.network.warnings += [
+            f"{place}.messages: nothing receives {entry.bus}.{name}: it is not replayed; an input in `to`, "
+            "or a connection whose sender is left out, would receive it"
+            for name in entry.messages or ()
+            if name not in routes
+        ]
         return wanted
 
     def _of_file(self, entry: CanLogEntry, place: str) -> Iterator[_Receiver]:

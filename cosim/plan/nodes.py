@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
+from ..system.fault_spec import Babble
 from ..system.system import System
-from .plan import InputPlan, MessagePlan
+from .plan import FaultPlan, InputPlan, MessagePlan
 
 
 def node_of(message: MessagePlan) -> str:
@@ -46,3 +47,11 @@ def receiving_nodes(
             if len(chosen) == 1:
                 found[slot] = message.bus, next(iter(chosen))
     return found
+
+
+def hits(fault: FaultPlan, message: MessagePlan) -> bool:
+    """Return True if a fault acts on frames of a message, as its sender sends them."""
+    if isinstance(fault.fault, Babble):
+        return False
+    name = fault.message == message.message.name if fault.message else fault.node == node_of(message)
+    return message.bus == fault.bus and name

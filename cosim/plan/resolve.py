@@ -28,6 +28,7 @@ from .connections import connect
 from .events import scheduled
 from .faults import with_faults
 from .given_values import all_parameters, all_starts, by_kind
+from .idle_settings import check_codes, idle_settings
 from .initials import check_initials
 from .log_receivers import LogReceivers
 from .network import Network
@@ -88,7 +89,7 @@ def _resolved(
     turns = _turns(system, entries, clock)
     network = connect(system, interfaces, slots, turns, clock, algorithm, ideal)
     replays = with_replays(system, scenario, LogReceivers(system, interfaces, slots, network, ideal), clock)
-    network.warnings += check_initials(system, network.databases, network.messages)
+    network.warnings += _about_settings(system, network, interfaces, options)
     drives = _drives(scenario, interfaces, network, slots, clock, texts)
     named, started = by_kind(options, interfaces, network)
     parameters = all_parameters(system, scenario, entries, interfaces, named)
@@ -133,6 +134,15 @@ def _resolved(
         texts=texts,
         replays=tuple(replays),
     )
+
+
+def _about_settings(
+    system: System, network: Network, interfaces: Mapping[str, UnitInterface], options: RunOptions
+) -> list[str]:
+    """Return what is to be said of the settings of buses. Raises ConfigError for one that does not fit."""
+    said = check_initials(system, network.databases, network.messages)
+    check_codes(system, network, interfaces)
+    return said if options.get("ideal") else said + idle_settings(system, network, options.get("bus"))
 
 
 def _loads(system: System, network: Network, clock: Clock) -> list[str]:

@@ -22,6 +22,8 @@ BO_ 256 M: 8 ECU
  SG_ Byte : 0|8@1+ (1,0) [0|0] "" ECU
  SG_ Switch : 8|2@1+ (1,0) [0|1] "" ECU
  SG_ Wide : 16|8@1+ (1,0) [0|1000] "" ECU
+BO_ 257 N: 8 ECU
+ SG_ Other : 0|8@1+ (1,0) [0|0] "" ECU
 """
 
 
@@ -35,7 +37,7 @@ def test_messages_that_units_send_are_known_by_identifier() -> None:
     assert received.sent("a") == {(5, False): "M"}
 
 
-def heard(folder: Path, signals: dict[str, str], **bus: Any) -> Plan:
+def heard(folder: Path, signals: dict[str, str], messages: list[str] | None = None, **bus: Any) -> Plan:
     """The plan of a unit `b` with a Boolean `flag` and a number `x`, which hears signals of a log."""
     (folder / "m.dbc").write_text(DBC)
     (folder / "m.log").write_text("(0.000000) can0 100#0301000000000000\n")
@@ -43,7 +45,7 @@ def heard(folder: Path, signals: dict[str, str], **bus: Any) -> Plan:
         "b", [VariableInfo("flag", "Boolean", "input", "discrete", start=False), real("x", "input")]
     )
     to = {f"b.{name}": f"M.{signal}" for name, signal in signals.items()}
-    stimulus = {"can_log": str(folder / "m.log"), "bus": "can0", "to": to}
+    stimulus = {"can_log": str(folder / "m.log"), "bus": "can0", "to": to, "messages": messages}
     buses = {"can0": {"dbc": str(folder / "m.dbc"), "cycle_time": 0.01, **bus}}
     return plan_of([unit], {"buses": buses, "experiment": {"stop_time": 0.1}}, {"stimulus": [stimulus]})
 
@@ -63,3 +65,14 @@ def test_limits_that_no_frame_of_a_log_has_are_said(tmp_path: Path, overflow: st
     assert "m.dbc: line 7: can0.M.Wide: its limits [0, 1000] mean raw 0 to 1000" in said
     assert said.endswith(": no frame of a log has 1000")
     assert heard(tmp_path, {"x": "Byte"}).warnings == ()
+
+
+def test_messages_that_are_named_and_not_heard_are_said_and_heard_ones_that_are_not_named_refused(
+    tmp_path: Path,
+) -> None:
+    assert heard(tmp_path, {"x": "Byte"}, ["M"]).warnings == ()
+    (said,) = heard(tmp_path, {"x": "Byte"}, ["M", "N"]).warnings
+    assert "stimulus 1.messages: nothing receives can0.N: it is not replayed; an input in `to`" in said
+    reason = r"stimulus 1.to: b.x would receive M.Byte, and `messages` leaves M out"
+    with pytest.raises(ConfigError, match=reason):
+        heard(tmp_path, {"x": "Byte"}, ["N"])
