@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from ..can.channel import SignalRoute
 from ..can.database import Message
-from ..can.logs.recording import Key, key_of
+from ..can.logs.variants import Key, key_of
 from ..errors import ConfigError, nearest
 from ..interface import Value
 from ..system.can_log_spec import CanLogEntry

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from pathlib import Path
 
@@ -12,12 +12,11 @@ import numpy as np
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message
 from ..can.framing import Framing, framing_of
-from ..can.logs.recording import Key, Recording, chosen_channel, key_of, recorded
+from ..can.logs.recording import Recording, chosen_channel, recorded
 from ..can.logs.replay import Replayed
-from ..can.overlaps import conditions
+from ..can.logs.variants import Key, Variant, Variants, key_of
 from ..can.send_steps import send_steps
 from ..can.send_types import Sending, check_send_type, send_type_of
-from ..can.wire.payload import raw_value
 from ..clock import Clock
 from ..errors import ConfigError
 from ..system.can_log_spec import CanLogEntry
@@ -47,8 +46,7 @@ def with_replays(
             raise ConfigError(f"{place}: with ideal buses there are no frames, and so none of a log")
         path = data_file(entry.can_log, scenario.path, place) if scenario.path else Path(entry.can_log)
         wanted = received.wanted(entry, place)
-        variants = _Variants(wanted)
-        recording = recorded(path, {key_of(m): m.length for m, _ in wanted}, variants)
+        recording = recorded(path, Variants([(m, [r.signal.name for r in routes]) for m, routes in wanted]))
         channel = chosen_channel(recording, entry.channel, entry.bus, place)
         if channel in recording.backward:
             raise ConfigError(
@@ -57,9 +55,10 @@ def with_replays(
         database, sent = network.databases[entry.bus], received.sent(entry.bus)
         _check_matches(recording, channel, wanted, database, place)
         first = len(network.messages)
-        replayed = _timed(system, entry, recording, channel, variants, first, clock, place)
+        replayed = _timed(system, entry, recording, channel, first, clock, place)
         status = {m.name: received.status_inputs(f"{entry.bus}.{m.name}") for m, _ in wanted}
-        made = [_message(system, entry.bus, each, clock, status) for each in variants.found]
+        routed = _routed(recording.variants, wanted)
+        made = [_message(system, entry.bus, each, clock, status) for each in routed]
         plan = _plan(entry.bus, replayed, made, wanted, clock, place)
         network.messages += made
         network.warnings += _unscaled(system, entry.bus)
@@ -69,76 +68,24 @@ def with_replays(
 
 
 @dataclasses.dataclass(frozen=True)
-class _Variant:
-    """Frames of a message that hold the same of its connected signals; `page` are multiplexers' values."""
+class _Routed:
+    """A variant of a message, as its frames hold it, with the routes of its signals."""
 
     message: Message
     routes: Sequence[SignalRoute]
     page: Mapping[str, int]
 
 
-def _constant(number: int) -> Callable[[bytes], int | None]:
-    return lambda data: number
-
-
-class _Variants:
-    """The variants of the wanted messages, as they come up in a log; called with each of their frames."""
-
-    def __init__(self, wanted: Sequence[tuple[Message, Sequence[SignalRoute]]]) -> None:
-        self.found: list[_Variant] = []
-        self._choose: dict[Key, Callable[[bytes], int | None]] = {}
-        for message, routes in wanted:
-            names = [route.signal.name for route in routes]
-            selecting = list(
-                dict.fromkeys(name for each in names for name, _ in conditions(message.signals, each))
-            )
-            if selecting:
-                self._choose[key_of(message)] = self._multiplexed(message, routes, selecting)
-            else:
-                self.found.append(_Variant(message, routes, {}))
-                self._choose[key_of(message)] = _constant(len(self.found) - 1)
-
-    def __call__(self, key: Key, data: bytes) -> int | None:
-        """Return the number of the variant of a frame; None where it holds no connected signal."""
-        return self._choose[key](data)
-
-    def _multiplexed(
-        self, message: Message, routes: Sequence[SignalRoute], selecting: Sequence[str]
-    ) -> Callable[[bytes], int | None]:
-        known: dict[tuple[int, ...], int | None] = {}
-        by_held: dict[tuple[str, ...], int] = {}
-
-        def choose(data: bytes) -> int | None:
-            raws = tuple(raw_value(message.signals[name], data) for name in selecting)
-            if raws not in known:
-                known[raws] = self._of_page(message, routes, dict(zip(selecting, raws, strict=True)), by_held)
-            return known[raws]
-
-        return choose
-
-    def _of_page(
-        self,
-        message: Message,
-        routes: Sequence[SignalRoute],
-        raws: dict[str, int],
-        by_held: dict[tuple[str, ...], int],
-    ) -> int | None:
-        held = [route for route in routes if _is_held(message, route.signal.name, raws)]
-        names = tuple(route.signal.name for route in held)
-        if not held:
-            return None
-        if names not in by_held:
-            by_held[names] = len(self.found)
-            self.found.append(_Variant(message, held, raws))
-        return by_held[names]
-
-
-def _is_held(message: Message, name: str, raws: Mapping[str, int]) -> bool:
-    """Return True if a frame with these raw values of its multiplexers holds a signal."""
-    return all(
-        any(low <= raws[multiplexer] <= high for low, high in ranges)
-        for multiplexer, ranges in conditions(message.signals, name)
-    )
+def _routed(
+    variants: Sequence[Variant], wanted: Sequence[tuple[Message, Sequence[SignalRoute]]]
+) -> list[_Routed]:
+    by_name = {message.name: (message, routes) for message, routes in wanted}
+    found = []
+    for variant in variants:
+        message, routes = by_name[variant.message]
+        held = [route for route in routes if route.signal.name in variant.names]
+        found.append(_Routed(message, held, variant.page))
+    return found
 
 
 def _timed(
@@ -146,7 +93,6 @@ def _timed(
     entry: CanLogEntry,
     recording: Recording,
     channel: str,
-    variants: _Variants,
     first: int,
     clock: Clock,
     place: str,
@@ -156,7 +102,7 @@ def _timed(
         offset = _nanoseconds(entry.time_offset, f"{place}.time_offset")
     else:
         offset = recording.first
-    numbers = first + np.arange(len(variants.found), dtype=np.int64)
+    numbers = first + np.arange(len(recording.variants), dtype=np.int64)
     return Replayed(recording, channel, offset, clock, system.file.buses[entry.bus].delay, numbers)
 
 
@@ -171,7 +117,7 @@ def _nanoseconds(time: float, place: str) -> int:
 
 
 def _message(
-    system: System, bus: str, variant: _Variant, clock: Clock, status: Mapping[str, tuple[int, ...]]
+    system: System, bus: str, variant: _Routed, clock: Clock, status: Mapping[str, tuple[int, ...]]
 ) -> MessagePlan:
     """Return the plan of a message, or of a page of it, whose frames come from a log.
 
@@ -259,19 +205,24 @@ def _plan(
     place: str,
 ) -> ReplayPlan:
     """Return the plan of a replay with its counts. Raises ConfigError where no frame of it is in the run."""
-    variants, steps = replayed.steps()
-    inside = (steps >= 0) & (steps < clock.steps)
     counts = {m.name: 0 for m, _ in wanted}
-    for number, count in enumerate(np.bincount(variants[inside], minlength=len(made)).tolist()):
-        counts[made[number].message.name] += count
+    within, before, after = np.zeros(len(made), dtype=np.int64), 0, 0
+    for variants, steps in replayed.steps():
+        inside = (steps >= 0) & (steps < clock.steps)
+        within += np.bincount(variants[inside], minlength=len(made))
+        before += int((steps < 0).sum())
+        after += int((steps >= clock.steps).sum())
+    for plan, count in zip(made, within.tolist(), strict=True):
+        counts[plan.message.name] += count
     path = replayed.recording.path
     of_channel = replayed.recording.spans[replayed.channel]
     first, last = ((time - replayed.offset) * 1e-9 for time in (of_channel.first, of_channel.last))
-    if not inside.any():
+    if not within.any():
         raise ConfigError(
-            f"{place}: none of the {len(steps)} frames that would be replayed of {path} is within the run, "
-            f"from {clock.start:g} s to {clock.stop:g} s: its frames are from {first:.6g} s to {last:.6g} s "
-            "of the run's time; `time_offset` is the time of the log at which the run's clock shows 0 s"
+            f"{place}: none of the {before + after} frames that would be replayed of {path} is within the "
+            f"run, from {clock.start:g} s to {clock.stop:g} s: its frames are from {first:.6g} s to "
+            f"{last:.6g} s of the run's time; `time_offset` is the time of the log at which the run's clock "
+            "shows 0 s"
         )
     return ReplayPlan(
         bus=bus,
@@ -280,8 +231,8 @@ def _plan(
         counts=counts,
         span=(first, last),
         resolution=of_channel.resolution * 1e-9,
-        before=int((steps < 0).sum()),
-        after=int((steps >= clock.steps).sum()),
+        before=before,
+        after=after,
     )
 
 

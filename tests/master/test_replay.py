@@ -244,7 +244,6 @@ def test_an_isolated_unit_and_a_log_in_a_file_give_the_same(
     log = candump(tmp_path, *((k / 500, k % 200) for k in range(5000)))
     expected = replay(tmp_path, log, stop_time=10.0)
     isolated = replay(tmp_path, log, stop_time=10.0, isolation="process")
-    monkeypatch.setattr(recording, "_ROOM", 100)
     monkeypatch.setattr(recording, "RowStore", lambda width, **texts: RowStore(width, memory=1000, **texts))
     filed = replay(tmp_path, log, stop_time=10.0)
     for other in (isolated, filed):

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import random
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from evcosim.cosim.can.logs.reading.blocks import FRAME, Channels
 from evcosim.cosim.can.logs.reading.files import logged_frames
+from evcosim.cosim.can.logs.reading.lines import Lines
 from evcosim.cosim.can.logs.reading.logged import LoggedFrame
 from evcosim.cosim.can.logs.writing import START
 from evcosim.cosim.errors import ConfigError
@@ -35,6 +39,25 @@ def check_reads_what_was_written(folder: Path, suffix: str) -> None:
             begin + round(frame.time * 1e9), channel, frame.message.frame_id, frame.message.extended,
             frame.data,
         )  # fmt: skip # the fields of a frame
+
+
+def check_same_one_by_one(reader: Any, path: Path, text: str) -> None:
+    """Raise AssertionError unless a text is read as it is line by line, or refused in the same words."""
+    path.write_bytes(text.encode())
+
+    def found() -> list[LoggedFrame] | str:
+        try:
+            return frames_in(path)
+        except ConfigError as error:
+            return str(error)
+
+    def unusual(lines: Lines, channels: Channels) -> tuple[Any, Any]:
+        return np.zeros(len(lines), dtype=FRAME), np.zeros(len(lines), dtype=np.bool_)
+
+    in_bulk = found()
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(reader, "_usual", unusual)
+        assert in_bulk == found(), text
 
 
 def refused(path: Path, content: str | bytes) -> str:

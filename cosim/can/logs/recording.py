@@ -1,13 +1,12 @@
 """The frames of a log that are wanted, in order, and counts of all others.
 
-The file is read once, frame by frame, before the run; what is wanted is kept as rows of numbers, the first
-ones in memory and the rest in a temporary file, so that a log may be larger than the memory.
+The file is read once, many frames at a time, before the run; what is wanted is kept as rows of numbers, the
+first ones in memory and the rest in a temporary file, so that a log may be larger than the memory.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import struct
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -16,25 +15,16 @@ from numpy.typing import NDArray
 
 from ...errors import ConfigError
 from ...row_store import RowStore, Table
-from ..database import Message
-from .reading.files import format_of, logged_frames
-from .reading.logged import DATA, LoggedFrame
+from .reading.blocks import Block
+from .reading.files import format_of, logged_blocks
+from .reading.logged import DATA
+from .variants import Key, Variant, Variants
 
 TIME, CHANNEL, VARIANT, PAYLOAD = range(4)
-WIDTH = PAYLOAD + 8
-"""Columns of the rows, int64: time [ns of the log], channel, variant, and the payload, 8 bytes each."""
+"""Columns of the rows, int64: time [ns of the log], channel, variant, and from PAYLOAD on 8 bytes each of the
+payload, as many as the longest message needs."""
 
-_ROW = struct.Struct("<qqq64s")
-_ROOM = 1 << 20  # bytes of rows between two writes
 _STRETCH = 4096
-
-Key = tuple[int, bool]
-"""Identifier of a message, and True for an extended one."""
-
-
-def key_of(message: Message) -> Key:
-    """Return identifier and kind of a message."""
-    return message.frame_id, message.extended
 
 
 @dataclasses.dataclass
@@ -60,7 +50,7 @@ class Recording:
     """The wanted frames of a log, and what was seen of each identifier by channel.
 
     `spans` has the times of each channel. `backward` has for a channel the first place at which its time goes
-    back, in words.
+    back, in words. `variants` are those that the rows have the numbers of.
     """
 
     path: Path
@@ -70,6 +60,7 @@ class Recording:
     backward: Mapping[str, str]
     spans: Mapping[str, Span]
     others: int
+    variants: tuple[Variant, ...]
 
     @property
     def first(self) -> int:
@@ -77,7 +68,7 @@ class Recording:
         return min((span.first for span in self.spans.values()), default=0)
 
     def rows(self) -> Iterator[NDArray[np.int64]]:
-        """Yield some rows at a time, shape (n, WIDTH), in the order of the file."""
+        """Yield some rows at a time, shape (n, width), in the order of the file."""
         for start in range(0, self.table.shape[0], _STRETCH):
             yield self.table.rows(start, start + _STRETCH).view("<i8")
 
@@ -86,68 +77,101 @@ class Recording:
         return sum(each.frames for each in self.seen.get(channel, {}).values())
 
 
-def recorded(
-    path: Path, lengths: Mapping[Key, int], variant: Callable[[Key, bytes], int | None]
-) -> Recording:
-    """Return what a log has of messages by identifier, each with its number of bytes.
+def recorded(path: Path, variants: Variants) -> Recording:
+    """Return the frames of a log that are of the messages and hold a signal that `variants` know.
 
-    `variant` returns the number with which a frame's row is kept, None for a frame that is not kept. Raises
-    ConfigError where the log cannot be read or kept.
+    Raises ConfigError where the log cannot be read or kept.
     """
     form = format_of(path)
-    store = RowStore(WIDTH, what=f"the frames of {path}", advice="a log of fewer frames needs less")
-    seen: dict[str, dict[Key, Seen]] = {}
-    numbers: dict[str, int] = {}
-    backward: dict[str, str] = {}
-    spans: dict[str, Span] = {}
-    latest: dict[str, int] = {}
-    others, rows = 0, bytearray()
-    with logged_frames(path) as frames:
-        for frame in frames:
-            if frame.kind != DATA:
-                others += 1
+    width = PAYLOAD + variants.words
+    store = RowStore(width, what=f"the frames of {path}", advice="a log of fewer frames needs less")
+    tally = _Tally(variants, form.resolution, form.place)
+    with logged_blocks(path) as blocks:
+        for block in blocks:
+            rows = tally.taken(block, width)
+            if len(rows):
+                store.append(rows.view("<f8"))
+    return Recording(
+        path, store.table(), tuple(tally.seen), tally.seen, tally.backward, tally.spans, tally.others,
+        tuple(variants.found),
+    )  # fmt: skip # what was found
+
+
+class _Tally:
+    """Counts of the frames of a log up to now."""
+
+    def __init__(self, variants: Variants, resolution: Callable[[int, int], int], place: str) -> None:
+        self._variants, self._resolution, self._place = variants, resolution, place
+        self._messages = variants.messages
+        self._latest: dict[str, int] = {}
+        self._numbers: dict[str, int] = {}
+        self.seen: dict[str, dict[Key, Seen]] = {}
+        self.spans: dict[str, Span] = {}
+        self.backward: dict[str, str] = {}
+        self.others = 0
+
+    def taken(self, block: Block, width: int) -> NDArray[np.int64]:
+        """Count the frames of a block, and return the rows of those that are wanted."""
+        rows = block.rows
+        data = rows["kind"] == DATA
+        if not data.all():
+            self.others += int(len(rows) - data.sum())
+            rows = rows[data]
+        variant = np.full(len(rows), -1, dtype=np.int64)
+        channel = np.zeros(len(rows), dtype=np.int64)
+        used, begins = np.unique(rows["channel"], return_index=True)
+        for place in used[np.argsort(begins)].tolist():  # in the order in which they come up
+            name = block.channels[place]
+            own = slice(None) if len(used) == 1 else np.flatnonzero(rows["channel"] == place)
+            self._note_times(name, rows[own])
+            channel[own] = self._numbers.setdefault(name, len(self._numbers))
+            variant[own] = self._counted(name, rows[own])
+        kept = np.flatnonzero(variant >= 0)
+        made = np.empty((len(kept), width), dtype=np.int64)
+        made[:, TIME], made[:, CHANNEL], made[:, VARIANT] = rows["time"][kept], channel[kept], variant[kept]
+        made[:, PAYLOAD:] = np.ascontiguousarray(rows["data"][kept, : 8 * (width - PAYLOAD)]).view("<i8")
+        return made
+
+    def _note_times(self, name: str, rows: NDArray[np.void]) -> None:
+        times, resolutions = rows["time"], rows["resolution"]
+        span = self.spans.setdefault(name, Span(int(times[0]), int(times[0]), int(resolutions[0])))
+        span.first, span.last = min(span.first, int(times.min())), max(span.last, int(times.max()))
+        for each in (int(resolutions.min()), int(resolutions.max())):
+            span.resolution = self._resolution(span.resolution, each)
+        before = np.concatenate(([self._latest.get(name, times[0])], times[:-1]))
+        back = np.flatnonzero(times < before)
+        if len(back) and name not in self.backward:
+            i = int(back[0])
+            self.backward[name] = (
+                f"at {self._place} {rows['place'][i]} the time goes back from {_seconds(int(before[i]))} to "
+                f"{_seconds(int(times[i]))}"
+            )
+        self._latest[name] = int(times[-1])
+
+    def _counted(self, name: str, rows: NDArray[np.void]) -> NDArray[np.int64]:
+        """Return the variants of frames of a channel, -1 for those that are not wanted."""
+        of_channel = self.seen.setdefault(name, {})
+        keys = rows["frame_id"].astype(np.int64) << 1 | rows["extended"]
+        found, begins, which, counts = np.unique(
+            keys, return_index=True, return_inverse=True, return_counts=True
+        )
+        variant = np.full(len(rows), -1, dtype=np.int64)
+        for i in np.argsort(begins).tolist():
+            key = int(found[i]) >> 1, bool(found[i] & 1)
+            about = of_channel.setdefault(key, Seen())
+            about.frames += int(counts[i])
+            message = self._messages.get(key)
+            if message is None:
                 continue
-            time, channel, key = frame.time, frame.channel, (frame.frame_id, frame.extended)
-            of_channel = seen.get(channel)
-            if of_channel is None:
-                of_channel = seen[channel] = {}
-                numbers[channel] = len(numbers)
-                spans[channel] = Span(time, time, frame.resolution)
-                latest[channel] = time
-            span = spans[channel]
-            found = of_channel.get(key)
-            if found is None:
-                found = of_channel[key] = Seen()
-            found.frames += 1
-            span.first, span.last = min(span.first, time), max(span.last, time)
-            span.resolution = form.resolution(span.resolution, frame.resolution)
-            if time < latest[channel] and channel not in backward:
-                backward[channel] = _backward(frame, latest[channel], form.place)
-            latest[channel] = time
-            length = lengths.get(key)
-            if length is None:
-                continue
-            if len(frame.data) < length:
-                found.short += 1
-                found.least = min(found.least, len(frame.data))
-                continue
-            number = variant(key, frame.data)
-            if number is not None:
-                rows += _ROW.pack(time, numbers[channel], number, frame.data)
-                if len(rows) >= _ROOM:
-                    _keep(store, rows)
-    _keep(store, rows)
-    return Recording(path, store.table(), tuple(seen), seen, backward, spans, others)
-
-
-def _keep(store: RowStore, rows: bytearray) -> None:
-    """Move rows into the store, and leave none."""
-    store.append(np.frombuffer(bytes(rows), "<f8").reshape(-1, WIDTH))
-    rows.clear()
-
-
-def _backward(frame: LoggedFrame, before: int, place: str) -> str:
-    return f"at {place} {frame.place} the time goes back from {_seconds(before)} to {_seconds(frame.time)}"
+            own = np.flatnonzero(which == i)
+            lengths = rows["length"][own]
+            short = lengths < message.length
+            if short.any():
+                about.short += int(short.sum())
+                about.least = min(about.least, int(lengths.min()))
+                own = own[~short]
+            variant[own] = self._variants.numbers(key, rows["data"][own])
+        return variant
 
 
 def _seconds(nanoseconds: int) -> str:

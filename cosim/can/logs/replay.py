@@ -8,6 +8,7 @@ several, where they are rounded to more than a step, as the nearest one.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,14 +50,10 @@ class Replayed:
                 return found, at if at < table.shape[0] else -1
         return np.empty((0, T.LOG_WIDTH), dtype=np.int64), -1
 
-    def steps(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return variant and step of each frame, also of those before the start, both of shape (n,)."""
-        found = [(rows[:, VARIANT], self._timed(rows)[1]) for rows in map(self._own, self.recording.rows())]
-        empty = np.empty(0, dtype=np.int64)
-        return (
-            np.concatenate([empty, *(variant for variant, _ in found)]),
-            np.concatenate([empty, *(step for _, step in found)]),
-        )
+    def steps(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+        """Yield variants and steps of some frames at a time, also of those before the start, shape (n,)."""
+        for rows in map(self._own, self.recording.rows()):
+            yield rows[:, VARIANT], self._timed(rows)[1]
 
     def _own(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         number = self.recording.channels.index(self.channel)
@@ -88,8 +85,8 @@ class Replayed:
     def _frames(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         rows = self._own(rows)
         since, step = self._timed(rows)
-        made = np.empty((len(rows), T.LOG_WIDTH), dtype=np.int64)
+        made = np.zeros((len(rows), T.LOG_WIDTH), dtype=np.int64)
         made[:, T.LOG_STEP], made[:, T.LOG_TIME] = step, since
         made[:, T.LOG_MESSAGE] = self.messages[rows[:, VARIANT]]
-        made[:, T.LOG_PAYLOAD :] = rows[:, PAYLOAD:]
+        made[:, T.LOG_PAYLOAD : T.LOG_PAYLOAD + rows.shape[1] - PAYLOAD] = rows[:, PAYLOAD:]
         return made[step >= 0]

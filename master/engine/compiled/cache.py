@@ -47,7 +47,8 @@ _OF_FRAMES = (
     f"{_ENGINE}.frames", f"{_ENGINE}.wire_types", f"{_ENGINE}.addresses", "evcosim.master.machine.access",
     "evcosim.cosim.can.timing.draws", "evcosim.cosim.can.timing.lengths",
     "evcosim.cosim.can.protection.profiles", "evcosim.cosim.can.protection.counters",
-    f"{_FRAMES}.arbitration", f"{_FRAMES}.babble", f"{_FRAMES}.faults", f"{_FRAMES}.log", f"{_FRAMES}.medium",
+    f"{_FRAMES}.arbitration", f"{_FRAMES}.babble", f"{_FRAMES}.buffers", f"{_FRAMES}.faults",
+    f"{_FRAMES}.log", f"{_FRAMES}.medium",
     f"{_FRAMES}.off", f"{_FRAMES}.payload", f"{_FRAMES}.protect", f"{_FRAMES}.requests", f"{_FRAMES}.tables",
     f"{_FRAMES}.uses", f"{_FRAMES}.values",
 )  # fmt: skip # names

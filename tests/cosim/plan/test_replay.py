@@ -1,23 +1,18 @@
-"""Raw values of multiplexers in the frames of a log."""
+"""What a log brings to a run; whole runs are in tests/master/test_replay.py."""
 
 from __future__ import annotations
 
-from hypothesis import given
-from hypothesis import strategies as st
+from types import SimpleNamespace
 
-from evcosim.cosim.can.database import Signal
-from evcosim.cosim.can.logs.frames import encoder
-from evcosim.cosim.can.wire.payload import raw_value
-from support.framed import layouts
+from evcosim.cosim.can.database import Message, Signal
+from evcosim.cosim.can.logs.variants import Variant
+from evcosim.cosim.plan.replay import _routed
 
 
-@given(layouts(), st.randoms(use_true_random=False))
-def test_raw_values_are_those_that_were_packed(message, draw) -> None:
-    whole = {name: s for name, s in message.signals.items() if not s.is_float}
-    raws = {name: draw.randint(*map(int, s.raw_type_range)) for name, s in whole.items()}
-    data = encoder(message)(raws | dict.fromkeys(message.signals.keys() - whole.keys(), 0.0))
-    assert {name: raw_value(s, data) for name, s in whole.items()} == raws
-
-
-def test_a_signal_of_a_longer_frame() -> None:
-    assert raw_value(Signal("S", 7, 4, little_endian=False), b"\xa5\x00\x00") == 10
+def test_a_variant_of_a_message_has_the_routes_of_its_signals() -> None:
+    message = Message("f", "M", 1, False, 8, signals={name: Signal(name, 0, 8) for name in "AB"})
+    routes = [SimpleNamespace(signal=signal) for signal in message.signals.values()]
+    variants = [Variant("M", ("A", "B"), {}), Variant("M", ("B",), {"P": 3})]
+    (first, second) = _routed(variants, [(message, routes)])
+    assert first.routes == routes and second.routes == routes[1:]
+    assert (second.message, second.page) == (message, {"P": 3})

@@ -10,21 +10,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...flaws import GREATEST
 from ...timing.lengths import FD_LENGTHS
-from .logged import (
-    DATA,
-    ERROR,
-    REMOTE,
-    LoggedFrame,
-    damaged,
-    lines_of,
-    nanoseconds,
-    resolution_of,
-    unprintable,
-)
+from .blocks import FRAME, Block, Channels, set_frame
+from .lines import Flags, Lines, decimals, hexadecimals, lines_in_bulk, payloads, times
+from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, nanoseconds, resolution_of, unprintable
 
 _EVENT = re.compile(r"(\d{1,12})\.(\d{1,12})\s+(.*)")
 _BASE = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
@@ -32,26 +27,114 @@ _ID = re.compile(r"([0-9A-Fa-f]+)(x?)", re.IGNORECASE)
 _DIRECTIONS = ("rx", "tx", "txrq")
 
 
-def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
+def reading(file: BinaryIO, path: Path) -> Iterator[Block]:
     """Yield the frames of a log. Raises ConfigError, which names the line, for one that is damaged."""
-    base, relative, now = 16, False, 0
-    for number, line in lines_of(file, path):
+    events, channels = _Events(path), Channels()
+    for lines in lines_in_bulk(file, path):
+        rows, good = _usual(lines, channels)
+        if events.special or b"base" in lines.text.tobytes().lower():
+            good[:] = False  # a header, or numbers and times that the usual form does not have
+        rows["place"] = np.arange(lines.first, lines.first + len(lines))
+        kept = good.copy()
+        for i in np.flatnonzero(~good).tolist():
+            frame = events.frame(lines.line(i), lines.first + i)
+            if frame is not None:
+                set_frame(rows, i, frame, channels)
+                kept[i] = True
+        yield Block(rows[kept], channels.names)
+
+
+class _Events:
+    """The lines of a log in their order, of which the last header of numbers and times counts."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._base, self._relative, self._now = path, 16, False, 0
+
+    @property
+    def special(self) -> bool:
+        """True where numbers are decimal, or times count from the event before."""
+        return self._base != 16 or self._relative
+
+    def frame(self, line: str, number: int) -> LoggedFrame | None:
+        """Return the frame of a line; None for another one. Raises ConfigError for one that is damaged."""
         if unprintable(line):
-            raise damaged(path, f"line {number}", "bytes that no text has: the file is damaged")
+            raise damaged(self._path, f"line {number}", "bytes that no text has: the file is damaged")
         event = _EVENT.match(line)
         if event is None:
             if header := _BASE.match(line):
-                base = 10 if header[1].lower() == "dec" else 16
-                relative = (header[2] or "").lower() == "relative"
-            continue
-        time = nanoseconds(event[1], event[2])
-        now = now + time if relative else time
+                self._base = 10 if header[1].lower() == "dec" else 16
+                self._relative = (header[2] or "").lower() == "relative"
+            return None
         try:
-            frame = _frame(event[3].split(), base, now, number)
+            time = nanoseconds(event[1], event[2])
+            self._now = self._now + time if self._relative else time
+            frame = _frame(event[3].split(), self._base, self._now, number)
         except (ValueError, IndexError) as error:
-            raise damaged(path, f"line {number}", f"the frame cannot be read: {line[:80]}") from error
-        if frame is not None:
-            yield LoggedFrame(*frame[:-1], resolution_of(event[2]))
+            raise damaged(self._path, f"line {number}", f"the frame cannot be read: {line[:80]}") from error
+        return frame if frame is None else LoggedFrame(*frame[:-1], resolution_of(event[2]))
+
+
+def _usual(lines: Lines, channels: Channels) -> tuple[NDArray[Any], Flags]:
+    """Return the frames of lines of classic frames with data in base 16, and which lines these are.
+
+    The frames have shape (n,) of FRAME. A line is `time channel id[x] Rx|Tx d length data ...`.
+    """
+    text, rows = lines.text, np.zeros(len(lines), dtype=FRAME)
+    blank = (text == ord(" ")) | (text == ord("\t")) | (text == ord("\n")) | (text == ord("\r"))
+    begins = np.flatnonzero(~blank & np.concatenate(([True], blank[:-1])))
+    stops = np.flatnonzero(blank & np.concatenate(([False], ~blank[:-1])))  # the last line has its end
+    begins = begins[: len(stops)]  # not those of the zeros behind the text
+    first = np.searchsorted(begins, lines.starts)
+    count = np.searchsorted(begins, lines.ends) - first
+    good = count >= 6
+
+    def word(k: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return begin and end of word k of each line, of the first word of the text where it has none."""
+        at = np.where(good & (k < count), first + k, 0)
+        return begins[at], stops[at]
+
+    if not good.any():
+        return rows, good
+    begin, end = word(0)
+    time, resolution, fine = times(lines, begin, lines.next(lines.places("."), begin), end)
+    good &= fine
+    begin, end = word(1)
+    channel, fine = decimals(text, begin, end, 4)
+    good &= fine & ((text[begin] != ord("0")) | (end - begin == 1))
+    begin, end = word(2)
+    extended = text[end - 1] == ord("x")
+    key, fine = hexadecimals(text, begin, end - extended, 8)
+    good &= fine & (key <= np.where(extended, GREATEST[True], GREATEST[False]))
+    begin, end = word(3)
+    good &= (end - begin == 2) & (text[begin + 1] == ord("x"))
+    good &= (text[begin] == ord("R")) | (text[begin] == ord("T"))
+    begin, end = word(4)
+    good &= (end - begin == 1) & (text[begin] == ord("d"))
+    begin, end = word(5)
+    length, fine = decimals(text, begin, end, 1)
+    good &= fine & (length <= 8) & (count >= 6 + length)
+    for k in range(int(length[good].max(initial=0))):
+        begin, end = word(6 + k)
+        there = good & (k < length)
+        good &= ~there | (end - begin == 2)
+        ones = np.where(there, 1, 0)
+        good &= payloads(text, begin, ones, 2, rows["data"][:, k : k + 1])
+    rows["time"], rows["resolution"], rows["frame_id"] = time, resolution, key
+    rows["extended"], rows["length"], rows["kind"] = extended, length, DATA
+    for number in np.unique(channel[good]).tolist():
+        rows["channel"][good & (channel == number)] = channels.place(str(number))
+    rows["data"][~good] = 0
+    return rows, good & ~_unprintable(lines)
+
+
+def _unprintable(lines: Lines) -> Flags:
+    """Return which lines have bytes that no text has; they are read one by one."""
+    text = lines.text
+    bad = np.flatnonzero((text < 32) & ~np.isin(text, (9, 10, 11, 12, 13)) | (text == 127))
+    found = np.zeros(len(lines), dtype=np.bool_)
+    bad = bad[bad < lines.ends[-1]]
+    found[np.searchsorted(lines.ends, bad)] = True
+    return found
 
 
 def _frame(words: Sequence[str], base: int, time: int, line: int) -> LoggedFrame | None:

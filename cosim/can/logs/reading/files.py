@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import BinaryIO, Literal
 
@@ -12,18 +12,19 @@ from ....errors import ConfigError
 from ....reading import require_file
 from ....shortage import reason
 from . import asc, blf, candump, libraries, mf4, pcapng
+from .blocks import Block
 from .logged import LoggedFrame
 
 
 @dataclasses.dataclass(frozen=True)
 class Format:
-    """A format: `reading` yields the frames of a file.
+    """A format: `reading` yields the frames of a file in blocks.
 
     `place` is what the place of a frame counts. Of the resolutions of its frames `resolution` is that of the
     log: the finest one of a text, where a number may end before its zeros, else the coarsest one.
     """
 
-    reading: Callable[[BinaryIO, Path], Iterator[LoggedFrame]]
+    reading: Callable[[BinaryIO, Path], Iterator[Block]]
     place: Literal["line", "byte", "frame"]
     resolution: Callable[[int, int], int] = max
 
@@ -48,8 +49,8 @@ def format_of(path: Path, place: str = "") -> Format:
 
 
 @contextlib.contextmanager
-def logged_frames(path: Path) -> Iterator[Iterator[LoggedFrame]]:
-    """Give the frames of a log in the order of the file, read while they are taken.
+def logged_blocks(path: Path) -> Iterator[Iterator[Block]]:
+    """Give the frames of a log in the order of the file, in blocks that are read while they are taken.
 
     Raises ConfigError where it cannot be read, or is damaged, which names line or byte.
     """
@@ -60,3 +61,15 @@ def logged_frames(path: Path) -> Iterator[Iterator[LoggedFrame]]:
             yield form.reading(file, path)
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {reason(error)}") from error
+
+
+@contextlib.contextmanager
+def logged_frames(path: Path) -> Iterator[Iterator[LoggedFrame]]:
+    """Give the frames of a log one by one. Raises as `logged_blocks`."""
+    with logged_blocks(path) as blocks, contextlib.closing(_singly(blocks)) as frames:
+        yield frames
+
+
+def _singly(blocks: Iterator[Block]) -> Generator[LoggedFrame]:
+    for block in blocks:
+        yield from block.frames()

@@ -10,24 +10,25 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ....errors import ConfigError
+from .blocks import Block, blocks_of
 from .logged import DATA, ERROR, LATEST, MOST_BYTES, REMOTE, LoggedFrame, damaged, resolution_of
 
 _SECONDS = re.compile(r"\s*\d*\.?(\d*)\s*,")
 _MILLISECONDS = re.compile(r"\s*\d+\)?\s+\d+\.?(\d*)")
 
 
-def reading_trc(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
+def reading_trc(file: BinaryIO, path: Path) -> Iterator[Block]:
     """Yield the frames of a trace of PEAK's tools. Raises ConfigError, which counts the frames before."""
     from can.io.trc import TRCReader
 
-    return _frames(TRCReader, _Stamped(file, _MILLISECONDS, 3), path, "a TRC trace")
+    return blocks_of(_frames(TRCReader, _Stamped(file, _MILLISECONDS, 3), path, "a TRC trace"))
 
 
-def reading_csv(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
+def reading_csv(file: BinaryIO, path: Path) -> Iterator[Block]:
     """Yield the frames of a CSV file of python-can. Raises ConfigError, which counts the frames before."""
     from can.io.csv import CSVReader
 
-    return _frames(CSVReader, _Stamped(file, _SECONDS, 0), path, "a CSV file of python-can")
+    return blocks_of(_frames(CSVReader, _Stamped(file, _SECONDS, 0), path, "a CSV file of python-can"))
 
 
 class _Stamped(io.TextIOWrapper):

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import NamedTuple
 
 from ....errors import ConfigError
 
@@ -13,7 +12,9 @@ DATA, REMOTE, ERROR = range(3)
 """Kinds of frames: with data, which only are replayed; a request for some; the flags of an error."""
 
 MOST_BYTES = 64
-_LONGEST_LINE = 1 << 16
+"""Bytes of a frame."""
+LONGEST_LINE = 1 << 16
+"""Bytes of a line that is none of a log."""
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 LATEST = 1 << 62
 """Nanoseconds of the latest time that is read; the year 2116, counted from 1970."""
@@ -37,17 +38,9 @@ class LoggedFrame(NamedTuple):
     resolution: int = 1
 
 
-def lines_of(file: BinaryIO, path: Path) -> Iterator[tuple[int, str]]:
-    """Yield number and text of each line, without spaces at its ends.
-
-    Raises ConfigError for a line that no log has, by its length.
-    """
-    number = 0
-    while line := file.readline(_LONGEST_LINE):
-        number += 1
-        if len(line) == _LONGEST_LINE:
-            raise ConfigError(f"{path}: line {number} has {_LONGEST_LINE} bytes or more: no log of frames")
-        yield number, line.decode("utf-8", errors="replace").strip()
+def too_long(path: Path, number: int) -> ConfigError:
+    """Return the error for a line that no log has, by its length."""
+    return ConfigError(f"{path}: line {number} has {LONGEST_LINE} bytes or more: no log of frames")
 
 
 def unprintable(line: str) -> bool:
@@ -56,8 +49,14 @@ def unprintable(line: str) -> bool:
 
 
 def nanoseconds(whole: str, fraction: str) -> int:
-    """Return seconds that are written as `whole`.`fraction` in whole nanoseconds, the rest cut off."""
-    return int(whole[-20:]) * 10**9 + int(fraction[:9].ljust(9, "0"))
+    """Return seconds that are written as `whole`.`fraction` in whole nanoseconds, the rest cut off.
+
+    Raises ValueError for a time that is too late for a log.
+    """
+    time = int(whole[-20:]) * 10**9 + int(fraction[:9].ljust(9, "0"))
+    if not time < LATEST:
+        raise ValueError(f"a time of {whole} s")
+    return time
 
 
 def resolution_of(fraction: str) -> int:

@@ -7,26 +7,23 @@ takes as much memory as they tell.
 from __future__ import annotations
 
 import contextlib
-import heapq
 import logging
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .logged import DATA, ERROR, LATEST, MOST_BYTES, REMOTE, LoggedFrame
+from .blocks import FRAME
+from .logged import DATA, ERROR, LATEST, MOST_BYTES, REMOTE
 
-RECORD = np.dtype(
-    [
-        ("time", "<i8"), ("place", "<i8"), ("id", "<u4"), ("channel", "<u4"),
-        ("resolution", "<u4"), ("extended", "u1"),
-        ("kind", "u1"), ("length", "u1"), ("end", "u1"), ("data", f"({MOST_BYTES},)u1"),
-    ]
-)  # fmt: skip # the fields of a frame
-"""A frame; in the last record, which has none, `end` is 1."""
+Rows = NDArray[Any]
+"""Frames, shape (n,) of FRAME, of which `channel` is the number that the log gives the bus."""
+END = 255
+"""The kind of the last record, which is no frame."""
 STRETCH = 20_000
 """Frames that are read, and written, at a time."""
 UNREAD = 3
@@ -38,7 +35,7 @@ _INTEGERS = 3  # the greatest type of data that is an integer
 _MEMORY = 8 << 30  # bytes of address space
 
 
-def frames_of(path: Path, stretch: int = STRETCH) -> Iterator[LoggedFrame]:
+def frames_of(path: Path, stretch: int = STRETCH) -> Iterator[Rows]:
     """Yield the frames in the order of time. Raises whatever the library does for a damaged file."""
     from asammdf import MDF
 
@@ -49,22 +46,61 @@ def frames_of(path: Path, stretch: int = STRETCH) -> Iterator[LoggedFrame]:
             for name in dict.fromkeys(channel.name for channel in group.channels)
             if name in _KINDS and group.channel_group.cycles_nr
         ]
-        yield from heapq.merge(*streams, key=lambda frame: frame.time)
+        yield from merged(streams)
 
 
-def _frames(mdf: Any, group: int, name: str, stretch: int) -> Iterator[LoggedFrame]:
+def merged(streams: Iterable[Iterator[Rows]]) -> Iterator[Rows]:
+    """Yield the rows of several streams by time; those of a stream keep their order whatever it is."""
+    heads = [_Head(stream) for stream in streams]
+    while heads := [head for head in heads if head.fill()]:
+        until = min(int(head.keys[-1]) for head in heads)
+        parts = [head.taken(until) for head in heads]
+        keys, rows = (np.concatenate(column) for column in zip(*parts, strict=True))
+        yield rows[np.argsort(keys, kind="stable")]
+
+
+class _Head:
+    """The rows of a stream that are not taken yet; `keys` are the latest times [ns] up to each of them."""
+
+    def __init__(self, stream: Iterator[Rows]) -> None:
+        self._stream, self._rows, self.keys = stream, np.zeros(0, dtype=FRAME), np.zeros(0, dtype=np.int64)
+        self._latest = -LATEST
+
+    def fill(self) -> bool:
+        """Read on where there are no rows; return False where there are no more."""
+        while not len(self._rows):
+            found = next(self._stream, None)
+            if found is None:
+                return False
+            self._rows = found
+            self.keys = np.maximum.accumulate(np.maximum(found["time"], self._latest))
+        self._latest = int(self.keys[-1])
+        return True
+
+    def taken(self, until: int) -> tuple[NDArray[np.int64], Rows]:
+        """Return keys and rows up to a key, and keep the others."""
+        n = int(np.searchsorted(self.keys, until, side="right"))
+        found = self.keys[:n], self._rows[:n]
+        self.keys, self._rows = self.keys[n:], self._rows[n:]
+        return found
+
+
+def _frames(mdf: Any, group: int, name: str, stretch: int) -> Iterator[Rows]:
     """Yield the frames of one group of channels, a stretch at a time."""
     resolution = _resolution(mdf, group)
     for start in range(0, mdf.groups[group].channel_group.cycles_nr, stretch):
         found = mdf.get(name, group, record_offset=start, record_count=stretch, raw=True)
-        for time, channel, key, extended, data, number in _rows(found, name, start):
-            if not abs(time) < LATEST / 1e9:
-                raise ValueError(f"frame {number + 1} of group {group + 1}: its time is {time} s")
-            far = extended or bool(key & _EXTENDED)
-            place = number + 1
-            yield LoggedFrame(
-                round(time * 1e9), str(channel), key & _ID, far, data, place, _KINDS[name], resolution
-            )
+        times = np.asarray(found.timestamps, dtype=np.float64)
+        bad = np.flatnonzero(~(np.abs(times) < LATEST / 1e9))
+        if len(bad):
+            place = start + int(bad[0]) + 1
+            raise ValueError(f"frame {place} of group {group + 1}: its time is {times[bad[0]]} s")
+        rows = np.zeros(len(times), dtype=FRAME)
+        rows["time"], rows["resolution"] = np.rint(times * 1e9), resolution
+        rows["place"] = np.arange(start + 1, start + 1 + len(times))
+        rows["kind"] = _KINDS[name]
+        _fill(rows, found.samples, name)
+        yield rows
 
 
 def _resolution(mdf: Any, group: int) -> int:
@@ -79,49 +115,36 @@ def _resolution(mdf: Any, group: int) -> int:
     return max(1, round(unit * 1e9))
 
 
-def _rows(found: Any, name: str, start: int) -> list[tuple[float, int, int, bool, bytes, int]]:
-    """Return time [s], channel, identifier, extended or not, data and number of each frame."""
-    samples, count = found.samples, len(found.timestamps)
+def _fill(rows: Rows, samples: Any, name: str) -> None:
+    """Write channels, identifiers and data of the samples of a group into rows."""
     fields = samples.dtype.names or ()
 
-    def column(field: str, instead: int) -> Any:
+    def column(field: str, instead: int) -> NDArray[np.int64]:
         full = f"{name}.{field}"
-        return samples[full].tolist() if full in fields else [instead] * count
+        return samples[full].astype(np.int64) if full in fields else np.full(len(rows), instead)
 
-    data = [b""] * count
-    if _KINDS[name] == DATA:
-        lengths = column("DataLength", 0)
-        payloads = np.ascontiguousarray(samples[f"{name}.DataBytes"], dtype=np.uint8).reshape(count, -1)
-        width = payloads.shape[1]
-        if max(lengths, default=0) > min(width, MOST_BYTES):
-            raise ValueError(f"a frame of {max(lengths)} bytes")
-        whole = payloads.tobytes()
-        data = [whole[i * width : i * width + n] for i, n in enumerate(lengths)]
-    return list(
-        zip(
-            found.timestamps.tolist(), column("BusChannel", 1), column("ID", 0), map(bool, column("IDE", 0)),
-            data, range(start, start + count), strict=True,
-        )
-    )  # fmt: skip # the fields of a frame
+    key = column("ID", 0)
+    rows["frame_id"], rows["channel"] = key & _ID, column("BusChannel", 1)
+    rows["extended"] = (column("IDE", 0) != 0) | (key & _EXTENDED != 0)
+    if _KINDS[name] != DATA:
+        return
+    lengths = column("DataLength", 0)
+    data = np.ascontiguousarray(samples[f"{name}.DataBytes"], dtype=np.uint8).reshape(len(rows), -1)
+    width = min(data.shape[1], MOST_BYTES)
+    if lengths.max(initial=0) > width:
+        raise ValueError(f"a frame of {lengths.max()} bytes")
+    rows["length"] = lengths
+    rows["data"][:, :width] = np.where(np.arange(width) < lengths[:, None], data[:, :width], 0)
 
 
-def records_of(frames: Iterator[LoggedFrame], out: BinaryIO) -> None:
+def records_of(blocks: Iterable[Rows], out: BinaryIO) -> None:
     """Write frames as records, and the one that ends them."""
-    rows = np.zeros(STRETCH, dtype=RECORD)
-    count = 0
-    for frame in frames:
-        rows[count] = (
-            frame.time, frame.place, frame.frame_id, int(frame.channel), frame.resolution, frame.extended,
-            frame.kind, len(frame.data), 0,
-            np.frombuffer(frame.data.ljust(MOST_BYTES, b"\0"), dtype=np.uint8),
-        )  # fmt: skip # a record
-        count += 1
-        if count == STRETCH:
-            out.write(rows.tobytes())
-            count = 0
-    last = np.zeros(1, dtype=RECORD)
-    last["end"] = 1
-    out.write(rows[:count].tobytes() + last.tobytes())
+    for rows in blocks:
+        out.write(rows.tobytes())
+        out.flush()
+    last = np.zeros(1, dtype=FRAME)
+    last["kind"] = END
+    out.write(last.tobytes())
     out.flush()
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
+from .blocks import Block, blocks_of
 from .logged import DATA, ERROR, LATEST, MOST_BYTES, REMOTE, LoggedFrame, damaged
 
 _SECTION, _INTERFACE, _PACKET = 0x0A0D0D0A, 1, 6
@@ -28,7 +29,12 @@ class _Interface(NamedTuple):
     offset: int
 
 
-def reading(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
+def reading(file: BinaryIO, path: Path) -> Iterator[Block]:
+    """Yield the frames of a capture. Raises ConfigError, which names the byte, where it is damaged."""
+    return blocks_of(_frames(file, path))
+
+
+def _frames(file: BinaryIO, path: Path) -> Iterator[LoggedFrame]:
     """Yield the frames of a capture. Raises ConfigError, which names the byte, where it is damaged."""
     size, place, order = os.fstat(file.fileno()).st_size, 0, "<"
     interfaces: list[_Interface] = []

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import can
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from evcosim import ConfigError
+from evcosim.cosim.can.logs.reading import asc
 from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
 from support.log_readers import written
-from support.logged import check_reads_what_was_written, check_survives, frames_in, refused
+from support.logged import (
+    check_reads_what_was_written,
+    check_same_one_by_one,
+    check_survives,
+    frames_in,
+    refused,
+)
 
 HEAD = "date Mon Jan 1 00:00:00 2024\nbase hex  timestamps absolute\nno internal events logged\n"
 
@@ -85,3 +95,34 @@ def test_bytes_that_no_text_has_are_refused_with_their_line(tmp_path: Path, tail
 def test_a_time_is_as_exact_as_its_digits(tmp_path: Path) -> None:
     text = "base hex timestamps relative\n 0.01 1 123 Rx d 0\n 0.0100 1 123 Rx d 0\n 0.1 1 ErrorFrame\n"
     assert [f.resolution for f in frames_in(tmp_path / "a.asc", text)] == [10**7, 10**5, 10**8]
+
+
+EVENTS = st.builds(
+    lambda time, digits, channel, key, direction, kind, length, data, tail: (
+        f"{f'{time // 10**9:5d}.{time % 10**9:09d}'[: -digits or None]} {channel}  {key} {direction}"
+        f"   {kind} {length}"
+        f"{''.join(f' {byte}' for byte in data)}{tail}"
+    ),
+    st.integers(0, 2 * 10**18),
+    st.integers(0, 9),
+    st.sampled_from(["1", "2", "10", "0", "01", "12345", "x"]),
+    st.sampled_from(["123", "7FF", "800", "1ABCDEF0x", "3FFFFFFFx", "1X", "xyz", "123x"]),
+    st.sampled_from(["Rx", "Tx", "rx", "TxRq", "Statistic:"]),
+    st.sampled_from(["d", "d", "d", "r", "D", "x"]),
+    st.sampled_from(["0", "1", "2", "3", "8", "9", "08"]),
+    st.lists(st.sampled_from(["00", "1F", "ff", "A", "123", "zz"]), max_size=9),
+    st.sampled_from(["", "", "", "  Length = 5", "\r", "\x01"]),
+)
+OTHERS = st.sampled_from(
+    [
+        "base dec  timestamps absolute", "base hex timestamps relative", "// a comment", "",
+        "0.5 1 ErrorFrame", "0.5 CANFD 1 Rx 123 1 0 4 4 11 22 33 44", "End TriggerBlock",
+        "0.5 1 Statistic: D 0",
+    ]
+)  # fmt: skip # lines that are no frames, or others
+
+
+@given(st.lists(st.one_of(EVENTS, EVENTS, OTHERS), max_size=8))
+def test_lines_in_bulk_are_those_one_by_one(lines: list[str]) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        check_same_one_by_one(asc, Path(folder) / "a.asc", "\n".join(lines))

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import struct
+import tempfile
 import zlib
 from pathlib import Path
 
 import can
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from evcosim.cosim.can.logs.reading import blf
 from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
+from evcosim.cosim.errors import ConfigError
 from support.log_readers import written
 from support.logged import check_reads_what_was_written, check_survives, frames_in, refused
 
@@ -131,3 +135,42 @@ def test_the_unit_of_times_is_that_of_the_flags(tmp_path: Path) -> None:
         (50_000, 10_000),
         (5, 1),
     ]
+
+
+OBJECTS = st.builds(
+    lambda kind, frame, time, flags, version, count: [
+        (kind, frame, version, time + i, flags) for i in range(count)
+    ],
+    st.sampled_from([1, 86, 1, 2, 100, 65]),
+    st.builds(
+        lambda channel, flags, count, key, data: struct.pack("<HBBL8s", channel, flags, count, key, data),
+        st.integers(1, 3),
+        st.sampled_from([0, 1, 0x80]),
+        st.sampled_from([0, 3, 8, 9, 64, 200]),
+        st.sampled_from([0x123, 0x9ABCDEF0, 0x7FFFFFFF]),
+        st.binary(min_size=8, max_size=8),
+    ),
+    st.sampled_from([0, 5, 10**15, 2**62 - 9, 2**63]),
+    st.sampled_from([0, 1, 2]),
+    st.sampled_from([1, 2, 3]),
+    st.integers(1, 9),
+)
+
+
+@given(st.lists(OBJECTS, max_size=5), st.booleans())
+def test_objects_in_bulk_are_those_one_by_one(groups, in_container: bool) -> None:
+    content = b"".join(one(*each) for group in groups for each in group)
+    content = HEADER + (contained(content) if in_container else content)
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patched:
+        path = Path(folder) / "a.blf"
+        path.write_bytes(content)
+
+        def found():
+            try:
+                return frames_in(path)
+            except ConfigError as error:
+                return str(error)
+
+        in_bulk = found()
+        patched.setattr(blf, "_FEW", 10**9)
+        assert in_bulk == found()

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import io
-from pathlib import Path
-
 import pytest
 
-from evcosim.cosim.can.logs.reading.logged import lines_of, nanoseconds, unprintable
-from evcosim.cosim.errors import ConfigError
+from evcosim.cosim.can.logs.reading.logged import nanoseconds, unprintable
 
 
 def test_times_are_whole_nanoseconds() -> None:
@@ -16,9 +12,9 @@ def test_times_are_whole_nanoseconds() -> None:
     assert nanoseconds("0", "0000000019") == 1
 
 
-def test_a_line_without_an_end_is_not_held_whole() -> None:
-    with pytest.raises(ConfigError, match="x: line 2 has 65536 bytes or more"):
-        list(lines_of(io.BytesIO(b"one\n" + b"1" * 70_000), Path("x")))
+def test_a_time_beyond_all_logs_is_none() -> None:
+    with pytest.raises(ValueError, match="a time of 999999999999 s"):
+        nanoseconds("999999999999", "0")
 
 
 def test_control_characters_but_those_of_white_space_are_damage() -> None:

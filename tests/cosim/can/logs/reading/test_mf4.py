@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim.can.logs.reading import mf4
 from evcosim.cosim.can.logs.reading.files import logged_frames
 from support.log_readers import written
 from support.logged import check_reads_what_was_written, check_survives, refused
@@ -44,3 +45,16 @@ def test_a_reader_that_takes_some_frames_ends_the_process(tmp_path: Path) -> Non
     with logged_frames(written(tmp_path, ".mf4")) as frames:
         assert next(frames).frame_id == 0x123
         frames.close()  # type: ignore[attr-defined] # of a generator
+
+
+@pytest.mark.parametrize("begin", ["", "head -c 1000 /dev/zero; "])
+def test_a_process_that_hangs_is_ended_and_said_to_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, begin: str
+) -> None:
+    program = tmp_path / "program"
+    program.write_text(f"#!/bin/sh\n{begin}exec sleep 600\n")
+    program.chmod(0o700)
+    monkeypatch.setattr(sys, "executable", str(program))
+    monkeypatch.setattr(mf4, "LONGEST", 0.3)
+    said = refused(tmp_path / "a.mf4", b"MDF     4.10")
+    assert said.startswith("asammdf gave no frame for 0.3 s and was ended: the log is damaged")
