@@ -74,7 +74,7 @@ ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 
 _PYTHON = (3, 11)
 _PACKAGES = ("numpy", "scipy")
-"""The packages beside Python's own that a model of ours imports, some of them in a function only."""
+"""The packages beside Python's own that a model may import, maybe in a function only; ours import none."""
 
 
 def names() -> tuple[str, ...]:

@@ -35,6 +35,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 _KEY = "evcosim"
+_HASH = "kept hash"  # a name that no field has
 _T = TypeVar("_T")
 _EnumType = type[enum.IntEnum]  # named here, because inside Variable the name `type` is a field
 
@@ -106,6 +107,7 @@ def record(cls: type[_T]) -> type[_T]:
     if cached or cls.__bases__ != (object,):
         made = dataclasses.dataclass(frozen=True)(cls)
         _put_new(made, lambda cls, *_, **__: object.__new__(cls))
+        _keep_hash(made)
         return made
     return _quick(dataclasses.dataclass(frozen=True, slots=True)(cls))
 
@@ -127,6 +129,29 @@ def _quick(made: type[_T]) -> type[_T]:
     _put_new(made, scope["__new__"])
     delattr(made, "__init__")
     return made
+
+
+def _keep_hash(made: type) -> None:
+    """Let each object keep its hash, as it keeps its cached properties: functions with `lru_cache` ask.
+
+    It is not pickled, since in another process the hash of an enumeration is another. A record that extends
+    one with slots has the state of a dataclass with slots: its fields.
+    """
+    compute = vars(made)["__hash__"]
+
+    def kept(self: Any) -> int:
+        values: dict[str, Any] = self.__dict__
+        if _HASH not in values:
+            values[_HASH] = compute(self)
+        found: int = values[_HASH]
+        return found
+
+    def state(self: Any) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != _HASH}
+
+    setattr(made, "__hash__", kept)  # noqa: B010 - mypy allows no assignment to a method
+    if getattr(made, "__getstate__") is getattr(object, "__getstate__"):  # noqa: B009 - as above; else of fields
+        setattr(made, "__getstate__", state)  # noqa: B010 - as above
 
 
 def _put_new(made: type, function: Callable[..., Any]) -> None:

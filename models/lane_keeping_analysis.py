@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .bicycle import Matrix, discretized
+from .bicycle import Rows, discretized
 from .lane_keeping_controller import LaneKeepingController
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ def sampled_loop(p: Parameters, delay_steps: int = 0, dt: float = STEP_SIZE) -> 
     Its request is late by n = `delay_steps` samples. z is x and, from the oldest to the newest, the requests
     on their way.
     """
-    ab, k = np.array(discretized(p.a, p.b, dt)), np.array(p.gain)
+    ab, k = np.array(discretized(p.a, p.b, dt))[:, :6], np.array(p.gain)
     a_d, b_d = ab[:, :4], ab[:, 4:]
     if delay_steps == 0:
         return np.asarray(a_d - b_d @ k)  # (L3)
@@ -125,7 +125,7 @@ def final_states(p: Parameters, drive: Array) -> Array:
     return np.asarray(-np.linalg.solve(np.array(p.a) - np.array(p.b) @ np.array(p.gain), drive))
 
 
-def smallest_singular_value(p: Parameters, outputs: Matrix) -> float:
+def smallest_singular_value(p: Parameters, outputs: Rows) -> float:
     """Return that of C (A - B K)^-1 B for outputs C (m x 4): 0 where no prefilter reaches every reference."""
     return float(np.linalg.svd(np.array(outputs) @ final_states(p, np.array(p.b)), compute_uv=False)[-1])
 
@@ -154,5 +154,5 @@ def settling_time(times: Array, values: Array, target: float, band: float = 0.02
     return float(times[outside[-1] + 1]) if outside[-1] + 1 < len(times) else float("inf")
 
 
-def _rows(matrix: Array) -> Matrix:
+def _rows(matrix: Array) -> Rows:
     return tuple(tuple(row) for row in matrix.tolist())

@@ -37,22 +37,17 @@ but the older requests and the last place in the lane, and no error. (C5) is ord
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property, lru_cache
-from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 from .base import Model, record, var
-from .bicycle import Bicycle, Matrix
+from .bicycle import STATES, Bicycle, Rows, eigenvalues
 from .constants import SAME_TIME
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from .linear_algebra import Matrix, combined, product, singular_values, solve, unit
+from .riccati import decays, stabilizing_solution
 
 SINGULAR = 1e-9  # a singular value below this part of the largest counts as 0
+PENCIL = 12  # columns of [s I - A, B] with real and imaginary parts
 MAX_DELAY = 3  # steps
 TAKEN = (0, 4, 32)  # statuses of E2E with which values reach a receiver: ok, initial, some lost
 
@@ -88,19 +83,14 @@ class LaneKeepingController(Model):
         fade_time: float = var(1.0, "s", "Time in which the steering then goes straight (t_f)", min=1e-3)
 
         @cached_property
-        def gain(self) -> Matrix:
+        def gain(self) -> Rows:
             """K of (C2), 2 x 4. Raises ValueError where there is none."""
             return _design(self).gain
 
         @cached_property
-        def prefilter(self) -> Matrix:
+        def prefilter(self) -> Rows:
             """S of (C3), 2 x 2. Raises ValueError where there is none."""
             return _design(self).prefilter
-
-        @cached_property
-        def shown(self) -> Callable[[Any], tuple[float, float]]:
-            """The function State -> (front, rear) [rad], the two requests that are given out."""
-            return attrgetter(f"front_{self.delay_steps}", f"rear_{self.delay_steps}")
 
     @record
     class Inputs:
@@ -163,16 +153,23 @@ class LaneKeepingController(Model):
         if blind > p.prediction_time + SAME_TIME:  # (C6)
             part = max(0.0, 1.0 - (blind - p.prediction_time) / p.fade_time)
             front, rear = part * front, part * rear
-        older = (x.front_0, x.rear_0, x.front_1, x.rear_1, x.front_2, x.rear_2)
-        return LaneKeepingController.State(front, rear, *older, heading, displacement, blind)
+        return LaneKeepingController.State(
+            front, rear, x.front_0, x.rear_0, x.front_1, x.rear_1, x.front_2, x.rear_2,
+            heading, displacement, blind,
+        )  # fmt: skip # requests, then what is predicted from
 
     @staticmethod
     def outputs(
         p: LaneKeepingController.Parameters, x: LaneKeepingController.State
     ) -> LaneKeepingController.Outputs:
         """Return the request of `delay_steps` samples ago."""
-        front, rear = p.shown(x)
-        return LaneKeepingController.Outputs(front, rear)
+        if p.delay_steps == 0:
+            return LaneKeepingController.Outputs(x.front_0, x.rear_0)
+        if p.delay_steps == 1:
+            return LaneKeepingController.Outputs(x.front_1, x.rear_1)
+        if p.delay_steps == 2:
+            return LaneKeepingController.Outputs(x.front_2, x.rear_2)
+        return LaneKeepingController.Outputs(x.front_3, x.rear_3)
 
 
 def _place(
@@ -202,79 +199,106 @@ def _law(
 
 
 class _Design(NamedTuple):
-    gain: Matrix
-    prefilter: Matrix
+    gain: Rows
+    prefilter: Rows
 
 
 @lru_cache(maxsize=64)  # an FMU builds its Parameters anew in initialization and when a state is restored
 def _design(p: LaneKeepingController.Parameters) -> _Design:
     """Return K and S. Raises ValueError that names the reason where there is none, and its parameters."""
-    import numpy as np
-    from scipy.linalg import solve_continuous_are
-
-    a, b = np.array(p.a), np.array(p.b)
-    _check_stabilizable(p, a, b)
-    weights = (
-        p.lateral_velocity_weight,
-        p.heading_angle_weight,
-        p.yaw_rate_weight,
-        p.displacement_weight,
-    )
-    r = np.array([p.front_steering_weight, p.rear_steering_weight])
-    try:
-        k = (b.T @ solve_continuous_are(a, b, np.diag(weights), np.diag(r))) / r[:, None]  # (C2)
-        stable = bool(np.all(np.linalg.eigvals(a - b @ k).real < 0.0))
-    except np.linalg.LinAlgError:
-        stable = False
-    if not stable:
+    _check_stabilizable(p)
+    a = _square(p.a)
+    b = _square(p.b)
+    k = _gain(p, a, b)
+    closed = combined(1.0, a, -1.0, product(b, k, STATES))
+    if not decays(closed, STATES):
         raise ValueError(
             "there is no stabilizing gain K: every state that does not decay by itself must cost something; "
-            + _values(p, "lateral_velocity", "heading_angle", "yaw_rate", "displacement", suffix="_weight")
+            f"lateral_velocity_weight = {p.lateral_velocity_weight:g}, "
+            f"heading_angle_weight = {p.heading_angle_weight:g}, "
+            f"yaw_rate_weight = {p.yaw_rate_weight:g}, displacement_weight = {p.displacement_weight:g}"
         )
-    return _Design(_rows(k), _rows(_prefilter(p, a - b @ k, b)))
+    return _Design(((k[0], k[1], k[2], k[3]), (k[4], k[5], k[6], k[7])), _prefilter(p, closed, b))
 
 
-def _check_stabilizable(p: LaneKeepingController.Parameters, a: Array, b: Array) -> None:
+def _square(rows: Rows) -> Matrix:
+    """Return a matrix of 4 rows as one of 4 x 4; the columns that it lacks are 0."""
+    m = [0.0] * (STATES * STATES)
+    for i in range(STATES):
+        for j in range(len(rows[0])):
+            m[STATES * i + j] = rows[i][j]
+    return m
+
+
+def _gain(p: LaneKeepingController.Parameters, a: Matrix, b: Matrix) -> Matrix:
+    """Return K of (C2) as a matrix of 4 x 4, of which the first two rows are not 0."""
+    q = [0.0] * (STATES * STATES)
+    by_weight = [0.0] * (STATES * STATES)
+    q[0], q[5] = p.lateral_velocity_weight, p.heading_angle_weight
+    q[10], q[15] = p.yaw_rate_weight, p.displacement_weight
+    for i in range(STATES):  # R^-1 B'
+        by_weight[i] = b[STATES * i] / p.front_steering_weight
+        by_weight[STATES + i] = b[STATES * i + 1] / p.rear_steering_weight
+    x = stabilizing_solution(a, product(b, by_weight, STATES), q, STATES)
+    return product(by_weight, x, STATES)  # (C2)
+
+
+def _check_stabilizable(p: LaneKeepingController.Parameters) -> None:
     """Raise ValueError where the steering does not move an eigenvalue of A that does not decay.
 
     By Hautus, [s I - A, B] has full rank for every eigenvalue s of A that steering moves.
     """
-    import numpy as np
-
-    eigenvalues = np.linalg.eigvals(a)
-    for s in eigenvalues:
-        if s.real < -1e-6 * np.abs(eigenvalues).max():
-            continue
-        sizes = np.linalg.svd(np.hstack([s * np.eye(len(a)) - a, b]), compute_uv=False)
-        if sizes[-1] <= SINGULAR * sizes[0]:
-            raise ValueError(
-                f"(A, B) is not stabilizable: no steering moves the eigenvalue {s.real:.4g} 1/s of A; "
-                + _values(p, "front", "rear", suffix="_cornering_stiffness")
-                + ", "
-                + _values(p, "front", "rear", suffix="_axle_distance")
-            )
+    first, second = eigenvalues(p)
+    slow = -1e-6 * max(abs(first), abs(second))
+    _check_moved(p, complex(0.0, 0.0))
+    if first.real >= slow:
+        _check_moved(p, first)
+    if second.real >= slow:
+        _check_moved(p, second)
 
 
-def _prefilter(p: LaneKeepingController.Parameters, closed: Array, b: Array) -> Array:
-    import numpy as np
+def _check_moved(p: LaneKeepingController.Parameters, s: complex) -> None:
+    """Raise ValueError where the steering does not move the eigenvalue s [1/s] of A."""
+    smallest, largest = singular_values(_pencil(p, s), 2 * STATES, PENCIL)
+    if smallest <= SINGULAR * largest:
+        raise ValueError(
+            f"(A, B) is not stabilizable: no steering moves the eigenvalue {s.real:.4g} 1/s of A; "
+            f"front_cornering_stiffness = {p.front_cornering_stiffness:g}, "
+            f"rear_cornering_stiffness = {p.rear_cornering_stiffness:g}, "
+            f"front_axle_distance = {p.front_axle_distance:g}, rear_axle_distance = {p.rear_axle_distance:g}"
+        )
 
-    c = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, p.tracked_heading, 0.0, p.tracked_displacement]])  # (C4)
-    steady = -c @ np.linalg.solve(closed, b)
-    sizes = np.linalg.svd(steady, compute_uv=False)
-    if sizes[-1] <= SINGULAR * sizes[0]:
+
+def _pencil(p: LaneKeepingController.Parameters, s: complex) -> Matrix:
+    """Return [s I - A, B] as real numbers: a matrix of 8 x 12, with each singular value twice."""
+    m = [0.0] * (2 * STATES * PENCIL)
+    half = STATES + 2
+    for i in range(STATES):
+        below = PENCIL * (STATES + i) + half  # the row of the imaginary part, at its own columns
+        for j in range(STATES):
+            m[PENCIL * i + j] = -p.a[i][j]
+            m[below + j] = -p.a[i][j]
+        m[PENCIL * i + i] += s.real
+        m[below + i] += s.real
+        m[PENCIL * i + half + i] = -s.imag
+        m[below - half + i] = s.imag
+        for j in range(2):
+            m[PENCIL * i + STATES + j] = p.b[i][j]
+            m[below + STATES + j] = p.b[i][j]
+    return m
+
+
+def _prefilter(p: LaneKeepingController.Parameters, closed: Matrix, b: Matrix) -> Rows:
+    """Return S of (C3). Raises ValueError where there is none."""
+    x = solve(closed, b, STATES)
+    c_th, c_beta = p.tracked_heading, p.tracked_displacement
+    steady = [-x[0], -x[1], -(c_th * x[4] + c_beta * x[12]), -(c_th * x[5] + c_beta * x[13])]  # (C4)
+    smallest, largest = singular_values(steady, 2, 2)
+    if smallest <= SINGULAR * largest:
         raise ValueError(
             "there is no prefilter S: C (A - B K)^-1 B is singular, so that steering cannot set y' and "
             "tracked_heading theta + tracked_displacement beta independently in steady state; "
-            + _values(p, "heading", "displacement", prefix="tracked_")
+            f"tracked_heading = {p.tracked_heading:g}, tracked_displacement = {p.tracked_displacement:g}"
         )
-    inverse: Array = np.linalg.inv(steady)  # (C3)
-    return inverse
-
-
-def _values(p: LaneKeepingController.Parameters, *names: str, prefix: str = "", suffix: str = "") -> str:
-    full = [f"{prefix}{name}{suffix}" for name in names]
-    return ", ".join(f"{name} = {getattr(p, name):g}" for name in full)
-
-
-def _rows(matrix: Array) -> Matrix:
-    return tuple(tuple(float(value) for value in row) for row in matrix)
+    s = solve(steady, unit(steady, 2), 2)  # (C3)
+    return (s[0], s[1]), (s[2], s[3])

@@ -24,17 +24,16 @@ speed stays constant: the drag of a blown tire turns the vehicle and does not br
 
 Step: x(t + dt) = A_d x + B_d u + E_d d, the exact solution for inputs held over the step, so that any step
 size gives the same trajectory. The matrices are one exponential for each step size and loss of stiffness,
-computed when it is first used.
+computed when it is first used; the last 64 are kept.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property, lru_cache
 from math import atan2
 
 from .base import Model, record, var
-from .bicycle import Bicycle, Matrix, discretized
+from .bicycle import Bicycle, Rows, discretized, input_matrix, state_matrix
 from .constants import AIR_DENSITY, GRAVITY
 
 
@@ -64,25 +63,6 @@ class LateralVehicle(Model):
             wheelbase = self.front_axle_distance + self.rear_axle_distance
             load = self.mass * GRAVITY * self.rear_axle_distance / (2.0 * wheelbase)
             return 0.5 * self.track * self.blown_resistance * load  # (V3)
-
-        @cached_property
-        def disturbed(self) -> Callable[[float, float], Matrix]:
-            """The function (dt [s], abs(s)) -> rows of (A_d, B_d, E_d), 4 x 8; it keeps the last 32."""
-            return lru_cache(maxsize=32)(self._disturbed)
-
-        def _disturbed(self, dt: float, blown: float) -> Matrix:
-            kept = 1.0 - 0.5 * blown * (1.0 - self.blown_stiffness)  # (V4)
-            car = Bicycle(
-                self.mass,
-                self.yaw_inertia,
-                self.front_cornering_stiffness * kept,
-                self.rear_cornering_stiffness,
-                self.front_axle_distance,
-                self.rear_axle_distance,
-                self.speed,
-            )
-            e = ((1.0 / self.mass, 0.0), (0.0, 0.0), (0.0, 1.0 / self.yaw_inertia), (0.0, 0.0))  # (V1)
-            return discretized(car.a, tuple(b + d for b, d in zip(car.b, e, strict=True)), dt)
 
     @record
     class Inputs:
@@ -125,23 +105,17 @@ class LateralVehicle(Model):
         p: LateralVehicle.Parameters, x: LateralVehicle.State, u: LateralVehicle.Inputs, dt: float
     ) -> LateralVehicle.State:
         """Return the state after `dt` [s] of held inputs."""
-        y, th, w, beta = x.lateral_velocity, x.heading_angle, x.yaw_rate, x.displacement
-        d_f, d_r = u.front_steering_angle, u.rear_steering_angle
-        if u.crosswind == 0.0 and u.front_blowout == 0.0:
-            return LateralVehicle.State(
-                *[
-                    a_y * y + a_th * th + a_w * w + a_beta * beta + b_f * d_f + b_r * d_r
-                    for a_y, a_th, a_w, a_beta, b_f, b_r in p.transition(dt)  # (B1)
-                ]
-            )
-        s = min(1.0, max(-1.0, u.front_blowout))
-        f = _wind_force(p, u.crosswind)
-        m = p.wind_distance * f + s * p.blown_moment  # (V3)
+        force, moment, blown = 0.0, 0.0, 0.0
+        if u.crosswind != 0.0 or u.front_blowout != 0.0:
+            side = min(1.0, max(-1.0, u.front_blowout))
+            force, blown = _wind_force(p, u.crosswind), abs(side)
+            moment = p.wind_distance * force + side * p.blown_moment  # (V3)
+        y, th, w, beta = transition(p, dt, blown)
         return LateralVehicle.State(
-            *[
-                a_y * y + a_th * th + a_w * w + a_beta * beta + b_f * d_f + b_r * d_r + e_f * f + e_m * m
-                for a_y, a_th, a_w, a_beta, b_f, b_r, e_f, e_m in p.disturbed(dt, abs(s))  # (B1)
-            ]
+            _moved(y, x, u, force, moment),
+            _moved(th, x, u, force, moment),
+            _moved(w, x, u, force, moment),
+            _moved(beta, x, u, force, moment),
         )
 
     @staticmethod
@@ -154,3 +128,27 @@ def _wind_force(p: LateralVehicle.Parameters, w: float) -> float:
     """Return the side force [N] of a crosswind w [m/s]."""
     attack = atan2(w, p.speed)
     return 0.5 * p.air_density * p.side_area * attack * (p.speed * p.speed + w * w)  # (V2)
+
+
+@lru_cache(maxsize=64)
+def transition(p: LateralVehicle.Parameters, dt: float, blown: float) -> Rows:
+    """Return the rows of (A_d, B_d, E_d), 4 x 8, over dt [s] with abs(s) = `blown`."""
+    front = p.front_cornering_stiffness * (1.0 - 0.5 * blown * (1.0 - p.blown_stiffness))  # (V4)
+    (b11, b12), (b21, b22), (b31, b32), (b41, b42) = input_matrix(p, front)
+    disturbed = (
+        (b11, b12, 1.0 / p.mass, 0.0),
+        (b21, b22, 0.0, 0.0),
+        (b31, b32, 0.0, 1.0 / p.yaw_inertia),
+        (b41, b42, 0.0, 0.0),
+    )  # (V1)
+    return discretized(state_matrix(p, front), disturbed, dt)
+
+
+def _moved(
+    row: tuple[float, ...], x: LateralVehicle.State, u: LateralVehicle.Inputs, force: float, moment: float
+) -> float:
+    """Return the value of one state after the step, from its row of (A_d, B_d, E_d)."""
+    a_y, a_th, a_w, a_beta, b_f, b_r, e_f, e_m = row
+    free = a_y * x.lateral_velocity + a_th * x.heading_angle + a_w * x.yaw_rate + a_beta * x.displacement
+    steered = free + b_f * u.front_steering_angle + b_r * u.rear_steering_angle
+    return steered + e_f * force + e_m * moment  # (B1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import re
 import subprocess
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from evcosim.fmus.build import built, names
+from evcosim.fmus.build import build_model, built, names
 from support.needs import need_c_compiler
 
 SOURCE = Path(__file__).parents[1] / "support" / "sources" / "host.c"
@@ -32,16 +33,18 @@ def python_library() -> Path:
 
 @pytest.fixture(scope="module")
 def host(tmp_path_factory: pytest.TempPathFactory) -> Host:
-    """Run an FMU of the catalog in the host; `first` is a folder that Python looks into first."""
+    """Run an FMU (of the catalog) in the host; `first` is a folder that Python looks into first."""
     need_c_compiler()
     library, folder = python_library(), tmp_path_factory.mktemp("host")
     subprocess.run(["cc", "-O1", "-o", folder / "host", SOURCE, "-ldl", "-lm"], check=True)
 
-    def run(name: str, *ways: str, first: Path | None = None) -> subprocess.CompletedProcess[str]:
-        place = folder / name
+    def run(
+        name: str, *ways: str, first: Path | None = None, fmu: Path | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        place = folder / name if fmu is None else fmu.with_suffix("")
         if not place.is_dir():
-            with zipfile.ZipFile(built(name)) as fmu:
-                fmu.extractall(place)
+            with zipfile.ZipFile(fmu or built(name)) as archive:
+                archive.extractall(place)
         found = re.search(r'guid="(.*?)"', (place / "modelDescription.xml").read_text())
         assert found is not None
         searched = SITES if first is None else f"{first}{os.pathsep}{SITES}"
@@ -89,13 +92,70 @@ def test_an_older_python_is_named_in_the_log(host: Host, tmp_path: Path) -> None
     assert "not instantiated" in done.stdout
 
 
-@pytest.mark.parametrize(
-    ("name", "package"), [("LateralVehicle", "numpy"), ("LaneKeepingController", "scipy")]
-)
-def test_a_missing_package_is_named_in_the_log(host: Host, tmp_path: Path, name: str, package: str) -> None:
-    missing = f"import sys; sys.modules['{package}'] = None"
-    (tmp_path / "sitecustomize.py").write_text(missing)
-    done = host(name, "run", first=tmp_path)
+def without(packages: tuple[str, ...], folder: Path) -> Path:
+    """Write into a folder what takes packages away from every Python that starts with it."""
+    code = "".join(f"import sys; sys.modules['{package}'] = None\n" for package in packages)
+    (folder / "sitecustomize.py").write_text(code)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["LateralVehicle", "LaneKeepingController"])
+def test_our_fmus_need_no_package(host: Host, tmp_path: Path, name: str) -> None:
+    done = host(name, "run", first=without(("numpy", "scipy"), tmp_path))
+    assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
+
+
+OF_ONES_OWN = """
+from __future__ import annotations
+
+import numpy as np
+
+from evcosim.models.base import Model, record, var
+
+
+class Needy(Model):
+    \"\"\"A model that needs numpy.\"\"\"
+
+    @record
+    class Parameters:
+        pass
+
+    @record
+    class Inputs:
+        pass
+
+    @record
+    class State:
+        value: float = var(0.0, "", "A number")
+
+    @record
+    class Outputs:
+        value: float = var(0.0, "", "A number, shown")
+
+    @staticmethod
+    def initial(p: Needy.Parameters, u: Needy.Inputs) -> Needy.State:
+        return Needy.State()
+
+    @staticmethod
+    def step(p: Needy.Parameters, x: Needy.State, u: Needy.Inputs, dt: float) -> Needy.State:
+        return Needy.State(float(np.add(x.value, 1.0)))
+
+    @staticmethod
+    def outputs(p: Needy.Parameters, x: Needy.State) -> Needy.Outputs:
+        return Needy.Outputs(x.value)
+"""
+
+
+@pytest.mark.parametrize("missing", ["numpy", "scipy"])
+def test_a_missing_package_is_named_in_the_log(
+    host: Host, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, missing: str
+) -> None:
+    name = f"needy_{missing}"
+    source = OF_ONES_OWN if missing == "numpy" else OF_ONES_OWN.replace("numpy as np", "numpy as np, scipy")
+    (tmp_path / f"{name}.py").write_text(source)
+    monkeypatch.syspath_prepend(tmp_path)
+    fmu = build_model(importlib.import_module(name).Needy, tmp_path)
+    done = host("Needy", "run", first=without((missing,), tmp_path), fmu=fmu)
     assert done.returncode == 4
-    assert f"{name}.fmu needs a Python package that Python 3." in done.stdout
-    assert package in done.stdout.replace(name, "")
+    assert "Needy.fmu needs a Python package that Python 3." in done.stdout
+    assert f"import of {missing} halted" in done.stdout

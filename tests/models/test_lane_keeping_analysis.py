@@ -9,6 +9,7 @@ import pytest
 
 from evcosim.master.reproduce import printed
 from evcosim.models import lane_keeping_analysis as analysis
+from evcosim.models.bicycle import discretized
 from evcosim.models.lane_keeping_analysis import Parameters
 
 P = Parameters()
@@ -101,7 +102,7 @@ def test_two_steps_of_delay_are_one_too_many(delay: int, radius: float) -> None:
 @pytest.mark.parametrize("delay", [0, 1, 2, 3])
 def test_the_sampled_loop_is_the_loop_step_by_step(delay: int) -> None:
     """A loop over the closed-form vehicle with a queue of requests, against powers of the matrix."""
-    ab, k = np.array(P.transition(0.01)), np.array(P.gain)
+    ab, k = np.array(discretized(P.a, P.b, 0.01))[:, :6], np.array(P.gain)
     x, queue = np.array([0.1, 0.02, -0.3, 0.4]), [np.zeros(2)] * delay
     z = np.concatenate([x, np.zeros(2 * delay)])
     loop = analysis.sampled_loop(P, delay)

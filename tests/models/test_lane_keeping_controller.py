@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_lyapunov
 
+from evcosim.models import lane_keeping_controller as design
 from evcosim.models.lane_keeping_controller import TAKEN
 from evcosim.models.lane_keeping_controller import LaneKeepingController as Controller
 
@@ -93,7 +94,7 @@ def test_a_late_controller_asks_the_same_so_many_samples_later(delay: int) -> No
 
 def test_the_design_is_made_once_for_a_set_of_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Controller.Parameters(speed=33.0).gain != P.gain
-    monkeypatch.setattr("scipy.linalg.solve_continuous_are", lambda *_: pytest.fail("computed again"))
+    monkeypatch.setattr(design, "stabilizing_solution", lambda *_: pytest.fail("computed again"))
     assert Controller.Parameters(speed=33.0).gain == Controller.Parameters(speed=33.0).gain
 
 
@@ -121,6 +122,14 @@ IMPOSSIBLE = {
     "displacement for nothing": (
         {"displacement_weight": 0.0},
         "no stabilizing gain K: every state.*yaw_rate_weight = 1, displacement_weight = 0",
+    ),
+    "displacement for nothing, at a speed of 1 m/s": (
+        {"displacement_weight": 0.0, "speed": 1.0},
+        "no stabilizing gain K: every state.*yaw_rate_weight = 1, displacement_weight = 0",
+    ),
+    "no cost at all": (
+        {f"{name}_weight": 0.0 for name in ("lateral_velocity", "heading_angle", "yaw_rate", "displacement")},
+        "no stabilizing gain K: every state",
     ),
 }
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evcosim.models import lane_keeping_limits as limits
+from evcosim.models.bicycle import discretized
 from evcosim.models.lane_keeping_controller import LaneKeepingController
 
 P = LaneKeepingController.Parameters()
@@ -33,7 +34,7 @@ def test_the_rank_does_not_hang_on_the_speed(speed: float) -> None:
 
 def test_states_that_differ_where_nothing_is_observed_have_equal_outputs() -> None:
     """Two vehicles beside each other in the lane, steered alike: y' and theta stay equal."""
-    drive = np.array(P.transition(0.01))
+    drive = np.array(discretized(P.a, P.b, 0.01))[:, :6]
     one, other = np.array([0.1, 0.02, 0.3, 0.0]), np.array([0.1, 0.02, 0.3, 0.7])
     for k in range(100):
         angles = [0.01 * np.sin(0.3 * k), 0.02 * np.cos(0.2 * k)]
