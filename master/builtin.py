@@ -168,7 +168,7 @@ def by_names(text: str) -> str:
     from ..fmus import cache
 
     folders = "|".join(re.escape(str(each)) for each in cache.folders())
-    return re.sub(rf"(?:{folders})[/\\](\w+)_[0-9a-f]{{12}}\.fmu", r"\1", text)
+    return re.sub(rf"(?:{folders})[/\\](\w+?)(?:_native)?_[0-9a-f]{{12}}\.fmu", r"\1", text)
 
 
 def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:

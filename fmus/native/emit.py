@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from ...models.base import Model, variables
 from . import ir
+from .basis import python_minor
 from .emit_description import description
 from .emit_expressions import constant
 from .emit_functions import Functions, comment, memory
@@ -26,6 +27,7 @@ def c_source(model: type[Model], program: ir.Program, identity: str, token: str)
     functions = Functions(program)
     pieces = [
         f"/* {program.name}: {comment(program.about)}\n\n   Made by evcosim of the model in Python. */",
+        f"/* The Python 3 whose rules and words it follows. */\n#define PY_VERSION_MINOR {python_minor()}\n",
         '#include <string.h>\n\n#include "model.h"\n',
         *_types(model, program),
         *(

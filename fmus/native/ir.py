@@ -14,7 +14,7 @@ from .values import BOOLEAN, ParametersType, StructType, Type
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    """File and line that Python's traceback would name, the file as in `models/scooter.py`."""
+    """File and line that Python's traceback would name, the file as in `evcosim/models/scooter.py`."""
 
     file: str
     line: int

@@ -16,9 +16,10 @@ from types import FunctionType
 
 from ...models.base import Model
 from . import ir
+from .errors import Unsupported
 from .lower_frame import Lowered, Lowering
 from .lower_functions import FunctionFrame
-from .lower_source import FunctionNode, NeedsNumber, Unsupported, first_line, source_of
+from .lower_source import FunctionNode, NeedsNumber, first_line, source_of
 from .lower_source import parameters as parameter_names
 from .lower_types import Names, Types
 from .lower_values import Callable, Code, Known, LocalFunction, Run, Value, code_key, value_key

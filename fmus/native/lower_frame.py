@@ -10,8 +10,9 @@ import types
 from collections.abc import Iterator, Sequence
 
 from . import ir
+from .errors import Unsupported
 from .lower_intervals import Interval
-from .lower_source import FunctionNode, Module, NeedsNumber, Unsupported
+from .lower_source import FunctionNode, Module, NeedsNumber
 from .lower_types import Names, Types
 from .lower_values import (
     Callable,

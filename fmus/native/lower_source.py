@@ -15,15 +15,12 @@ import types
 from collections.abc import Iterator
 from pathlib import Path
 
+from .errors import Unsupported
 from .ir import Place
 
 FunctionNode = ast.FunctionDef | ast.Lambda
 
 _MARK = re.compile(r"\(\w+\)")
-
-
-class Unsupported(Exception):
-    """A construct that has no native form; its text is file, line, source text, rule and what to write."""
 
 
 class NeedsNumber(Unsupported):
@@ -32,7 +29,10 @@ class NeedsNumber(Unsupported):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Module:
-    """A Python file: its name in messages, its globals, its syntax tree, and the comment of each line."""
+    """A Python file: its globals, its syntax tree, and the comment of each line.
+
+    `file` is its name in messages, as an FMU of Python has it: its path below the FMU's package.
+    """
 
     file: str
     scope: dict[str, object]
@@ -101,7 +101,9 @@ _MUTATORS = {
 def module_of(scope: dict[str, object], file: str) -> Module:
     """Return the module with these globals, read from its file. Raises Unsupported for one without source."""
     name = str(scope.get("__name__", ""))
-    shown = name.removeprefix("evcosim.").replace(".", "/") if name != "__main__" else Path(file).stem
+    shown = name.replace(".", "/") if name != "__main__" else Path(file).stem
+    if Path(file).name == "__init__.py":
+        shown = f"{shown}/__init__"
     try:
         text = Path(file).read_text(encoding="utf-8")
     except OSError:

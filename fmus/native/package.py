@@ -14,7 +14,6 @@ names, so that no folder of this machine gets into a library.
 from __future__ import annotations
 
 import functools
-import hashlib
 import tempfile
 import uuid
 from collections.abc import Iterable, Sequence
@@ -54,16 +53,6 @@ def identity_of(name: str, digest: str) -> str:
 def token_of(digest: str) -> str:
     """Return the guid (FMI 2.0) and instantiationToken (FMI 3.0) of an FMU."""
     return "{" + str(uuid.UUID(digest)) + "}"
-
-
-def digest_of(parts: Iterable[bytes]) -> str:
-    """Return the digest of what a model is made of, with that of the runtime and the flags."""
-    digest = hashlib.sha256()
-    runtime_parts = (part for name, content in _runtime().items() for part in (name.encode(), content))
-    for part in (*parts, *runtime_parts, " ".join(toolchain.EXACT).encode()):
-        digest.update(len(part).to_bytes(8, "big"))
-        digest.update(part)
-    return digest.hexdigest()[:32]
 
 
 def build_native(

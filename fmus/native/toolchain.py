@@ -18,6 +18,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from .errors import ToolchainError
+
 _MATHEMATICAL = (
     "acos acosh asin asinh atan atan2 atanh cbrt cos cosh erf erfc exp exp2 expm1 fmod hypot lgamma log log10"
     " log1p log2 pow sin sinh tan tanh tgamma"
@@ -28,10 +30,6 @@ EXACT = ("-std=c99", "-ffp-contract=off", *(f"-fno-builtin-{name}" for name in _
 _FLAGS = ("-O2", "-shared", "-fvisibility=hidden", *EXACT)
 _SHOWN = 12  # lines of a compiler's messages
 _TIME = 600.0  # s; zig compiles the libraries of a platform at its first use
-
-
-class ToolchainError(Exception):
-    """A library that cannot be compiled; the text says why, and what to do."""
 
 
 class Platform(NamedTuple):

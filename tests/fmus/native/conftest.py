@@ -12,7 +12,8 @@ import pytest
 
 from evcosim.fmus.build import build_model
 from evcosim.fmus.catalog import Experiment
-from evcosim.fmus.native.package import NativeParts, build_native, digest_of, identity_of, token_of
+from evcosim.fmus.native.package import NativeParts, build_native, identity_of, token_of
+from evcosim.fmus.recipes import digest_of
 from evcosim.models.base import Model
 from support.needs import need_c_compiler
 
@@ -39,7 +40,7 @@ def handmade_parts(name: str, more: str = "") -> NativeParts:
     feeding = dict(zip(("Handmade", "HandmadeSampled"), _lines("x.total / (u.speed - 666.0)"), strict=True))
     digest = digest_of(
         [name.encode(), more.encode(), *(f.read_bytes() for f in sorted(HANDMADE.glob("*.*")))]
-    )
+    )[:32]
     defined = {
         "NAME": f'"{name}"',
         "IDENTITY": f'"{identity_of(name, digest)}"',

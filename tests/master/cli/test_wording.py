@@ -58,8 +58,9 @@ def test_a_step_that_is_too_short_is_the_option_s(target, evcosim):
     assert "values that a run keeps" in answer.err
 
 
-def test_the_file_of_a_built_in_fmu_is_its_name_in_messages():
-    path = cache_folder() / "Scooter_7e5cb0285b2a.fmu"
+@pytest.mark.parametrize("kind", ["", "_native"])
+def test_the_file_of_a_built_in_fmu_is_its_name_in_messages(kind):
+    path = cache_folder() / f"Scooter{kind}_7e5cb0285b2a.fmu"
     assert by_names(f"{path}: no; {path} and /own/Scooter_7e5cb0285b2a.fmu") == (
         "Scooter: no; Scooter and /own/Scooter_7e5cb0285b2a.fmu"
     )

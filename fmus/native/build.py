@@ -1,0 +1,161 @@
+"""Native FMUs of built-in models in the user's cache, and of a model of one's own.
+
+What takes long is done once: the FMU is kept by the digest of all that goes into it, and so is the reason why
+there is none, and the outcome of the comparison with the model in Python. What is there already is found
+without the model, the translator and a compiler.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .. import cache, records
+from ..recipes import Recipe, catalog_identity, catalog_recipe, digest_of
+from .basis import mathematical_library, python_minor
+from .errors import NoNativeError, ToolchainError, Unsupported
+
+if TYPE_CHECKING:
+    from ...models.base import Model
+    from .package import NativeParts
+
+_HERE = Path(__file__).parent
+
+
+def native_built(name: str, anew: bool = False) -> Path:
+    """Return the native FMU of a built-in model's present sources in the cache, built first if it is missing.
+
+    With `anew` it is built in any case. Raises Unsupported for a model that has no native form,
+    ToolchainError where it cannot be compiled, ValueError for an unknown name.
+    """
+    digest = _digest(catalog_identity(name))
+    return cache.fetch(f"{name}_native_{digest[:12]}.fmu", lambda: _made(name, digest, anew), anew)
+
+
+def why_not(name: str) -> str:
+    """Return why a built-in model has no native FMU here, "" where it has one. Raises ValueError."""
+    try:
+        native_built(name)
+    except NoNativeError as error:
+        return str(error)
+    return ""
+
+
+def difference(name: str, steps: int = 1000) -> str:
+    """Return the first difference of a built-in model's native FMU from Python, or "".
+
+    Both take so many random steps. The outcome is kept by what it depends on: the file's digest, the version
+    of Python and the mathematical library. Raises what `native_built` raises.
+    """
+    path = native_built(name)
+    about = (hashlib.sha256(path.read_bytes()).hexdigest(), sys.version, steps, *mathematical_library())
+    entry = f"native-bits-{name}-{_short(repr(about).encode())}"
+    kept = cache.load(entry)
+    if kept is None:
+        kept = _compared(name, path, steps).encode()
+        cache.keep(entry, kept)
+    return kept.decode()
+
+
+def native_parts(recipe: Recipe, model: type[Model]) -> NativeParts:
+    """Return what the native FMU of a recipe's model is made of. Raises Unsupported."""
+    return _parts(recipe, model, _digest(recipe.digest))
+
+
+def content_of(parts: NativeParts, platforms: Sequence[str] = (), fmi: int = 2) -> bytes:
+    """Return the bytes of a native FMU, which are noted as built here.
+
+    Raises ToolchainError, ValueError for an unknown unit of measure or another version of FMI.
+    """
+    from .package import native_content
+
+    content = native_content(parts, platforms=platforms, fmi=fmi)
+    records.note(content, parts.model.__name__)
+    return content
+
+
+def extracted_library(path: Path, folder: Path) -> Path:
+    """Write the library for this machine of a native FMU of FMI 2.0 into a folder, and return its path."""
+    import zipfile
+
+    from .toolchain import here
+
+    with zipfile.ZipFile(path) as archive:
+        (entry,) = (n for n in archive.namelist() if n.startswith(f"binaries/{here().fmi2}/"))
+        return Path(archive.extract(entry, folder))
+
+
+def _made(name: str, digest: str, anew: bool) -> bytes:
+    """Return the bytes of a built-in model's native FMU. Raises what `native_built` raises.
+
+    What was refused is not tried again, with the same compiler.
+    """
+    from .toolchain import compiler, here
+
+    command = compiler(here())  # without one, nothing is imported and lowered in vain
+    failures = f"native-left-{digest}", f"native-failed-{_short(digest.encode(), *_state_of(command))}"
+    for entry, kind in zip(failures, (Unsupported, ToolchainError), strict=True):
+        if not anew and (kept := cache.load(entry)) is not None:
+            raise kind(kept.decode())
+    recipe = catalog_recipe(name)
+    try:
+        return content_of(_parts(recipe, _model(recipe), digest))
+    except NoNativeError as error:
+        cache.keep(failures[isinstance(error, ToolchainError)], str(error).encode())
+        raise
+
+
+def _state_of(command: Sequence[str]) -> list[bytes]:
+    """Return what changes with a compiler's command, and with its file."""
+    import shutil
+
+    found = shutil.which(command[0])
+    return [repr(command).encode(), repr(found and cache.state(Path(found).resolve())).encode()]
+
+
+def _compared(name: str, path: Path, steps: int) -> str:
+    """Return the first difference of a file from the model in Python. Raises OSError, RuntimeError."""
+    import tempfile
+
+    from .check import first_difference
+    from .package import token_of
+
+    token = token_of(_digest(catalog_identity(name)))
+    with tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True) as folder:
+        library = extracted_library(path, Path(folder))
+        return first_difference(_model(catalog_recipe(name)), library, token, steps)
+
+
+def _parts(recipe: Recipe, model: type[Model], digest: str) -> NativeParts:
+    from . import emit, lower, package
+
+    identity, token = package.identity_of(recipe.name, digest), package.token_of(digest)
+    source = emit.c_source(model, lower.lower(model), identity, token)
+    return package.NativeParts(model, source, digest, recipe.experiment, recipe.version, recipe.license)
+
+
+def _model(recipe: Recipe) -> type[Model]:
+    model: type[Model] = getattr(import_module(recipe.module), recipe.name)
+    return model
+
+
+def _digest(recipe: str) -> str:
+    """Return the digest of a native FMU by that of its recipe: also of the translator and the runtime."""
+    return _short(recipe.encode(), b"%d" % python_minor(), _own_code(_HERE).encode())
+
+
+@functools.cache
+def _own_code(folder: Path) -> str:
+    """Return the digest of what makes a native FMU, Python and C; `folder` is that of this package."""
+    files = sorted([*folder.glob("*.py"), *(folder / "c").glob("*.[ch]")])
+    return digest_of([part for file in files for part in (file.name.encode(), file.read_bytes())])
+
+
+def _short(*parts: bytes) -> str:
+    """Return 32 hexadecimal digits of the digest of parts."""
+    return digest_of(parts)[:32]
