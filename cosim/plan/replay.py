@@ -12,7 +12,8 @@ import numpy as np
 from ..can.channel import SignalRoute
 from ..can.database import Database, Message
 from ..can.framing import Framing, framing_of
-from ..can.logs.recording import Recording, chosen_channel, recorded
+from ..can.logs.kept import recorded_once
+from ..can.logs.recording import Recording, chosen_channel
 from ..can.logs.replay import Replayed
 from ..can.logs.variants import Key, Variant, Variants, key_of
 from ..can.send_steps import send_steps
@@ -46,7 +47,8 @@ def with_replays(
             raise ConfigError(f"{place}: with ideal buses there are no frames, and so none of a log")
         path = data_file(entry.can_log, scenario.path, place) if scenario.path else Path(entry.can_log)
         wanted = received.wanted(entry, place)
-        recording = recorded(path, Variants([(m, [r.signal.name for r in routes]) for m, routes in wanted]))
+        variants = Variants([(m, [r.signal.name for r in routes]) for m, routes in wanted])
+        recording = recorded_once(path, variants)
         channel = chosen_channel(recording, entry.channel, entry.bus, place)
         if channel in recording.backward:
             raise ConfigError(

@@ -26,9 +26,11 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any, Generic, SupportsIndex, TypeVar
 
 from ...cosim import leftovers
+from ...cosim.can.logs import kept
 from ...cosim.errors import ConfigError, RunError, short
 from ...cosim.visible import visible_stream
 from ..fmi import crash
@@ -142,6 +144,7 @@ class _Pool:
     def __enter__(self) -> _Pool:
         # FMUs are extracted below this folder, which is removed here: a killed worker cannot do it
         self.folder = leftovers.temporary_folder()
+        kept.hand_over(self.folder)
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -247,6 +250,7 @@ def _serve(pipe: Connection, folder: str, reports_crash: bool) -> None:
         crash.enable()
     os.dup2(2, 1)  # for native code too: the caller's stdout may be read by a machine
     tempfile.tempdir = folder
+    kept.share(Path(folder))
     threading.Thread(target=_end_with_caller, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):  # the caller has gone
         while True:

@@ -66,3 +66,14 @@ def stay(path):
     """Leave a mark and go on for a long time."""
     Path(path).write_text(str(os.getpid()))
     time.sleep(60.0)
+
+
+def frames_that_were_read_before(path, variants):
+    """Return the number of frames of a log, which somebody else must have read."""
+    from evcosim.cosim.can.logs import kept
+
+    def never(path, variants):
+        raise AssertionError("it was read anew")
+
+    kept.recorded = never
+    return kept.recorded_once(path, variants).table.shape[0]

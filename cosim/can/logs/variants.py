@@ -54,6 +54,11 @@ class Variants:
                 self._known[key, ()] = self._number(key, tuple(names), {})
 
     @property
+    def wanted(self) -> list[tuple[Message, tuple[str, ...]]]:
+        """The messages, each with the names of its signals that are received."""
+        return list(self._wanted.values())
+
+    @property
     def messages(self) -> dict[Key, Message]:
         """The messages by identifier."""
         return {key: message for key, (message, _) in self._wanted.items()}

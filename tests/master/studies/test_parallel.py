@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.cosim.can.database import Message, Signal
+from evcosim.cosim.can.logs.kept import recorded_once
+from evcosim.cosim.can.logs.variants import Variants
 from evcosim.master.studies.parallel import Task, TaskError, cores, run_all
 from support import tasks
 from support.c_fmu import mixed_fmu
@@ -160,3 +163,12 @@ def test_ctrl_c_ends_all_workers_at_once(tmp_path):
     assert not marks[1].exists()
     with pytest.raises(ProcessLookupError):
         os.kill(int(marks[0].read_text()), 0)
+
+
+def test_workers_take_a_log_that_the_caller_has_read(tmp_path: Path) -> None:
+    (tmp_path / "a.log").write_text("(1.0) can0 123#AABB\n(1.5) can0 123#CCDD\n")
+    message = Message("f", "M", 0x123, False, 2, signals={"A": Signal("A", 0, 8)})
+    arguments = tmp_path / "a.log", Variants([(message, ["A"])])
+    recorded_once(*arguments)
+    outcomes = run_all([Task(str(k), tasks.frames_that_were_read_before, arguments) for k in range(2)], 2)
+    assert [outcome.result() for outcome in outcomes] == [2, 2]
