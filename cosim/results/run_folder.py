@@ -330,5 +330,6 @@ def same_settings(manifest: Mapping[str, Any], other: Mapping[str, Any]) -> bool
 
     What the run.json of an earlier evcosim does not have is not compared.
     """
-    one, two = (json.loads(manifest_text(each)) for each in (manifest, other))
-    return all(one[key] == two[key] for key in _SETTINGS if key in one and key in two)
+    keys = [key for key in _SETTINGS if key in manifest and key in other]
+    one, two = (manifest_text({key: each[key] for key in keys}, indent=None) for each in (manifest, other))
+    return bool(json.loads(one) == json.loads(two))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -27,6 +28,7 @@ from .schema import schema
 from .typed_paths import checks_paths
 
 
+@functools.cache
 def command() -> Any:
     """The click command of `evcosim` with all its verbs."""
     # plain help: rich's boxes would cost a third of the time that --help may take

@@ -5,8 +5,9 @@ from __future__ import annotations
 import importlib
 import io
 
-import numba
 from matplotlib.figure import Figure
+
+from evcosim.master.simulation import simulate
 
 for _name in (
     "cantools.database",
@@ -29,7 +30,8 @@ for _name in (
 ):
     importlib.import_module(_name)
 
-numba.njit(lambda x: x)(1.0)  # numba fills its tables
+for _name in ("scooter", "lane_keeping", "braking", "multi_drive"):
+    simulate(_name, stop_time=0.02, engine="python")  # the models of its FMUs are imported
 _figure = Figure(layout="constrained")
 _axes = _figure.subplots()
 _axes.plot([0.0, 1.0], label="$x$")

@@ -68,7 +68,7 @@ def test_a_command_with_little_memory_runs_or_says_so(most, tmp_path):
     need_linux()
     limit = most * 1024
     run = subprocess.run(
-        [sys.executable, "-m", "evcosim", "run", "scooter", "--stop-time", "1", "-q", "-o", tmp_path / "out"],
+        [sys.executable, "-m", "evcosim", "run", "scooter", "--stop-time", "2", "-q", "-o", tmp_path / "out"],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
         capture_output=True, text=True, check=False, timeout=60,
     )  # fmt: skip # the arguments together
@@ -78,7 +78,7 @@ def test_a_command_with_little_memory_runs_or_says_so(most, tmp_path):
         assert run.returncode == 1
         assert run.stderr.startswith("evcosim: a run needs 150 MB of memory, and ") and said in run.stderr
     else:
-        assert len(Results.read(tmp_path / "out")) == 101
+        assert len(Results.read(tmp_path / "out")) == 201
         assert said in run.stderr or not run.stderr
 
 
