@@ -15,7 +15,6 @@ from evcosim.models.base import Model
 from support.ir_types import check
 from support.lowered import compare
 
-LOWERED = [name for name in CATALOG if name not in ("LaneKeepingController", "LateralVehicle")]
 PROGRAMS: dict[str, ir.Program] = {}
 
 
@@ -32,13 +31,13 @@ def program(name: str) -> ir.Program:
     return PROGRAMS[name]
 
 
-@pytest.mark.parametrize("name", LOWERED)
+@pytest.mark.parametrize("name", CATALOG)
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_program_computes_what_its_model_does(name: str, seed: int) -> None:
     compare(model_named(name), program(name), seed, steps=8)
 
 
-@pytest.mark.parametrize("name", LOWERED)
+@pytest.mark.parametrize("name", CATALOG)
 def test_a_program_keeps_the_rules_of_its_types(name: str) -> None:
     check(program(name))
