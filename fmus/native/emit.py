@@ -72,7 +72,11 @@ def _types(model: type[Model], program: ir.Program) -> Iterator[str]:
 
 def _meanings(record: type) -> dict[str, str]:
     """Return description and unit of each variable of a record, as a comment."""
-    texts = {v.name: f"{v.description} [{v.unit}]" if v.unit else v.description for v in variables(record)}
+    try:
+        declared = variables(record)
+    except TypeError:  # a state may have fields that are no variables
+        return {}
+    texts = {v.name: f"{v.description} [{v.unit}]" if v.unit else v.description for v in declared}
     return {name: comment(text) for name, text in texts.items()}
 
 

@@ -22,7 +22,17 @@ from .lower_functions import FunctionFrame
 from .lower_source import FunctionNode, NeedsNumber, first_line, source_of
 from .lower_source import parameters as parameter_names
 from .lower_types import Names, Types
-from .lower_values import Callable, Code, Known, LocalFunction, Run, Value, code_key, value_key
+from .lower_values import (
+    Callable,
+    Code,
+    Known,
+    LocalFunction,
+    Run,
+    Value,
+    code_key,
+    is_parameters,
+    value_key,
+)
 from .values import REAL, ListType, ParametersType, StructType, Type
 
 __all__ = ["Unsupported", "lower"]
@@ -39,7 +49,10 @@ class _Program(Lowering):
     def __init__(self, model: type[Model]) -> None:
         self.model, self.types = model, Types()
         self.parameters = self.types.model_parameters(model.Parameters)
-        self.declared = {r: self.types.model_record(r) for r in (model.Inputs, model.State, model.Outputs)}
+        self.declared = {r: self.types.model_record(r) for r in (model.Inputs, model.Outputs)}
+        state = self.types.declared_state(model.State)
+        if state is not None:
+            self.declared[model.State] = state
         self._functions: dict[str, ir.Function] = {}
         self._done: dict[object, Lowered | NeedsNumber] = {}
         self._active: list[Code] = []
@@ -47,9 +60,10 @@ class _Program(Lowering):
 
     def whole(self) -> ir.Program:
         """Return the program."""
-        u, x, y = (self.declared[r] for r in (self.model.Inputs, self.model.State, self.model.Outputs))
+        u, y = self.declared[self.model.Inputs], self.declared[self.model.Outputs]
         more: list[tuple[str, Type]] = [("u", u)] if self.model.feeds_through() else []
-        initial = self._root("initial", [("u", u)], x)
+        initial = self._root("initial", [("u", u)], self.declared.get(self.model.State))
+        x = self._state(initial)
         step = self._root("step", [("x", x), ("u", u), ("dt", REAL)], x)
         outputs = self._root("outputs", [("x", x), *more], y)
         notice = None
@@ -63,6 +77,13 @@ class _Program(Lowering):
             self.model.__name__, first_line(self.model), self.parameters, u, x, y, types, tables,
             self._without_clashes(functions), initial, step, outputs, notice,
         )  # fmt: skip # as they are declared
+
+    def _state(self, initial: str) -> StructType:
+        """Return the type of the state: as it is declared, else as `initial` returns it."""
+        returned = self._functions[initial].returns
+        if not isinstance(returned, StructType) or returned.python is not self.model.State:
+            raise Unsupported(f"{self.model.__name__}.initial returns no State: write return State(...)")
+        return self.declared.setdefault(self.model.State, returned)
 
     def _root(self, name: str, given: list[tuple[str, Type]], expected: Type | None) -> str:
         """Lower one of the model's functions; return the name that it has in the program."""
@@ -137,7 +158,7 @@ class _Program(Lowering):
         code = callee.code
         node, module = (code.node, code.module) if isinstance(code, LocalFunction) else source_of(code)
         frame = FunctionFrame(self, code, node, module, expected)
-        frame.speaks = speaks
+        frame.speaks, frame.is_root = speaks, bool(name) and not name.startswith("compute_")
         _bind(frame, callee, bound)
         frame.lower()
         if frame.constants:
@@ -217,7 +238,7 @@ def _bind(frame: FunctionFrame, callee: Callable, bound: Sequence[tuple[str, Val
     arguments = []
     code = callee.code
     if isinstance(code, LocalFunction):
-        frame.env.update(dict(code.known))
+        frame.env.update({name: v for name, v in code.known if not is_parameters(v)})
         if callee.bound:
             struct = callee.bound[0]
             assert isinstance(struct, Run) and isinstance(struct.type, StructType)
@@ -232,6 +253,9 @@ def _bind(frame: FunctionFrame, callee: Callable, bound: Sequence[tuple[str, Val
             frame.env[name] = Run(local)
         else:
             frame.env[name] = value
+    own = next((Run(a) for a in arguments if isinstance(a.type, ParametersType)), None)
+    if isinstance(code, LocalFunction) and own is not None:
+        frame.env.update({name: own for name, v in code.known if is_parameters(v)})
     frame.arguments = tuple(arguments)
     is_init = not isinstance(code, LocalFunction) and code.__name__ == "__init__"
     if is_init and bound and isinstance(bound[0][1], Known):

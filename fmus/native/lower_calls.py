@@ -28,8 +28,9 @@ from .lower_values import (
     described,
     literal,
     number_type,
+    type_name,
 )
-from .values import BOOLEAN, COMPLEX, INTEGER, EnumType, StructType, is_integral
+from .values import BOOLEAN, COMPLEX, ArrayType, EnumType, ListType, StructType, Type, is_integral
 
 _INSTEAD = {
     "numpy": "write plain Python with math and loops",
@@ -311,29 +312,25 @@ def record(frame: Frame, node: ast.AST, python: type, values: Sequence[Value]) -
             check_declared(frame, node, f"{python.__name__}.{name}", item, declared[1])
         return ir.Make(frame.declared[python], tuple(items))
     for name, item in zip(names, items, strict=True):
-        if item.type not in (BOOLEAN,) and type(item.type).__name__ == "ListType":
+        if isinstance(item.type, ListType):
             raise frame.refuse(node, f"{python.__name__}.{name} is a list", "write tuple(a)")
     type_ = frame.types.record(python, [(n, item.type) for n, item in zip(names, items, strict=True)])
     return ir.Make(type_, tuple(items))
 
 
-def check_declared(frame: Frame, node: ast.AST, name: str, item: ir.Expression, declared: object) -> None:
+def check_declared(frame: Frame, node: ast.AST, name: str, item: ir.Expression, declared: Type) -> None:
     """Raise Unsupported for a value of another type than a variable is declared with."""
     if item.type == declared:
         return
-    words = _declared_words(declared)
+    words = type_name(declared)
     instead = {"float": "write 0.0, or float(...)", "int": "write int(...)", "bool": "write a condition"}
+    if isinstance(declared, ArrayType):
+        instead[words] = "keep its length and the type of its items"
     raise frame.refuse(
         node,
         f"{name} is declared {words} and gets {described(Run(item))}",
         instead.get(words, f"write {words}(...)"),
     )
-
-
-def _declared_words(declared: object) -> str:
-    if isinstance(declared, EnumType):
-        return declared.enumeration.__name__
-    return {BOOLEAN: "bool", INTEGER: "int"}.get(declared, "float")  # type: ignore[call-overload, no-any-return]
 
 
 def _replaced(frame: Frame, node: ast.Call, given: Sequence[Value], named: dict[str, Value]) -> Value:

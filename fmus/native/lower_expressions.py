@@ -106,7 +106,7 @@ def name(frame: Frame, node: ast.Name) -> Value:
         return Known(closed[node.id])
     scope = frame.module.scope
     if node.id in scope:
-        if frame.module.changes(node.id):
+        if not isinstance(scope[node.id], types.ModuleType) and frame.module.changes(node.id):
             raise frame.refuse(node, f"the global {node.id} changes", "keep it in State or in Parameters")
         return Known(scope[node.id])
     if hasattr(builtins, node.id):

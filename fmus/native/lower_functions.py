@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import dataclasses
 import types
 from collections.abc import Iterator, Sequence
 
@@ -12,6 +13,7 @@ from . import lower_expressions as expressions
 from . import lower_statements as statements_of
 from .lower_binding import Bound, bind, has_whole_number, native, takes_text
 from .lower_calls import called
+from .lower_captured import captured, handed_on, own_parameters
 from .lower_flow import different
 from .lower_frame import Env, Frame, Lowered, Lowering
 from .lower_sequences import items
@@ -35,6 +37,7 @@ from .lower_values import (
     Run,
     Value,
     described,
+    is_parameters,
     number_type,
 )
 from .values import ListType, ParametersType, Type
@@ -57,7 +60,7 @@ class FunctionFrame(Frame):
         self.stores = stored(body)
         self.returns: Type | None = None
         self.constants: list[Value] = []
-        self.speaks = False
+        self.speaks = self.is_root = False
         self._expected, self._returned = expected, False
         self._inline: list[Value] | None = None
         self._inline_block: object = None
@@ -134,7 +137,7 @@ class FunctionFrame(Frame):
             self._check_all(node, None)
             self.emit(ir.Return(None))
             return
-        e = self.types.expression(value)
+        e = self.expr(node, value) if self.is_root else self.types.expression(value)
         if e is None:
             self.constants.append(value)
             self._check_all(node, None)
@@ -209,6 +212,11 @@ class FunctionFrame(Frame):
         """Return the result of a call of one of the model's functions."""
         if self.program.is_active(callee.code):
             raise self.refuse(node, "a function that calls itself", "write a loop")
+        own = tuple(
+            own_parameters(self, node, v.type) if isinstance(v, Run) and is_parameters(v) else v
+            for v in callee.bound
+        )
+        callee = dataclasses.replace(callee, bound=own)
         bound = bind(self, node, callee, given, named)
         if takes_text(bound):
             return self._inlined(node, callee, bound)
@@ -252,6 +260,9 @@ class FunctionFrame(Frame):
                 )
             if e is not None and isinstance(e.type, ListType) and not isinstance(e, ir.Local):
                 arguments[-1] = self.keep(e, name).expr
+        for name, own in handed_on(self, node, callee, given):
+            given.append((name, own))
+            arguments.append(self.expr(node, own))
         return self.program.specialize(callee, given), arguments
 
     def _result(self, lowered: Lowered, function: ir.Function, arguments: list[ir.Expression]) -> Value:
@@ -304,55 +315,9 @@ class FunctionFrame(Frame):
             (self.code, self.module, self.env, self.stores) = kept[:4]
             self._inline, self._inline_block, self._by_name = kept[4:]
 
-    # -- functions in functions ----------------------------------------------------------------------------
-
     def captured(self, node: ast.FunctionDef | ast.Lambda, name: str) -> Value:
         """Return a function in this function, with the values that it captures."""
-        a = node.args
-        if a.defaults or a.kw_defaults or a.vararg or a.kwarg:
-            raise self.refuse(
-                node, "defaults or `*` in a function in a function", "name all parameters, without"
-            )
-        inside = {*parameters(node), *stored(statements(node))}
-        known: list[tuple[str, Value]] = []
-        fields: list[tuple[str, ir.Expression]] = []
-        for free in read_names(node):
-            if free in inside or not (free in self.env or free in self.stores):
-                continue
-            value = self._captured_value(node, free, name)
-            e = None if isinstance(value, Known) else self.types.expression(value)
-            if e is not None:
-                fields.append((free, e))
-            elif isinstance(value, Known | Callable):
-                known.append((free, value))
-            else:
-                raise self.refuse(
-                    node, f"{described(value)} is captured as {free}", "capture numbers and tuples"
-                )
-        code = LocalFunction(name, node, self.module, tuple(known))
-        if not fields:
-            return Callable(code)
-        struct = self.types.captured(name, code.key(), [(n, e.type) for n, e in fields])
-        made = ir.Make(struct, tuple(e for _, e in fields))
-        self.types.callables.setdefault(struct, Callable(code, (Run(made),)))
-        return Run(made)
-
-    def _captured_value(self, node: ast.AST, free: str, own: str) -> Value:
-        if free == own and isinstance(node, ast.FunctionDef):
-            raise self.refuse(node, "a function that calls itself", "write a loop")
-        value = self.env.get(free)
-        if value is None or isinstance(value, Missing):
-            raise self.refuse(
-                node, f"{free} is captured before it has a value", "define the function after it"
-            )
-        last = getattr(node, "end_lineno", 0)
-        if any(line > last for line in self.stores.get(free, ())):
-            raise self.refuse(
-                node, f"{free} is captured and changes afterwards", "give what changes another name"
-            )
-        if isinstance(value, Run) and isinstance(value.type, ListType):
-            raise self.refuse(node, f"the list {free} is captured", "hand it in as an argument")
-        return value
+        return captured(self, node, name)
 
     # -- derived values ------------------------------------------------------------------------------------
 

@@ -312,7 +312,7 @@ def _raise(frame: Frame, node: ast.Raise) -> None:
     if len(given) > 1 or (isinstance(node.exc, ast.Call) and node.exc.keywords):
         raise frame.refuse(node, "an exception with several values", "write one text: an f-string")
     text: ir.Text = pieces_of(frame, given[0], frame.value(given[0])) if given else ()
-    frame.emit(ir.Raise(python.__name__, text, frame.module.place(node)))
+    frame.emit(ir.Raise(python.__name__, text or ("",), frame.module.place(node)))
 
 
 def _is_plain(python: type[Exception]) -> bool:

@@ -10,7 +10,18 @@ from types import FunctionType
 
 from . import ir
 from .lower_source import first_line
-from .lower_values import Callable, Group, Known, Run, Value, code_key, literal, number_type, value_key
+from .lower_values import (
+    Callable,
+    Group,
+    Known,
+    Run,
+    Value,
+    code_key,
+    is_parameters,
+    literal,
+    number_type,
+    value_key,
+)
 from .values import (
     BOOLEAN,
     COMPLEX,
@@ -102,6 +113,13 @@ class Types:
             fields.append((f.name, type_))
         return self.record(python, fields)
 
+    def declared_state(self, python: type) -> StructType | None:
+        """Return the struct of a state by its start values; None where they do not give all types."""
+        starts = {f.name: f.default for f in dataclasses.fields(python)}
+        found = {name: self.expression(Known(start)) for name, start in starts.items()}
+        types = {name: e.type for name, e in found.items() if e is not None}
+        return self.record(python, list(types.items())) if len(types) == len(starts) else None
+
     def model_parameters(self, python: type) -> ParametersType:
         """Return the type of a model's parameters, one for each class."""
         if python not in self.parameters:
@@ -149,7 +167,7 @@ class Types:
             expr = self.expression(bound)
             if expr is None and not isinstance(bound, Known):
                 return None
-            if expr is not None and not isinstance(bound, Known):
+            if expr is not None and not isinstance(bound, Known) and not is_parameters(bound):
                 fields.append((f"bound_{k}", expr.type))
                 items.append(expr)
         return ir.Make(self.of_callable(value, fields), tuple(items)) if fields else None
@@ -171,6 +189,24 @@ class Types:
                 fields = [(name, item.type) for name, item in zip(names, found, strict=True)]
                 return ir.Make(self.record(type(value), fields), tuple(found))
         return None
+
+    def needed_parameters(self, value: Value) -> ParametersType | None:
+        """Return the parameters that a function has captured, or one that it holds; None for other values."""
+        if isinstance(value, Run) and isinstance(value.type, ParametersType):
+            return value.type
+        struct = value.type if isinstance(value, Run) and isinstance(value.type, StructType) else None
+        function = self.callables.get(struct) if struct is not None else value
+        held: list[Value] = []
+        if isinstance(function, Callable):
+            of_function = isinstance(function.code, FunctionType)
+            held += function.bound if of_function else [v for _, v in function.code.known]  # type: ignore[union-attr] # of a LocalFunction
+            if not of_function and function.bound and isinstance(function.bound[0], Run):
+                struct = _struct_of(function.bound[0])
+        for _, type_ in struct.fields if struct is not None else ():
+            if isinstance(type_, StructType):
+                held += [self.callables[type_]] if type_ in self.callables else []
+        found = (self.needed_parameters(each) for each in held)
+        return next((parameters for parameters in found if parameters is not None), None)
 
     def table(self, name: str, made: ir.Make) -> ir.TableItem:
         """Return a table of numbers that are known; `name` is that of the global that it stands for."""

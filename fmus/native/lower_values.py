@@ -185,6 +185,11 @@ def as_integer(e: ir.Expression) -> ir.Expression:
     return ir.Convert(INTEGER, e)
 
 
+def is_parameters(value: Value) -> bool:
+    """Return True for the parameters of the model, of which there is one object: nothing keeps them."""
+    return isinstance(value, Run) and isinstance(value.type, ParametersType)
+
+
 def is_simple(e: ir.Expression) -> bool:
     """Return True for an expression that may stand twice: a variable, a field of one, a number."""
     if isinstance(e, ir.Field):

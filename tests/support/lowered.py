@@ -42,6 +42,10 @@ def bits(value: Any) -> Any:
         return value
     if isinstance(value, int):
         return int(value)
+    if isinstance(value, tuple) and not hasattr(value, "_fields"):
+        return [bits(item) for item in value]
+    if isinstance(value, tuple):
+        return {name: bits(item) for name, item in zip(value._fields, value, strict=True)}
     return {name: bits(getattr(value, name)) for name in type(value).__dataclass_fields__}
 
 

@@ -61,6 +61,7 @@ class Small(Model):
         k: int = var(0, "", "k")
         on: bool = var(False, "", "on")
         mode: Mode = var(Mode.OFF, "", "mode")
+@@STATE@@
 
     @record
     class Outputs:
@@ -68,7 +69,7 @@ class Small(Model):
 
     @staticmethod
     def initial(p, u):
-        return Small.State(0.5)
+@@INITIAL@@
 
     @staticmethod
     def step(p, x, u, dt):
@@ -89,10 +90,12 @@ class Case(NamedTuple):
     above: str = ""
     derived: str = ""
     refused: str = ""
+    state: str = ""
+    initial: str = "return Small.State(0.5)"
 
     def model(self) -> type[Model]:
         """Return the model."""
-        return small(self.step, self.above, self.derived)
+        return small(self.step, self.above, self.derived, self.state, self.initial)
 
 
 def cases(file: Path) -> dict[str, Case]:
@@ -104,10 +107,16 @@ def cases(file: Path) -> dict[str, Case]:
     return found
 
 
-def small(body: str, above: str = "", derived: str = "") -> type[Model]:
-    """Return a model whose step has this body, in a module with these lines above it."""
+def small(
+    body: str, above: str = "", derived: str = "", state: str = "", initial: str = "return Small.State(0.5)"
+) -> type[Model]:
+    """Return a model whose step has this body, in a module with these lines above it.
+
+    `state` are more fields of its state.
+    """
     text = _TEXT.replace("@@ABOVE@@", textwrap.dedent(above).strip("\n"))
-    for mark, part in (("@@BODY@@", body), ("@@DERIVED@@", derived)):
+    parts = {"@@BODY@@": body, "@@DERIVED@@": derived, "@@STATE@@": state, "@@INITIAL@@": initial}
+    for mark, part in parts.items():
         text = text.replace(mark, textwrap.indent(textwrap.dedent(part).strip("\n"), "        "))
     name = f"small_{hashlib.sha256(text.encode()).hexdigest()[:12]}"
     if name not in sys.modules:
