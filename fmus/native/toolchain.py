@@ -122,7 +122,7 @@ def compiler(target: Platform) -> list[str]:
             f"libraries for {target.fmi2} are made by zig, which is not installed here: "
             'pip install "evcosim[native]"'
         )
-    return [sys.executable, "-m", "ziglang", "cc", "-target", target.zig]
+    return [sys.executable, "-m", "ziglang", "cc", "-target", target.zig, "-s"]
 
 
 def _has_zig() -> bool:
