@@ -233,7 +233,7 @@ Pure.conjugate = lambda self: Pure(complex(self).conjugate())  # type: ignore[me
 def test_complex_numbers_meet_complex_numbers_only(
     request_at_wheel: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The product of a complex number and a float has other bits since Python 3.14."""
+    """The product of a complex number and a float has another rule since Python 3.14: the sign of a zero."""
     expected = run(dataclasses.replace(P, voltage_limit=150.0), request_at_wheel, CRUISE, 3)
     monkeypatch.setattr(induction_motor_drive, "complex", Pure, raising=False)
     for name in ("ONE", "HALF", "QUARTER"):
