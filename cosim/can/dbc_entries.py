@@ -39,6 +39,10 @@ _OF_VARIABLE = re.compile(rf"VAL_\s+[^\W\d]\w*(?:\s*{NUMBER}\s*{STRING})*", re.D
 _PAIR = re.compile(rf"({NUMBER})\s*({STRING})", re.DOTALL)
 _RANGE = re.compile(r"(\d+)\s*-\s*(\d+)")
 _CODING = re.compile(r"(?:SIG_VALTYPE_|SG_MUL_VAL_)\s+(\d+)\s+(\w+)")
+_OF_MESSAGE = re.compile(
+    rf"(?:BA_\s+(?:{STRING})?|CM_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_)\s*(?:BO_|SG_)?\s*(\d+)\b",
+    re.DOTALL,
+)
 _SIGNAL_NAME = re.compile(r"SG_\s+(\w+)")
 
 
@@ -119,6 +123,8 @@ class Entries:
     senders: dict[int, list[str]] = dataclasses.field(default_factory=dict)
     broken: dict[Key, str] = dataclasses.field(default_factory=dict)
     notes: list[tuple[int, str]] = dataclasses.field(default_factory=list)
+    unread: list[tuple[int, int, str]] = dataclasses.field(default_factory=list)
+    """Statements about a message that cannot be read: line, frame id of the message, reason."""
     valid: int = 0
     """The number of statements that were read and say that this is a DBC file."""
 
@@ -152,6 +158,8 @@ def entries(found: Iterable[Statement]) -> Entries:
         else:
             later.append((statement, match))  # it may stand before what it is about
     known = {(m.dbc_id, name) for m in made.messages for name in ("", *_names(m))}
+    names = {m.dbc_id: m.name for m in made.messages}
+    made.notes += [(line, _about(names.get(dbc_id, ""), said)) for line, dbc_id, said in made.unread]
     for statement, match in later:
         made.valid += 1
         _LATER[statement.keyword](made, statement, match, known)
@@ -178,11 +186,18 @@ def _refuse(made: Entries, statement: Statement) -> None:
         said = f"the number {huge[0][:40]}... is beyond all that a DBC file needs: '{statement.shown}'"
     else:
         said = f"not valid in a DBC file: '{statement.shown}'"
-    made.notes.append((statement.line, said))
+    if (about := _OF_MESSAGE.match(statement.text)) and len(about[1]) < _DIGITS:
+        made.unread.append((statement.line, int(about[1]), said))  # its message may stand behind it
+    else:
+        made.notes.append((statement.line, said))
     if statement.keyword == "SG_" and made.messages and (name := _SIGNAL_NAME.match(statement.text)):
         made.messages[-1].unread.setdefault(name[1], f"line {statement.line}: {said}")
     elif (key := _CODING.match(statement.text)) and len(key[1]) < _DIGITS:
         made.broken.setdefault((int(key[1]), key[2]), f"line {statement.line}: {said}")
+
+
+def _about(message: str, said: str) -> str:
+    return f"message '{message}': {said}" if message else said
 
 
 def text_of(string: str) -> str:

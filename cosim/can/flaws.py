@@ -16,6 +16,7 @@ from ..errors import short
 from .database import LONGEST, Database, Message, Signal, bits_text, raw_limits
 from .overlaps import first_overlaps
 
+_MOST_CODES = 8  # in a sentence
 _NOT_AVAILABLE = {"sna", "notavailable", "signalnotavailable"}
 GREATEST = {False: 0x7FF, True: 0x1FFFFFFF}
 """The greatest frame id, of a standard frame (False) and of an extended one."""
@@ -76,6 +77,21 @@ def _flaws_of(message: Message) -> Iterator[tuple[int, str]]:
                 signal.line,
                 f"message '{message.name}': signal '{signal.name}' cannot be used: {signal.problem}",
             )
+        elif beyond := _codes_beyond(signal):
+            codes = f"{', '.join(map(str, beyond[:_MOST_CODES]))}{' ...' * (len(beyond) > _MOST_CODES)}"
+            yield (
+                signal.line,
+                f"message '{message.name}': signal '{signal.name}' has a text for raw {codes}, which "
+                f"{bits_text(signal)} do not hold",
+            )
+
+
+def _codes_beyond(signal: Signal) -> list[int]:
+    """Return the raw values with a text that a signal cannot have, nor its bits without a sign."""
+    if signal.is_float:
+        return []
+    low, _ = signal.raw_type_range
+    return sorted(raw for raw in signal.choices if not low <= raw < 1 << signal.length)
 
 
 # ---- signals

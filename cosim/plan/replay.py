@@ -254,6 +254,7 @@ def _notes(
             f"{plan.path}: {sum(by_units.values())} frames are of messages that units of the run send, and "
             f"not replayed: {_first(by_units)}"
         )
+    yield from (f"{plan.path}: {note}" for note in recording.notes)
     known = {key_of(m) for m in database.messages.values()}
     unknown = {_identifier(key): one.frames for key, one in seen.items() if key not in known}
     if unknown:

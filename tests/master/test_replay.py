@@ -445,3 +445,12 @@ def test_times_that_are_rounded_to_a_part_of_the_step_are_told(
     told = [text for text in manifest["warnings"] if "rounded to" in text]
     assert len(told) == bool(said) and said in "".join(told)
     assert manifest["replays"][0]["resolution"] == pytest.approx(10.0**-digits)
+
+
+def test_an_asc_log_that_was_cut_off_is_a_warning(tmp_path: Path) -> None:
+    text = "Begin Triggerblock\n 0.500000 1 148 Rx d 8 0A 00 00 00 00 00 00 00\n"
+    (tmp_path / "a.asc").write_text(text)
+    warnings = " ".join(replay(tmp_path, "a.asc").manifest["warnings"])
+    assert 'a.asc: the "Begin Triggerblock" in line 1 has no "End TriggerBlock": the log was cut' in warnings
+    (tmp_path / "a.asc").write_text(f"{text}End TriggerBlock\n")
+    assert "Triggerblock" not in " ".join(replay(tmp_path, "a.asc").manifest["warnings"])

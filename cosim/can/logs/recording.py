@@ -50,7 +50,8 @@ class Recording:
     """The wanted frames of a log, and what was seen of each identifier by channel.
 
     `spans` has the times of each channel. `backward` has for a channel the first place at which its time goes
-    back, in words. `variants` are those that the rows have the numbers of.
+    back, in words. `variants` are those that the rows have the numbers of. `notes` are sentences on the log
+    as a whole.
     """
 
     path: Path
@@ -61,6 +62,7 @@ class Recording:
     spans: Mapping[str, Span]
     others: int
     variants: tuple[Variant, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def first(self) -> int:
@@ -86,14 +88,16 @@ def recorded(path: Path, variants: Variants) -> Recording:
     width = PAYLOAD + variants.words
     store = RowStore(width, what=f"the frames of {path}", advice="a log of fewer frames needs less")
     tally = _Tally(variants, form.resolution, form.place)
+    notes = []
     with logged_blocks(path) as blocks:
         for block in blocks:
+            notes += [block.note] if block.note else []
             rows = tally.taken(block, width)
             if len(rows):
                 store.append(rows.view("<f8"))
     return Recording(
         path, store.table(), tuple(tally.seen), tally.seen, tally.backward, tally.spans, tally.others,
-        tuple(variants.found),
+        tuple(variants.found), tuple(notes),
     )  # fmt: skip # what was found
 
 

@@ -91,3 +91,28 @@ def test_the_values_of_an_extended_multiplexer():
 def test_numbers(text, value):
     assert (number(text), type(number(text))) == (value, type(value))
     assert whole(text) == (None if value is None else int(value))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'BA_ "GenMsgCycleTime" BO_ 1 abc;',
+        'BA_ "Of a \\" name" SG_ 1 S what;',
+        "BA_ BO_ 1 5;",
+        "CM_ BO_ 1 no string;",
+        "VAL_ 1 S 1 no string;",
+        "SIG_VALTYPE_ 1 S : x;",
+        "BO_TX_BU_ 1 A;",
+    ],
+)
+@pytest.mark.parametrize("first", [True, False])
+def test_what_cannot_be_read_about_a_message_names_it(text: str, first: bool) -> None:
+    message = 'BO_ 1 M: 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] "" B\n'
+    found = entries(statements(f"{text}\n{message}" if first else f"{message}\n{text}\n"))
+    said = f"message 'M': not valid in a DBC file: '{text.rstrip(';')}'"
+    assert (1 if first else 4, said) in [(line, note.replace(";'", "'")) for line, note in found.notes]
+
+
+def test_what_cannot_be_read_about_no_message_names_none() -> None:
+    found = entries(statements('BO_ 1 M: 8 A\nBA_ "x" BO_ 7 abc;\nBA_ "x" abc;\n'))
+    assert [note.partition(":")[0] for _, note in found.notes] == ["not valid in a DBC file"] * 2

@@ -156,3 +156,29 @@ def test_flaws_stand_in_the_order_of_the_lines():
     database = database_of(Path("f.dbc"), messages, [(5, "five"), (0, "none")], ["N", "N"])
     assert [w.split(": ", 2)[1] for w in database.warnings] == ["none", "line 3", "line 5", "line 9"]
     assert (database.nodes, list(database.messages)) == (("N",), ["B", "A"])
+
+
+@pytest.mark.parametrize(
+    ("signal", "said"),
+    [
+        (Signal("S", 0, 8), "raw -1, 256, 300, which 8 unsigned bits do not hold"),
+        (Signal("S", 0, 8, signed=True), "raw 256, 300, which 8 signed bits do not hold"),
+        (Signal("S", 0, 9), "raw -1, which 9 unsigned bits do not hold"),
+        (Signal("S", 0, 10, signed=True), ""),
+        (Signal("S", 0, 32, is_float=True), ""),
+        (Signal("S", 0, 9, problem="bad"), ""),
+    ],
+)
+def test_texts_of_codes_that_no_frame_holds_are_a_warning(signal: Signal, said: str) -> None:
+    choices = dict.fromkeys((0, 255, 256, 300, -1), "text")
+    signal = dataclasses.replace(signal, choices=choices, line=7)
+    warnings = database_of(Path("f"), [Message("f", "M", 1, False, 8, signals={"S": signal})]).warnings
+    found = [text for text in warnings if "has a text for" in text]
+    assert len(found) == bool(said)
+    assert not said or found == [f"f: line 7: message 'M': signal 'S' has a text for {said}"]
+
+
+def test_many_codes_that_no_frame_holds_are_cut_short() -> None:
+    signal = Signal("S", 0, 1, choices=dict.fromkeys(range(20), "text"))
+    (said,) = database_of(Path("f"), [Message("f", "M", 1, False, 8, signals={"S": signal})]).warnings
+    assert "raw 2, 3, 4, 5, 6, 7, 8, 9 ..., which" in said

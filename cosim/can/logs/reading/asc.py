@@ -23,6 +23,7 @@ from .logged import DATA, ERROR, REMOTE, LoggedFrame, damaged, nanoseconds, reso
 
 _EVENT = re.compile(r"(\d{1,12})\.(\d{1,12})\s+(.*)")
 _BASE = re.compile(r"base\s+(hex|dec)(?:\s+timestamps\s+(absolute|relative))?", re.IGNORECASE)
+_BLOCK = re.compile(r"(begin|end)\s+triggerblock\b", re.IGNORECASE)
 _ID = re.compile(r"([0-9A-Fa-f]+)(x?)", re.IGNORECASE)
 _DIRECTIONS = ("rx", "tx", "txrq")
 
@@ -42,6 +43,7 @@ def reading(file: BinaryIO, path: Path) -> Iterator[Block]:
                 set_frame(rows, i, frame, channels)
                 kept[i] = True
         yield Block(rows[kept], channels.names)
+    yield Block(np.zeros(0, dtype=FRAME), channels.names, events.cut_off)
 
 
 class _Events:
@@ -49,11 +51,22 @@ class _Events:
 
     def __init__(self, path: Path) -> None:
         self._path, self._base, self._relative, self._now = path, 16, False, 0
+        self._begun = 0  # the line of a block of events that has no end up to now
 
     @property
     def special(self) -> bool:
         """True where numbers are decimal, or times count from the event before."""
         return self._base != 16 or self._relative
+
+    @property
+    def cut_off(self) -> str:
+        """A sentence on a log that ends within a block of events; "" for any other."""
+        if not self._begun:
+            return ""
+        return (
+            f'the "Begin Triggerblock" in line {self._begun} has no "End TriggerBlock": the log was cut off, '
+            "or not written to its end"
+        )
 
     def frame(self, line: str, number: int) -> LoggedFrame | None:
         """Return the frame of a line; None for another one. Raises ConfigError for one that is damaged."""
@@ -64,6 +77,8 @@ class _Events:
             if header := _BASE.match(line):
                 self._base = 10 if header[1].lower() == "dec" else 16
                 self._relative = (header[2] or "").lower() == "relative"
+            elif block := _BLOCK.match(line):
+                self._begun = number if block[1].lower() == "begin" else 0
             return None
         try:
             time = nanoseconds(event[1], event[2])

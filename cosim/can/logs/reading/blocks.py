@@ -26,10 +26,14 @@ bytes of `data` behind `length` are 0."""
 
 @dataclasses.dataclass(frozen=True)
 class Block:
-    """Some frames of a log in the order of the file, shape (n,) of FRAME, and the names of channels."""
+    """Some frames of a log in the order of the file, shape (n,) of FRAME, and the names of channels.
+
+    `note` is a sentence on the log as a whole, in its last block.
+    """
 
     rows: NDArray[Any]
     channels: Sequence[str]
+    note: str = ""
 
     def frames(self) -> Iterator[LoggedFrame]:
         """Yield the frames one by one."""

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from evcosim import ConfigError
 from evcosim.cosim.can.logs.reading import asc
+from evcosim.cosim.can.logs.reading.files import logged_blocks
 from evcosim.cosim.can.logs.reading.logged import DATA, ERROR, REMOTE
 from support.log_readers import written
 from support.logged import (
@@ -126,3 +127,22 @@ OTHERS = st.sampled_from(
 def test_lines_in_bulk_are_those_one_by_one(lines: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         check_same_one_by_one(asc, Path(folder) / "a.asc", "\n".join(lines))
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("Begin Triggerblock Sat Jan 01\n 0.5 1 123 Rx d 0\n", 1),
+        ("Begin TriggerBlock\n 0.5 1 123 Rx d 0\nEnd TriggerBlock\nbegin triggerblock\n", 4),
+        ("Begin Triggerblock\n 0.5 1 123 Rx d 0\nEnd TriggerBlock\n", 0),
+        (" 0.5 1 123 Rx d 0\n", 0),
+    ],
+)
+def test_a_block_of_events_without_an_end_is_said(tmp_path: Path, text: str, line: int) -> None:
+    (tmp_path / "a.asc").write_text(text)
+    with logged_blocks(tmp_path / "a.asc") as blocks:
+        notes = [block.note for block in blocks if block.note]
+    assert len(notes) == bool(line)
+    assert all(
+        note.startswith(f'the "Begin Triggerblock" in line {line} has no "End Trigg') for note in notes
+    )
