@@ -98,6 +98,24 @@ def native(types_: Types, value: Value, numbers_known: bool) -> ir.Expression | 
     return types_.expression(value)
 
 
+@functools.cache
+def counting_names(node: FunctionNode) -> frozenset[str]:
+    """Return the names that a function uses in ranges, indices and lengths of lists, or hands on.
+
+    A whole number that is known stays so in an argument of such a name: then no index needs a check.
+    """
+    counted: list[ast.AST] = []
+    for part in ast.walk(node):
+        if isinstance(part, ast.Call):
+            is_range = isinstance(part.func, ast.Name) and part.func.id == "range"
+            counted += [a for a in part.args if is_range or isinstance(a, ast.Name)]
+        elif isinstance(part, ast.Subscript):
+            counted.append(part.slice)
+        elif isinstance(part, ast.BinOp) and isinstance(part.left, ast.List):
+            counted.append(part.right)
+    return frozenset(n.id for part in counted for n in ast.walk(part) if isinstance(n, ast.Name))
+
+
 def _is_whole(value: object) -> bool:
     if isinstance(value, tuple):
         return bool(value) and all(_is_whole(item) for item in value)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from . import ir
 from . import lower_expressions as expressions
 from . import lower_statements as statements_of
-from .lower_binding import Bound, bind, has_whole_number, native, takes_text
+from .lower_binding import Bound, bind, counting_names, has_whole_number, native, node_of, takes_text
 from .lower_calls import called
 from .lower_captured import captured, handed_on, own_parameters
 from .lower_flow import different
@@ -245,10 +245,11 @@ class FunctionFrame(Frame):
     ) -> tuple[Lowered, list[ir.Expression]]:
         arguments: list[ir.Expression] = []
         given: Bound = []
+        counting = counting_names(node_of(callee.code))
         if isinstance(callee.code, LocalFunction):
             arguments += [self.expr(node, value) for value in callee.bound]
         for name, value in bound:
-            e = native(self.types, value, numbers_known)
+            e = native(self.types, value, numbers_known or name in counting)
             if e is not None:
                 arguments.append(e)
                 given.append((name, Run(e)))
