@@ -15,13 +15,17 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
 
+from evcosim.fmus.interface import exposed
 from evcosim.fmus.native import toolchain
+from evcosim.fmus.native.build import native_parts
 from evcosim.fmus.native.package import build_native, native_content, token_of
+from evcosim.fmus.recipes import catalog_recipe
 from support.needs import need_linux
 
 HOST = Path(__file__).with_name("platform_host.c")
@@ -127,6 +131,26 @@ def test_the_library_for_windows_computes_what_the_one_for_linux_does(
     assert len(here) > int(STEPS)
     assert [line for line in there if "0x" not in line] == [line for line in here if "0x" not in line]
     assert _numbers(there) == _numbers(here)  # this model calls no function of the mathematical library
+
+
+@pytest.mark.parametrize("name", ["Scooter", "Rider"])
+def test_another_mathematical_library_has_other_last_digits_at_most(
+    name: str, run_both: Callable[..., list[list[str]]], tmp_path: Path
+) -> None:
+    recipe = catalog_recipe(name)
+    model = getattr(import_module(recipe.module), name)
+    made = native_parts(recipe, model)
+    path = build_native(made, tmp_path, platforms=("linux64", "win64"))
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(tmp_path)
+    real = {
+        causality: [str(r) for r, c, v in exposed(model) if c == causality and v.type == "Real"]
+        for causality in ("input", "output")
+    }
+    references = (real["input"][0], *real["output"])
+    here, there = run_both(name, tmp_path / "binaries", token_of(made.digest), "200", *references)
+    assert len(_numbers(here)) == 200 * len(real["output"])
+    assert _numbers(there) == pytest.approx(_numbers(here), rel=1e-12, abs=1e-12)
 
 
 def _numbers(lines: list[str]) -> list[float]:
