@@ -45,6 +45,7 @@ def _of_process() -> int:
 
     interrupts.install()  # before anything that takes time
     _calculate_in_one_thread()
+    _search_garbage_seldom()
     from . import early_exit
 
     early_exit.install()
@@ -64,6 +65,16 @@ def _calculate_in_one_thread() -> None:
     import os
 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def _search_garbage_seldom() -> None:
+    """Let Python look for garbage after more new objects than it does by itself, 700.
+
+    What is imported stays: to look through it again and again takes a twentieth of a short command.
+    """
+    import gc
+
+    gc.set_threshold(20_000)
 
 
 def _main(arguments: Sequence[str] | None) -> int:

@@ -8,6 +8,8 @@ import sys
 import pytest
 
 from evcosim.master.cli import app
+from evcosim.master.engine.selection import compile_engine
+from evcosim.master.machine.hands import POSSIBLE
 
 LIGHT = "import sys, evcosim.master.cli.app as app; app.command(); print(*sys.modules)"
 
@@ -33,6 +35,36 @@ def test_help_imports_nothing_heavy():
         "pint",
     }
     assert not heavy & set(loaded.split())
+
+
+USED = """
+import sys
+from evcosim.master.cli import main
+code = main(sys.argv[1:])
+print(*sys.modules, file=sys.stderr)
+sys.exit(code)
+"""
+LARGE = {
+    "PIL", "asammdf", "asyncio", "can", "cantools", "fmpy", "jinja2", "llvmlite", "lxml", "matplotlib",
+    "msgpack", "multiprocessing", "numba", "numpy", "pandas", "pint", "pydantic", "pythonfmu", "rich", "scipy", "xarray",
+}  # fmt: skip # one list
+
+
+@pytest.mark.parametrize(
+    ("line", "needed"),
+    [
+        ("list", {"pydantic"}),
+        ("info scooter", {"pydantic", "numpy", "fmpy", "lxml"}),
+        ("run scooter --stop-time 2 --no-plot -q -o out", {"pydantic", "numpy", "fmpy", "lxml"}),
+    ],
+)
+def test_a_verb_imports_what_it_uses(line, needed, tmp_path):
+    """A run finds its machine code in the cache, and draws nothing."""
+    compile_engine()
+    command = [sys.executable, "-c", USED, *line.split()]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
+    loaded = set(done.stderr.split()) & LARGE
+    assert loaded == needed or (not POSSIBLE and loaded <= needed | {"numba", "llvmlite", "scipy"})
 
 
 @pytest.mark.parametrize("verb", ["run", "list", "info", "plot", "compare", "build", "identify"])
