@@ -46,7 +46,8 @@ sys.exit(code)
 """
 LARGE = {
     "PIL", "asammdf", "asyncio", "can", "cantools", "fmpy", "jinja2", "llvmlite", "lxml", "matplotlib",
-    "msgpack", "multiprocessing", "numba", "numpy", "pandas", "pint", "pydantic", "pythonfmu", "rich", "scipy", "xarray",
+    "msgpack", "multiprocessing", "numba", "numpy", "pandas", "pint", "pydantic", "pythonfmu", "rich",
+    "scipy", "xarray",
 }  # fmt: skip # one list
 
 
