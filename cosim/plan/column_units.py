@@ -14,6 +14,9 @@ from .unit_maps import End, unit_map
 
 _IN_BRACKETS = re.compile(r"\[([^][]+)\]|\(([^()]+)\)|\{([^{}]+)\}|<([^<>]+)>")
 _BEHIND = re.compile(r"[\s_/,;:|@=-]+")
+_CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+_PER = re.compile(r"Per(?=[A-Z])")
+_WORDS = ("in", "min", "at", "are", "set")  # of beginnings and of parts with capitals: minimum is no minute
 _NO_UNITS = ("in",)  # behind a name it is the input, or the word; inches are [in]
 
 
@@ -66,7 +69,8 @@ def _other_unit(name: str, taken: End) -> tuple[str, str] | None:
 def _texts(name: str) -> Iterator[str]:
     """Yield the parts of a name that may be a unit of measure: in brackets, then its ends, longest first.
 
-    `_` between units divides them, where the text is no unit otherwise: `speed_km_h`.
+    `_` between units divides them, where the text is no unit otherwise: `speed_km_h`. Then come beginnings
+    (`kmh_speed`), and both in names that have capitals for spaces (`speedKmh`), of two letters at least.
     """
     for match in _IN_BRACKETS.finditer(name):
         inside = next(filter(None, match.groups())).strip()
@@ -77,3 +81,13 @@ def _texts(name: str) -> Iterator[str]:
             yield end
             if "_" in end:
                 yield re.sub("_+per_+|_+", "/", end)
+    yield from filter(_is_long, (name[: match.start()].strip() for match in _BEHIND.finditer(name)))
+    for match in _CAPITAL.finditer(name):
+        for part in (name[match.start() :], name[: match.start()]):
+            if _is_long(part):
+                yield from dict.fromkeys((part, part[0].lower() + part[1:], _PER.sub("/", part).lower()))
+
+
+def _is_long(part: str) -> bool:
+    """Return True for a part of a name that is more than a letter, and no word that is a unit too."""
+    return len(part) > 1 and part.lower() not in _WORDS

@@ -40,10 +40,10 @@ def compare(
     from ...cosim.results import compare as comparing
     from ...cosim.results.results import Results
     from .console import print_json, print_paragraph, print_table
-    from .plot import is_page
+    from .plot import is_page, warn_of_tables
 
     first, second = Results.read(a), Results.read(b)
-    _warn_of_tables(a, b)
+    warn_of_tables((a, first), (b, second))
     if signals:
         first, second = _chosen(first, second, signals)
     found = comparing.compare(first, second, tolerance, relative, common)
@@ -71,18 +71,6 @@ def compare(
     for line in found.summary().split("\n"):
         print_paragraph(line)
     return 0 if found.equal else 1
-
-
-def _warn_of_tables(*paths: Path) -> None:
-    from ...cosim.csv_numbers import CsvFile
-    from ...cosim.csv_thousands import thousands_note
-    from .failures import complain
-
-    for path in {path.resolve(): path for path in reversed(paths)}.values():
-        if path.suffix.lower() == ".csv":
-            file = CsvFile.of(path)
-            for note in filter(None, [thousands_note(file, range(len(file.names))), file.time_note()]):
-                complain(f"warning: {note}")
 
 
 def _names(results: Results) -> list[str]:

@@ -36,6 +36,7 @@ def plot(
     from ...cosim.results.results import Results
 
     results = Results.read(result)
+    warn_of_tables((result, results))
     if signals:
         results, spec = chosen(results, signals), None
     else:
@@ -46,6 +47,17 @@ def plot(
     else:
         figures.write(figures.draw(results, spec), path)
     print(path)
+
+
+def warn_of_tables(*tables: tuple[Path, Results]) -> None:
+    """Print the warnings of results that are read from a table; those of a run its summary has."""
+    from ...cosim.results.results import CSV_NAME
+    from .failures import complain
+
+    for path, results in {path.resolve(): (path, results) for path, results in reversed(tables)}.values():
+        if not path.is_dir() and path.name != CSV_NAME:
+            for note in results.manifest.get("warnings", ()):
+                complain(f"warning: {note}")
 
 
 def is_page(path: Path) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from ...clock import LATEST
 from ...csv_numbers import CsvFile
 from ...csv_text import both, check_seconds, number_in, quoted_name
+from ...csv_thousands import thousands_note
 from ...errors import ConfigError
 from ...row_store import Array
 from ..recording import Recording
@@ -55,8 +56,9 @@ def read(path: Path) -> Contents:
     Its variables, in the order of the other columns, are Reals without a unit of measure; true is 1 and
     false is 0. A column without a name is left out where it is empty, or is the first and names the rows. The
     last line of another tool's file need not end, if it is complete; one with a header as `write` makes it
-    was cut off then, maybe within its last number. Raises ConfigError naming file, line, column and
-    value of what is missing, is no finite number, or is a time before the one above it or beyond any run.
+    was cut off then, maybe within its last number. Numbers and times that can be read two ways are warnings
+    in the manifest. Raises ConfigError naming file, line, column and value of what is missing, is no finite
+    number, or is a time before the one above it or beyond any run.
     """
     file = CsvFile.of(path)
     time = _time_column(file)
@@ -83,7 +85,9 @@ def read(path: Path) -> Contents:
         if abs(times[k]) > LATEST:  # only then the file is read again for the line
             check_seconds(float(times[k]), f"{path}: line {file.line_of(k)}, column '{file.names[time]}'")
     variables = [ResultVariable(file.names[j]) for j in others]
-    return Contents(times, table[:, 1:] if place == 0 else np.delete(table, place, axis=1), variables)
+    notes = [note for note in (thousands_note(file, named), file.time_note()) if note]
+    data = table[:, 1:] if place == 0 else np.delete(table, place, axis=1)
+    return Contents(times, data, variables, {"warnings": notes} if notes else {})
 
 
 def _time_column(file: CsvFile) -> int:

@@ -26,6 +26,8 @@ def noted(folder: Path, name: str, unit: str, given: str | None = None, time: st
         ("v_speed_kph", "kph"), ("speed_mph", "mph"), ("speed / km/h", "km/h"), ("speed/km/h", "km/h"),
         ("speed km/h", "km/h"), ("speed in km/h", "km/h"), ("speed, km/h", "km/h"), ("speed: km/h", "km/h"),
         ("speed_in_km_h", "km/h"), ("km/h", "km/h"), ("mph", "mph"), ("speed in cm s-1", "cm s-1"),
+        ("kmh_speed", "kmh"), ("km/h speed", "km/h"), ("speedKmh", "Kmh"), ("speedKMH", "KMH"),
+        ("kmhSpeed", "kmh"), ("speedKmPerH", "km/h"), ("mph-of-the-wheel", "mph"), ("vehicleSpeedMph", "Mph"),
     ],
 )  # fmt: skip # a table
 def test_a_name_that_says_another_unit_than_the_input(tmp_path, name, said):
@@ -43,6 +45,8 @@ def test_a_name_that_says_another_unit_than_the_input(tmp_path, name, said):
         ("speed_kmh", ""), ("mass_m", "kg"), ("torque_m", "N.m"), ("torque_Nm", "N.m"), ("position_in", "m"),
         ("angle in", "rad"), ("position_y", "m"), ("current_a", "A"), ("voltage_v", "V"), ("power_w", "W"),
         ("ratio_2", "1"), ("soc_ref", "1"), ("motor_01", "1"), ("[km/h] m/s", "V"), ("", "m/s"),
+        ("minSpeed", "s"), ("min_delay", "s"), ("m_position", "km"), ("positionM", "km"), ("mpsSpeed", "m/s"),
+        ("speedRef", "m/s"), ("inPosition", "m"), ("wheelSpeed", "m/s"), ("MSpeed", "m/s"), ("motorMin", "s"),
     ],
 )  # fmt: skip # a table
 def test_a_name_that_says_no_other_unit(tmp_path, name, unit):

@@ -11,6 +11,7 @@ import pytest
 from evcosim.cosim.figures.diagram_content import content_of
 from evcosim.cosim.figures.diagram_layout import laid_out
 from evcosim.cosim.figures.letter_widths import width
+from evcosim.cosim.report.assets import text
 from evcosim.cosim.report.diagram import MOST, diagram
 from evcosim.cosim.system.system import load_system, system_names
 from support.pages import HOSTILE, hostile_run
@@ -125,3 +126,11 @@ def test_names_are_no_markup():
         | {"order": ["a", "b"], "connect": [{"from": f"a.{HOSTILE[1]}", "to": [f"b.{HOSTILE[3]}"]}]}
     )
     assert "<img" not in svg and "\u202e" not in svg and "&lt;img" in svg
+
+
+def test_a_diagram_wider_than_the_page_has_a_shadow_where_it_goes_on():
+    """The shadows stay at the sides of the box, and what hides them moves with its content."""
+    rule = text("page.css").partition(".wide {")[2].partition("}")[0]
+    assert "overflow-x: auto" in rule
+    assert all(f"{side} / 3rem 100% no-repeat" in rule for side in ("local left", "local right"))
+    assert all(f"{side} / 1rem 100% no-repeat" in rule for side in ("scroll left", "scroll right"))

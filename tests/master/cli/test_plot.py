@@ -30,3 +30,9 @@ def test_plot_of_a_system_that_is_gone(evcosim, system, tmp_path):
     assert evcosim("run", path, "--no-plot", "-q", "-o", "out").code == 0
     path.unlink()
     assert evcosim("plot", "out").code == 0
+
+
+def test_numbers_that_can_be_read_two_ways_are_warned_of(evcosim, tmp_path):
+    (tmp_path / "a.csv").write_text("time;x\n0;1.500\n1;2.500\n")
+    answer = evcosim("plot", tmp_path / "a.csv", "-o", tmp_path / "a.html")
+    assert answer.code == 0 and "warning: " in answer.err and "'1.500' is read as 1.5" in answer.err

@@ -163,3 +163,11 @@ def test_a_column_without_name_and_values_is_none(text: str, tmp_path: Path) -> 
         [0.0, 2.0],
         [[1.0], [3.0]],
     )
+
+
+def test_numbers_that_can_be_read_two_ways_are_a_warning(tmp_path):
+    (tmp_path / "a.csv").write_text("time;x\n0;1.500\n1;2.500\n")
+    (said,) = Results.read(tmp_path / "a.csv").manifest["warnings"]
+    assert "line 2, column 'x': '1.500' is read as 1.5; where the point divides thousands, it is 1500" in said
+    (tmp_path / "a.csv").write_text("time;x\n0;1.5\n1;2.500\n")
+    assert "warnings" not in Results.read(tmp_path / "a.csv").manifest
