@@ -169,3 +169,15 @@ def test_the_pages_of_a_message_are_judged_together_at_each_receiver(tmp_path):
         for name, one in (("ONE", counted_whole[page]), ("TWO", counted_alone[page])):
             judged = counted[page]["receivers"][name]
             assert judged == {key: one[key] for key in judged}
+
+
+def test_nodes_that_their_own_errors_take_off_judge_by_themselves_too(tmp_path):
+    noise = 'timing = "frame"\nbit_error_rate = 0.02\nseed = 5'
+    found = [ran(tmp_path, engine, bus=noise) for engine in ("python", "compiled")]
+    assert of("", found[0][0]) == of("", found[1][0]) and found[0][1:] == found[1][1:]
+    _, counted, _ = found[1]
+    one, two = (counted["receivers"][name]["statuses"] for name in ("ONE", "TWO"))
+    assert one != two and counted["unheard"] > 0
+    judged = [sum(each.values()) - each["no_new_data"] for each in (one, two)]
+    heard = counted["arrived"] - counted["unheard"]
+    assert all(heard <= number <= counted["arrived"] for number in judged)
