@@ -39,7 +39,15 @@ if TYPE_CHECKING:
     from .cosim.system.metric_spec import MetricSpec, Reduction
     from .cosim.system.run_options import RunOptions
     from .cosim.system.scenario import Scenario, ScenarioFile, load_scenario
-    from .cosim.system.system import Algorithm, EngineName, Isolation, System, SystemFile, load_system
+    from .cosim.system.system import (
+        Algorithm,
+        EngineName,
+        Isolation,
+        System,
+        SystemFile,
+        UnitsName,
+        load_system,
+    )
     from .cosim.system.toml import FileValue
     from .master.simulation import RunProgress, Simulation, simulate
     from .master.studies.bus_budget import budget
@@ -100,6 +108,7 @@ __all__ = [
     "TextTable",
     "Timing",
     "Unit",
+    "UnitsName",
     "Value",
     "__version__",
     "budget",
@@ -119,6 +128,7 @@ _MODULES = {
     "Clock": "cosim.clock",
     "ConfigError": "cosim.errors",
     "EngineName": "cosim.system.system",
+    "UnitsName": "cosim.system.system",
     "Estimate": "cosim.analysis.first_order",
     "Failure": "master.studies.parallel",
     "EndSpec": "cosim.system.figure_spec",

@@ -5,8 +5,11 @@ This is the one module of the master that knows the package of FMUs.
 
 from __future__ import annotations
 
+import contextlib
+import contextvars
 import re
 import shlex
+from collections.abc import Iterator
 from pathlib import Path
 
 from ..cosim.errors import ConfigError, nearest, short
@@ -171,17 +174,58 @@ def by_names(text: str) -> str:
     return re.sub(rf"(?:{folders})[/\\](\w+?)(?:_native)?_[0-9a-f]{{12}}\.fmu", r"\1", text)
 
 
-def fmu_file(name: str, beside: Path | None = None, place: str = "") -> Path:
+@contextlib.contextmanager
+def units_run(kind: str | None) -> Iterator[None]:
+    """Let built-in FMUs run as `kind` (a UnitsName) where nobody says otherwise; None changes nothing."""
+    token = _KIND.set(kind or _KIND.get())
+    try:
+        yield
+    finally:
+        _KIND.reset(token)
+
+
+_KIND: contextvars.ContextVar[str] = contextvars.ContextVar("kind of units", default="python")
+
+
+def left_in_python(name: str) -> str:
+    """Return why a built-in FMU runs in Python where the kind of units is "auto"; "" for one that is native.
+
+    The first time a model is compiled and compared with itself in Python; the cache keeps the outcome.
+    """
+    from ..fmus.native import build
+
+    return build.why_not(name) or build.difference(name)
+
+
+def _built_in(name: str, kind: str, start: str) -> Path:
+    """Return the file of a built-in FMU of a kind. Raises ConfigError where it must be native and cannot."""
+    if kind != "python":
+        from ..fmus.native import build as native
+
+        if not (reason := native.why_not(name) if kind == "native" else left_in_python(name)):
+            return native.native_built(name)
+        if kind == "native":
+            raise ConfigError(
+                f'{start}{name} cannot be a native unit: {reason}; --units auto, in Python units="auto", '
+                "runs it in Python"
+            )
+    from ..fmus import build
+
+    return build.built(name)
+
+
+def fmu_file(name: str, beside: Path | None = None, place: str = "", units: str | None = None) -> Path:
     """Return the file of an FMU: a built-in name (built now if the cache does not have it), or a path.
 
-    A relative path is looked up beside the file `beside` that names it, then from the working folder. Raises
-    ConfigError with the nearest name if there is no such file; it starts with `place`, the file and its key.
+    `units` is the kind of built-in FMUs, a UnitsName, by default that of `units_run`. A relative path is
+    looked up beside the file `beside` that names it, then from the working folder. Raises ConfigError with
+    the nearest name if there is no such file; it starts with `place`, the file and its key.
     """
     from ..fmus import build
 
     start = f"{place}: " if place else ""
     if name in build.names():
-        return build.built(name)
+        return _built_in(name, units or _KIND.get(), start)
     for path in ([beside.parent / name] if beside is not None else []) + [Path(name)]:
         if is_file(path):
             from ..cosim.system.kinds import kind_of, other_file  # heavy for the process of a unit

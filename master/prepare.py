@@ -82,7 +82,7 @@ def prepare(
     read, opened = without_open(swapped(read, swaps), options.get("allow_open", False))
     read, driven, left_out = without_absent(read, driven)
     # the FMUs, and the interfaces that they present to the system
-    loaded = _read_fmus(read, driven, fmus, options.get("strict", False), runnable)
+    loaded = _read_fmus(read, driven, options, runnable)
     if runnable:
         check_trusted(read, loaded, options.get("isolation"), options.get("trust", False))
     interfaces, sampling = {}, []
@@ -311,11 +311,10 @@ def _advised(
         raise
 
 
-def _read_fmus(
-    system: System, scenario: Scenario, fmus: Mapping[str, str | Path], strict: bool, runnable: bool
-) -> dict[str, Fmu]:
-    """Read the FMUs of the units that take part, those of `fmus` in place of the system's."""
-    entries = participating(system, scenario)
+def _read_fmus(system: System, scenario: Scenario, options: RunOptions, runnable: bool) -> dict[str, Fmu]:
+    """Read the FMUs of the units that take part, those of the option `fmus` in place of the system's."""
+    entries, fmus = participating(system, scenario), options.get("fmus") or {}
+    strict, units = options.get("strict", False), options.get("units")
     for unit in fmus:
         if unit not in entries:
             raise ConfigError(
@@ -324,9 +323,9 @@ def _read_fmus(
     read = {}
     for unit, entry in entries.items():
         if unit in fmus:
-            path = fmu_file(str(fmus[unit]), place=f"fmus.{unit}")
+            path = fmu_file(str(fmus[unit]), place=f"fmus.{unit}", units=units)
         else:
-            path = fmu_file(entry.fmu, system.path, f"{system.keys_of(unit)}fmu")
+            path = fmu_file(entry.fmu, system.path, f"{system.keys_of(unit)}fmu", units)
         read[unit] = read_fmu(path, strict or entry.strict).using(entry.interface)
         if runnable:
             check_runnable(read[unit])

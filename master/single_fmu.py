@@ -66,7 +66,7 @@ def one_fmu(target: str, scenario: object, options: RunOptions) -> tuple[System,
     for name in _OF_SYSTEMS:
         if options.get(name):
             raise ConfigError(f"{name} is for a system; {target} is an FMU by itself")
-    path = fmu_file(target)
+    path = fmu_file(target, units=options.get("units"))
     name = target if target in builtin_names() else path.stem
     fmu = read_fmu(path, options.get("strict", False)).using(options.get("interface"))
     said = Path(target)  # the file of a built-in FMU is in the cache, which nobody wrote

@@ -14,7 +14,10 @@ from ..system.run_options import RunOptions
 _NAMED = {
     "parameters": "--set", "start": "--start", "inputs": "--input", "fmus": "--fmu", "swaps": "--swap",
 }  # fmt: skip # a table: the option of the library, and that of the command line
-_VALUES = ("delay", "algorithm", "stop_time", "step_size", "interface", "tolerance", "isolation", "engine")
+_VALUES = (
+    *("delay", "algorithm", "stop_time", "step_size", "interface", "tolerance", "isolation", "engine"),
+    "units",
+)
 _FLAGS = ("allow_open", "ideal", "trust", "strict")
 _PLAIN = re.compile(r"(?!(?:true|false|inf|nan)$)[A-Za-z_./~][\w./~:-]*")
 

@@ -15,7 +15,7 @@ from ..can.bus_settings import LONGEST_DELAY, BusVariation
 from ..clock import LATEST
 from ..errors import ConfigError, nearest, short
 from ..interface import Value
-from .system import SHORTEST, Algorithm, EngineName, Isolation
+from .system import SHORTEST, Algorithm, EngineName, Isolation, UnitsName
 
 
 class RunOptions(TypedDict, total=False):
@@ -82,6 +82,11 @@ class RunOptions(TypedDict, total=False):
 
     engine: EngineName | None
     """The engine, "compiled" (needs numba) or "python", equal bit for bit (default: the system's)."""
+
+    units: UnitsName | None
+    """The kind of the FMUs that evcosim builds: "python" (pythonfmu FMUs), "native" (compiled), equal bit for
+    bit, or "auto", native where a model can be and a comparison on this machine has found no difference
+    (default: "python"; of what runs many times "auto")."""
 
     strict: bool
     """Refuse every FMU whose description has defects, even if they could be mended (default: False)."""
@@ -177,5 +182,6 @@ _RULES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "isolation": _one_of(Isolation),
     "trust": _FLAG,
     "engine": _one_of(EngineName),
+    "units": _one_of(UnitsName),
     "strict": _FLAG,
 }

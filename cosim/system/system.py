@@ -34,6 +34,7 @@ from .toml import (
 Algorithm = Literal["gauss_seidel", "jacobi"]
 Isolation = Literal["process", "none"]
 EngineName = Literal["compiled", "python"]
+UnitsName = Literal["python", "native", "auto"]
 
 
 SHORTEST = 1e-12

@@ -62,6 +62,14 @@ class EngineChoice(enum.StrEnum):
     python = "python"
 
 
+class UnitsChoice(enum.StrEnum):
+    """The kinds of FMUs that evcosim builds of its models."""
+
+    python = "python"
+    native = "native"
+    auto = "auto"
+
+
 class IsolationChoice(enum.StrEnum):
     """The kinds of processes that units run in."""
 
@@ -104,6 +112,14 @@ AlgorithmOption = Annotated[
 EngineOption = Annotated[
     EngineChoice | None,
     typer.Option(help="What does the steps; default: compiled, python without numba.", show_default=False),
+]
+UnitsOption = Annotated[
+    UnitsChoice | None,
+    typer.Option(
+        help="How evcosim's own FMUs run: in Python, compiled, or compiled where proven equal; default: "
+        "python, in studies auto.",
+        show_default=False,
+    ),
 ]
 StopTimeOption = Annotated[float | None, typer.Option(metavar="T", help="When to stop [s].")]
 WorkersOption = Annotated[
@@ -160,6 +176,7 @@ def _run_options(
     isolation: IsolationOption = None,
     trust: TrustOption = False,
     engine: EngineOption = None,
+    units: UnitsOption = None,
     stop_time: StopTimeOption = None,
     step_size: StepSizeOption = None,
     record: RecordOption = None,
@@ -193,6 +210,7 @@ def _run_options(
         "isolation": isolation.value if isolation else None,
         "trust": trust,
         "engine": engine.value if engine else None,
+        "units": units.value if units else None,
         "stop_time": stop_time,
         "strict": strict,
     }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import completion
-from .options import WorkersOption
+from .options import UnitsOption, WorkersOption
 
 if TYPE_CHECKING:
     from ..reproduce.page import Page
@@ -29,6 +29,7 @@ def reproduce(
         "results/reproduce"
     ),
     workers: WorkersOption = None,
+    units: UnitsOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the tables as JSON.")] = False,
 ) -> int:
     """Reproduce papers: a page of all that each prints beside what is obtained, with verdicts and figures.
@@ -54,7 +55,7 @@ def reproduce(
             said(task)
 
         try:
-            pages = library.reproduce(names, folder, workers, progress)
+            pages = library.reproduce(names, folder, workers, progress, units.value if units else "auto")
         except library.UnwrittenError as error:
             pages, unwritten = error.pages, str(error)
     seconds = time.perf_counter() - begin

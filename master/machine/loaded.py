@@ -17,7 +17,8 @@ class Loaded:
     def __init__(self, code: bytes) -> None:
         descriptor = os.memfd_create("evcosim-code", os.MFD_CLOEXEC)
         try:
-            os.write(descriptor, code)
+            with open(descriptor, "wb", closefd=False) as file:
+                file.write(code)  # all of it, or OSError: a limit on the size of files counts here too
             self._memory = mmap.mmap(descriptor, len(code), mmap.MAP_PRIVATE, mmap.PROT_READ | mmap.PROT_EXEC)
         finally:
             os.close(descriptor)

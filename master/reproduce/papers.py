@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 import importlib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ...cosim.errors import ConfigError, nearest
-from ..studies.parallel import TaskProgress, run_all
+from ...cosim.system.system import UnitsName, load_system
+from ..builtin import fmu_file, units_run
+from ..studies.parallel import Task, TaskProgress, run_all
 from .page import Page, Paper
 from .render import write_index, write_page
 
@@ -37,18 +39,32 @@ def counts(names: Sequence[str]) -> dict[str, int]:
     return {name: len(load(name).runs()) for name in names}
 
 
+def _of_kind(units: UnitsName, task: Task[Any]) -> Any:
+    with units_run(units):
+        return task()
+
+
 def reproduce(
-    names: Sequence[str], folder: Path, workers: int | None = None, progress: TaskProgress | None = None
+    names: Sequence[str],
+    folder: Path,
+    workers: int | None = None,
+    progress: TaskProgress | None = None,
+    units: UnitsName = "auto",
 ) -> list[Page]:
     """Reproduce papers and write their pages and an index into `folder`; return the pages.
 
+    `units` is the kind of the built-in FMUs, which are made before the runs, in this process.
     Raises ConfigError for an unknown name, UnwrittenError, which has the pages, where the folder cannot be
     written, RunError naming the run that failed.
     """
     papers = {name: load(name) for name in names}
+    with units_run(units):
+        for name in names:
+            for unit in load_system(name).file.units.values():
+                fmu_file(unit.fmu)  # once, not in each of the processes that need it
     runs = {name: paper.runs() for name, paper in papers.items()}
     tasks = [
-        dataclasses.replace(task, name=f"{name}: {task.name}") for name, some in runs.items() for task in some
+        Task(f"{name}: {task.name}", _of_kind, (units, task)) for name, some in runs.items() for task in some
     ]
     outcomes = iter(run_all(tasks, workers, progress))
     pages: list[Page] = []

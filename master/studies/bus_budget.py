@@ -52,6 +52,7 @@ def budget(
         raise ConfigError("a bus budget keeps no results, so that 'record' cannot be given")
     if not (isinstance(seeds, Integral) and not isinstance(seeds, bool) and 0 <= seeds <= _MOST_SEEDS):
         raise ConfigError(f"seeds = {short(seeds)}: it is a whole number from 0 to {_MOST_SEEDS}")
+    options["units"] = options.get("units") or "auto"
     prepared = prepare(system, scenario, **options)
     entry, spec = _criterion(prepared)
     planned = series(prepared.plan.experiment.step_size)

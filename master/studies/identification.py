@@ -124,6 +124,7 @@ def identify(
     """
     check_options(options)
     options = in_floats(options)
+    options["units"] = options.get("units") or "auto"
     spec = spec or spec_of(target, scenario)
     if spec is None:
         raise ConfigError(f"{target}: which input and output? There is no [identification] in its scenario")
@@ -135,7 +136,10 @@ def identify(
     sweep = sweep_of(spec)
     alone = is_fmu(target)
     prefix = f"{UNIT}." if alone else ""
-    system = one_unit_system(target, options.get("step_size")) if alone else load_system(target)
+    if alone:
+        system = one_unit_system(target, options.get("step_size"), options["units"])
+    else:
+        system = load_system(target)
     scenario = scenario if alone else default_scenario(system, scenario)
     if alone and scenario is not None:
         raise ConfigError(f"{target} is an FMU: it has no scenario '{scenario}'")

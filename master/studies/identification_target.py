@@ -53,13 +53,13 @@ def is_fmu(target: str) -> bool:
     )
 
 
-def one_unit_system(target: str, step_size: float | None = None) -> System:
+def one_unit_system(target: str, step_size: float | None = None, units: str | None = None) -> System:
     """Return a system of one FMU (a built-in name or a path) as the unit `fmu`.
 
     `step_size` [s]: default that of the FMU's DefaultExperiment, else 0.01. Raises ConfigError for what is
     no step.
     """
-    path = fmu_file(target)
+    path = fmu_file(target, units=units)
     step = step_size
     if step is None:
         step = declared_step(read_fmu(path).description.defaultExperiment, "stepSize") or _STEP

@@ -1,6 +1,7 @@
 """SHA-256 of results.csv of every built-in system x scenario x engine: compare with, or write, the list.
 
     .venv/bin/python tests/support/digests.py          # exit code 1 and the names of what differs
+    .venv/bin/python tests/support/digests.py --units native   # the same digests, of native units
     .venv/bin/python tests/support/digests.py --write  # the list anew, after a change that is meant
 
 A digest holds on one kind of machine only: another libm or BLAS may round the last bit of exp(), sin() or a
@@ -19,7 +20,7 @@ from pathlib import Path
 
 from evcosim import simulate
 from evcosim.cosim.system.scenario import scenario_names
-from evcosim.cosim.system.system import load_system, system_names
+from evcosim.cosim.system.system import UnitsName, load_system, system_names
 
 FILE = Path(__file__).parent.parent / "systems" / "golden" / "digests.txt"
 ENGINES = ("compiled", "python")
@@ -38,12 +39,13 @@ def listed() -> dict[str, str]:
     return {name: digest for digest, name in (line.split(maxsplit=1) for line in lines if line)}
 
 
-def measured() -> Iterator[tuple[str, str]]:
-    """Run every case with both engines; yield its name and the SHA-256 of its results.csv."""
+def measured(units: UnitsName) -> Iterator[tuple[str, str]]:
+    """Run every case with both engines and units of this kind; yield its name and SHA-256 of results.csv."""
     with tempfile.TemporaryDirectory() as folder:
         for system, scenario in cases():
             for engine in ENGINES:
-                path = simulate(system, scenario, engine=engine).to_csv(Path(folder) / "results.csv")
+                results = simulate(system, scenario, engine=engine, units=units)
+                path = results.to_csv(Path(folder) / "results.csv")
                 yield f"{system} {scenario} {engine}", hashlib.sha256(path.read_bytes()).hexdigest()
 
 
@@ -51,10 +53,12 @@ def main() -> int:
     """Compare or write; return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--write", action="store_true", help="write the list anew")
-    write = parser.parse_args().write
+    parser.add_argument("--units", choices=("python", "native"), default="python", help="the kind of units")
+    asked = parser.parse_args()
+    write = asked.write
     before = listed() if FILE.exists() else {}
     after = {}
-    for name, digest in measured():
+    for name, digest in measured(asked.units):
         after[name] = digest
         print(f"{'same' if before.get(name) == digest else 'DIFFERS'}  {digest}  {name}", flush=True)
     if write:

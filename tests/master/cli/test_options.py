@@ -50,6 +50,7 @@ def test_a_verb_receives_them_as_one_record():
     given |= {"settings": ["vehicle.mass=180"], "strict": True, "stop_time": 2.0}
     given |= {"allow_open": True, "trust": True}
     given |= {"algorithm": options.AlgorithmChoice.jacobi, "engine": options.EngineChoice.python}
+    given |= {"units": options.UnitsChoice.native}
     system, found, quiet = verb(system="scooter", quiet=True, **given)
     assert (system, quiet) == ("scooter", True)
     assert found == {
@@ -68,6 +69,7 @@ def test_a_verb_receives_them_as_one_record():
         "isolation": None,
         "trust": True,
         "engine": "python",
+        "units": "native",
         "stop_time": 2.0,
         "strict": True,
         "allow_open": True,
@@ -124,6 +126,7 @@ def test_verbs_that_run_a_system_take_all_of_them(evcosim, name, missing):
         "--algorithm",
         "--isolation",
         "--engine",
+        "--units",
         "--stop-time",
         "--strict",
     )

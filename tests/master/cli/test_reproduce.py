@@ -50,7 +50,7 @@ def test_a_full_disk_hides_no_number(evcosim, monkeypatch):
 def test_a_line_for_each_paper_tells_that_it_lives(evcosim, monkeypatch):
     """On stderr, when the last run of the paper has ended; with --json stderr is for messages alone."""
 
-    def runs(names, _folder, _workers, progress):
+    def runs(names, _folder, _workers, progress, _units):
         left = [f"{name}: {task.name}" for name in names for task in papers.load(name).runs()]
         for i, task in enumerate(left):
             progress(i + 1, len(left), task)
