@@ -193,12 +193,10 @@ def _instance(description: Any, folder: Path, name: str) -> Any:
 # -- packing -------------------------------------------------------------------------------------------------
 
 
-def test_the_same_bytes_each_time(parts: Callable[..., Any], tmp_path: Path) -> None:
-    one = native_content(parts("HandmadePlain"))
-    assert native_content(parts("HandmadePlain")) == one
-    path = build_native(parts("HandmadePlain"), tmp_path)
-    assert path == tmp_path / "HandmadePlain.fmu"
-    assert path.read_bytes() == one
+def test_the_same_bytes_each_time(parts: Callable[..., Any], pairs: Pairs) -> None:
+    made = pairs("HandmadePlain").native
+    assert made.name == "HandmadePlain.fmu"
+    assert native_content(parts("HandmadePlain")) == made.read_bytes()
 
 
 def test_what_is_in_it(pairs: Pairs) -> None:
