@@ -68,6 +68,8 @@ def binary(frame: Frame, node: ast.AST, op: ast.operator, left: Value, right: Va
         folded = _folded(op, left.value, right.value)
         if folded is not None:
             return folded
+    if isinstance(op, ast.MatMult):
+        raise frame.refuse(node, "a product of matrices", "write the loops")
     joined = _joined(frame, node, op, left, right)
     if joined is not None:
         return joined

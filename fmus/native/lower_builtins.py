@@ -6,7 +6,7 @@ import ast
 import builtins
 import cmath
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 from . import ir
@@ -33,11 +33,7 @@ _COMPLEX = {"exp", "cosh", "sinh", "tanh", "cos", "sin", "tan", "sqrt", "log", "
 
 def find(function: object) -> Builtin | None:
     """Return the lowering of a function of Python, math or cmath; None for one that has none."""
-    return _BUILTINS.get(function) if _is_hashable(function) else None
-
-
-def _is_hashable(value: object) -> bool:
-    return getattr(value, "__hash__", None) is not None
+    return _BUILTINS.get(function) if isinstance(function, Hashable) else None
 
 
 def _real(frame: Frame, node: ast.AST, value: Value) -> ir.Expression:
@@ -128,7 +124,7 @@ def _abs(frame: Frame, node: ast.Call, given: Sequence[Value]) -> Value:
 
 def _float(frame: Frame, node: ast.Call, given: Sequence[Value]) -> Value:
     _count(frame, node, given, 1)
-    if isinstance(given[0], Known) and isinstance(given[0].value, str):
+    if isinstance(given[0], Known) and given[0].value in ("inf", "-inf", "nan"):
         return Known(float(given[0].value))
     return Run(_real(frame, node, given[0]))
 

@@ -371,7 +371,7 @@ def _item(frame: Frame, node: ast.Call, python: type, given: Sequence[Value]) ->
 
 
 def _partial(frame: Frame, node: ast.Call, given: Sequence[Value], named: dict[str, Value]) -> Value:
-    if named:
+    if named or not given:
         raise frame.refuse(node, "partial with keywords", "bind the first arguments")
     function = given[0]
     if isinstance(function, Known) and isinstance(function.value, types.FunctionType):

@@ -37,7 +37,8 @@ def branch(frame: Frame, node: ast.If) -> bool:
     else:
         frame.env = merged(frame, node, [(after_then, then), (after_else, otherwise)])
     note = frame.module.note(node.lineno, node.test.end_lineno or node.lineno)
-    frame.emit(ir.If(test.expr, tuple(then), tuple(otherwise), note))
+    if then or otherwise:
+        frame.emit(ir.If(test.expr, tuple(then), tuple(otherwise), note))
     return then_ends and else_ends
 
 

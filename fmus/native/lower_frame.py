@@ -185,9 +185,10 @@ class Frame(abc.ABC):
         """Return a value as an expression. Raises Unsupported for what has no native form."""
         found = self.types.expression(value)
         if found is None:
-            raise self.refuse(
-                node, f"{described(value)} has no native form", "compute with numbers and tuples"
-            )
+            text, instead = described(value), "compute with numbers and tuples"
+            if "numpy" in text:
+                instead = "write float(...) of it, in the module"
+            raise self.refuse(node, f"{text} has no native form", instead)
         return found
 
     def settled(self, node: ast.AST, value: Value) -> Run:

@@ -116,7 +116,7 @@ class FunctionFrame(Frame):
         ended = self.run(statements(self.node))
         if not ended and self.self_name:
             self._finish_object()
-        elif not ended and (self.returns is not None or self.constants):
+        elif not ended and (self.returns is not None or self.constants or self.is_root):
             raise self.refuse(self.node, "a path without return", "return a value on every path")
         return ended
 

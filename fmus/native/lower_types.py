@@ -176,8 +176,8 @@ class Types:
         if number_type(value) is not None:
             assert isinstance(value, int | float | complex)
             return literal(value)
-        if isinstance(value, tuple):
-            python = type(value) if type(value) is not tuple else None
+        if isinstance(value, tuple | list):
+            python = type(value) if type(value) not in (tuple, list) else None
             if python is not None and not hasattr(python, "_fields"):
                 return None
             return self._made([self._known(item) for item in value], python)
