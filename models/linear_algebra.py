@@ -179,7 +179,7 @@ def _turn(m: Matrix, first: int, second: int, columns: int) -> bool:
     """Turn two rows until they are orthogonal; return False if they were."""
     x, y = _inner(m, first, first, columns), _inner(m, second, second, columns)
     z = _inner(m, first, second, columns)
-    if abs(z) <= ORTHOGONAL * sqrt(x) * sqrt(y):
+    if not abs(z) > ORTHOGONAL * sqrt(x) * sqrt(y):  # nor is one that is no number turned
         return False
     zeta = 0.5 * (y - x) / z
     tangent = 1.0 / (abs(zeta) + sqrt(1.0 + zeta * zeta))

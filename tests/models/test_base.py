@@ -158,6 +158,13 @@ def test_what_a_record_caches_belongs_to_it() -> None:
     assert [Derived(x).twice for x in (1.0, 2.0)] == [2.0, 4.0]
 
 
+def test_a_record_that_caches_keeps_its_hash_but_does_not_pickle_it() -> None:
+    """An enumeration among its fields has another hash in another process."""
+    made, fresh = Derived(2.0), pickle.dumps(Derived(2.0))
+    assert hash(made) == hash(made) == hash(Derived(2.0)) != hash(Derived(3.0))
+    assert pickle.dumps(made) == fresh
+
+
 def test_feedthrough_is_read_from_outputs() -> None:
     assert not declare().feeds_through()
     assert declare(Outputs=Direct, outputs=staticmethod(direct)).feeds_through()

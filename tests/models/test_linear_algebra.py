@@ -146,3 +146,7 @@ def test_a_small_singular_value_is_known_beside_a_large_one(small: float, angle:
     c, s = math.cos(angle), math.sin(angle)
     turned = [c, s, -small * s, small * c]
     assert algebra.singular_values(turned, 2, 2) == pytest.approx((small, 1.0), rel=1e-9)
+
+
+def test_rows_whose_squares_are_no_floats_are_left_as_they_are() -> None:
+    assert algebra.singular_values([1e200, 0.0, 0.0, 1e-200], 2, 2) == (0.0, math.inf)
