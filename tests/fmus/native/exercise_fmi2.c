@@ -143,6 +143,9 @@ int main(void)
     fmi2Real values[3000] = {0.0};
     fmi2Component first = made(), second;
     int before = allocations;
+#ifdef COUNTING
+    CHECK(before == 1); /* an instance is one piece of memory */
+#endif
     initialize(first);
     steps(first);
     CHECK(allocations == before);
