@@ -16,11 +16,16 @@ gives the guid (recipes). The same sources give the same bytes.
 from __future__ import annotations
 
 import re
+import warnings
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from typing import Literal, NamedTuple
 
 from . import cache, records, runtime
 from .catalog import CATALOG, Experiment
+from .native.errors import Unsupported
+from .native.wanted import Wanted
 from .recipes import Recipe, catalog_identity, catalog_recipe, recipe_of
 from .sources import file_of, own_roots, rewritten
 
@@ -102,6 +107,9 @@ def build_model(
     experiment: Experiment | None = None,
     version: str = "",
     license: str = "",
+    native: bool | Literal["require"] = False,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
 ) -> Path:
     """Write `folder/<class name>.fmu` of a model of one's own, and return its path.
 
@@ -109,13 +117,73 @@ def build_model(
     files are embedded. `version` and `license` are those of the model, and are left out where empty. Raises
     ValueError for sources that cannot be embedded and for unknown units, OSError. The user's cache notes its
     digest, so that evcosim runs it in its own process as it does the built-in ones.
+
+    With `native` it is machine code for these `platforms` ("linux64", "win64", "darwin64", "aarch64-linux",
+    "aarch64-darwin"; default: this machine's), of FMI 2.0 or 3.0. A model that has no native form is left in
+    Python, with a warning that names file, line, construct and what to write instead; with "require" that is
+    a ValueError. One too is a compiler that is missing or fails.
     """
+    if native not in (False, True, "require"):
+        raise ValueError(f"native = {native!r}: it is True, False or 'require'")
+    if not native and (platforms or fmi != 2):
+        raise ValueError("platforms and fmi are those of native FMUs: add native=True")
+    wanted = Wanted(native == "require", tuple(platforms), fmi) if native else None
+    made = made_of(model, experiment, version, license, wanted)
+    if made.left:
+        warnings.warn(f"{made.name}: left in Python, because {made.left}", stacklevel=2)
+    return cache.write(Path(folder) / f"{made.name}.fmu", made.content)
+
+
+class Made(NamedTuple):
+    """The bytes of an FMU; `left` is why they hold Python though machine code was wanted, else ""."""
+
+    name: str
+    content: bytes
+    left: str = ""
+
+
+def made_of(
+    model: type,
+    experiment: Experiment | None = None,
+    version: str = "",
+    license: str = "",
+    wanted: Wanted | None = None,
+) -> Made:
+    """Return the FMU of a model of one's own, noted as built here. Raises what `build_model` raises."""
     module, file = file_of(model.__module__)
     recipe = recipe_of(model.__qualname__, module, file, experiment or Experiment(), version, license)
+    left = ""
+    if wanted is not None:
+        from .native.build import content_of
+
+        try:
+            return Made(recipe.name, content_of(recipe, model, wanted))
+        except Unsupported as error:
+            if wanted.require:
+                raise
+            left = str(error)
     content = _content(recipe, model)
-    path = cache.write(Path(folder) / f"{recipe.name}.fmu", content)
     records.note(content, recipe.name, own_roots(module, file).folder)
-    return path
+    return Made(recipe.name, content, left)
+
+
+def build_native(name: str, folder: Path | None, wanted: Wanted) -> tuple[Path, str]:
+    """Write the native FMU of a built-in model into a folder (default: the cache, anew).
+
+    Return its path, and why it was left in Python or "". Raises ValueError for an unknown name, for what
+    `wanted` requires and cannot be had, and where a compiler is missing or fails; OSError.
+    """
+    from .native.build import content_of, native_built
+
+    try:
+        if folder is None:
+            return native_built(name, anew=True, wanted=wanted), ""
+        content = content_of(catalog_recipe(name), None, wanted)
+    except Unsupported as error:
+        if wanted.require:
+            raise
+        return built(name, anew=True) if folder is None else build(name, folder), str(error)
+    return cache.write(folder / f"{name}.fmu", content), ""
 
 
 def _content(recipe: Recipe, model: type | None = None) -> bytes:

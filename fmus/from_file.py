@@ -10,8 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
-from .build import build_model
+from . import cache
+from .build import made_of
 from .catalog import CATALOG, Experiment, model_file
+from .native.wanted import Wanted
 from .outdated import carried_model
 
 
@@ -21,6 +23,15 @@ def build_file(path: Path, folder: Path | None = None) -> list[Path]:
     `folder` is where they go (default: beside the file). The file is run, as `import` runs it. Raises
     ValueError for a file that cannot be imported, or that defines no model, and for models that cannot be
     built; OSError.
+    """
+    return [path for path, _ in build_wanted(path, folder, None)]
+
+
+def build_wanted(path: Path, folder: Path | None, wanted: Wanted | None) -> list[tuple[Path, str]]:
+    """Write the FMUs of `build_file`, in machine code where that is wanted.
+
+    Return their paths, each with the reason why it was left in Python or "". All are made before one is
+    written. Raises what `build_file` raises, and ValueError for what `wanted` requires and cannot be had.
     """
     from ..models.base import Model
 
@@ -36,7 +47,8 @@ def build_file(path: Path, folder: Path | None = None) -> list[Path]:
         where = folder or path.parent
         for each in own:
             _check_free(where / f"{each.__name__}.fmu", path)
-        return [build_model(each, where, experiment=_experiment(each.__name__)) for each in own]
+        made = [made_of(each, _experiment(each.__name__), wanted=wanted) for each in own]
+    return [(cache.write(where / f"{each.name}.fmu", each.content), each.left) for each in made]
 
 
 def _check_free(fmu: Path, path: Path) -> None:

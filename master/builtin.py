@@ -11,6 +11,7 @@ import re
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.file_names import check_name, near_file
@@ -120,43 +121,71 @@ def _as_typed(file: Path) -> str:
     return str(file.relative_to(here) if file.is_relative_to(here) else file)
 
 
-def build_fmu(name: str, folder: Path | None = None) -> Path:
+class Built(NamedTuple):
+    """An FMU that was built, by name; `left` is why it holds Python though machine code was asked for."""
+
+    name: str
+    path: Path
+    left: str = ""
+
+
+class Native(NamedTuple):
+    """A native FMU as it is asked for: where there can be none, Python's takes its place, unless `require`.
+
+    `platforms` are named as in FMI 2.0 (default: this machine's alone); `fmi` is 2 or 3.
+    """
+
+    require: bool = False
+    platforms: tuple[str, ...] = ()
+    fmi: int = 2
+
+
+def build_fmu(name: str, folder: Path | None = None, native: Native | None = None) -> Built:
     """Build a built-in FMU into a folder (default: the cache, anew) and return its file.
 
-    Raises ConfigError if the folder cannot be written.
+    Raises ConfigError if the folder cannot be written, and for a native FMU that cannot be had.
     """
     from ..fmus import build
+    from ..fmus.native.wanted import Wanted
 
     if folder is not None:
         check_name(folder, f"{name}.fmu cannot be written: ")
+    left = ""
     try:
-        path = build.built(name, anew=True) if folder is None else build.build(name, folder)
+        if native is not None:
+            path, left = build.build_native(name, folder, Wanted(*native))
+        else:
+            path = build.built(name, anew=True) if folder is None else build.build(name, folder)
+    except ValueError as error:
+        raise ConfigError(*f"{name}: {error}".splitlines()) from error
     except OSError as error:
         where = folder or cache_folder()
         said = reason(where / f"{name}.fmu", error)
         raise ConfigError(f"{where}: {name}.fmu cannot be written: {said}") from error
     if folder is None and path.parent != cache_folder():  # it lasts as long as this process
         raise ConfigError(f"{cache_folder()}: {name}.fmu cannot be kept there; --output DIR builds elsewhere")
-    return path
+    return Built(name, path, left)
 
 
-def build_models(path: Path, folder: Path | None = None) -> list[Path]:
+def build_models(path: Path, folder: Path | None = None, native: Native | None = None) -> list[Built]:
     """Build an FMU of each model in a Python file, beside it or into a folder, and return their files.
 
     The file is run. Raises ConfigError for what is no such file or cannot be built, and where nothing can be
     written.
     """
     from ..fmus import from_file
+    from ..fmus.native.wanted import Wanted
 
     if not is_file(path):
         raise ConfigError(f"{path}: there is no such file{near_file(path)}")
     try:
-        return from_file.build_file(path, folder)
+        made = from_file.build_wanted(path, folder, Wanted(*native) if native else None)
     except ValueError as error:
-        raise ConfigError(f"{path}: {error}") from error
+        raise ConfigError(*f"{path}: {error}".splitlines()) from error
     except OSError as error:
         where = folder or path.parent
         raise ConfigError(f"{where}: an FMU cannot be written: {reason(where, error)}") from error
+    return [Built(file.stem, file, left) for file, left in made]
 
 
 def model_source(name: str) -> tuple[str, str]:

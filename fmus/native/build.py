@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from .. import cache, records
 from ..recipes import Recipe, catalog_identity, catalog_recipe, digest_of
 from .basis import mathematical_library, python_minor
 from .errors import NoNativeError, ToolchainError, Unsupported
+from .wanted import DEFAULT, Wanted
 
 if TYPE_CHECKING:
     from ...models.base import Model
@@ -27,14 +28,16 @@ if TYPE_CHECKING:
 _HERE = Path(__file__).parent
 
 
-def native_built(name: str, anew: bool = False) -> Path:
+def native_built(name: str, anew: bool = False, wanted: Wanted = DEFAULT) -> Path:
     """Return the native FMU of a built-in model's present sources in the cache, built first if it is missing.
 
     With `anew` it is built in any case. Raises Unsupported for a model that has no native form,
     ToolchainError where it cannot be compiled, ValueError for an unknown name.
     """
     digest = _digest(catalog_identity(name))
-    return cache.fetch(f"{name}_native_{digest[:12]}.fmu", lambda: _made(name, digest, anew), anew)
+    kind = Wanted(False, wanted.platforms, wanted.fmi)
+    key = digest if kind == DEFAULT else _short(digest.encode(), repr(kind).encode())
+    return cache.fetch(f"{name}_native_{key[:12]}.fmu", lambda: _made(name, digest, anew, wanted), anew)
 
 
 def why_not(name: str) -> str:
@@ -64,17 +67,30 @@ def difference(name: str, steps: int = 1000) -> str:
 
 def native_parts(recipe: Recipe, model: type[Model]) -> NativeParts:
     """Return what the native FMU of a recipe's model is made of. Raises Unsupported."""
-    return _parts(recipe, model, _digest(recipe.digest))
+    return _parts(recipe, model, _digest(recipe.identity))
 
 
-def content_of(parts: NativeParts, platforms: Sequence[str] = (), fmi: int = 2) -> bytes:
-    """Return the bytes of a native FMU, which are noted as built here.
+def content_of(recipe: Recipe, model: type[Model] | None = None, wanted: Wanted = DEFAULT) -> bytes:
+    """Return the bytes of the native FMU of a recipe's model, which are noted as built here.
 
-    Raises ToolchainError, ValueError for an unknown unit of measure or another version of FMI.
+    Raises Unsupported, ToolchainError, ValueError for an unknown unit of measure or another version of FMI.
     """
+    require_compilers(wanted)
+    return _noted(native_parts(recipe, model or _model(recipe)), wanted)
+
+
+def require_compilers(wanted: Wanted) -> None:
+    """Raise ToolchainError for a platform that is unknown, or for which there is no compiler here."""
+    from .toolchain import compiler, here, platform_named
+
+    for target in [platform_named(name) for name in wanted.platforms] or [here()]:
+        compiler(target)
+
+
+def _noted(parts: NativeParts, wanted: Wanted) -> bytes:
     from .package import native_content
 
-    content = native_content(parts, platforms=platforms, fmi=fmi)
+    content = native_content(parts, platforms=wanted.platforms, fmi=wanted.fmi)
     records.note(content, parts.model.__name__)
     return content
 
@@ -90,32 +106,34 @@ def extracted_library(path: Path, folder: Path) -> Path:
         return Path(archive.extract(entry, folder))
 
 
-def _made(name: str, digest: str, anew: bool) -> bytes:
+def _made(name: str, digest: str, anew: bool, wanted: Wanted) -> bytes:
     """Return the bytes of a built-in model's native FMU. Raises what `native_built` raises.
 
     What was refused is not tried again, with the same compiler.
     """
-    from .toolchain import compiler, here
-
-    command = compiler(here())  # without one, nothing is imported and lowered in vain
-    failures = f"native-left-{digest}", f"native-failed-{_short(digest.encode(), *_state_of(command))}"
-    for entry, kind in zip(failures, (Unsupported, ToolchainError), strict=True):
+    require_compilers(wanted)  # without one, nothing is imported and lowered in vain
+    left, failed = f"native-left-{digest}", f"native-failed-{_short(digest.encode(), *_compilers(wanted))}"
+    for entry, kind in ((left, Unsupported), (failed, ToolchainError)):
         if not anew and (kept := cache.load(entry)) is not None:
             raise kind(kept.decode())
     recipe = catalog_recipe(name)
     try:
-        return content_of(_parts(recipe, _model(recipe), digest))
+        return _noted(_parts(recipe, _model(recipe), digest), wanted)
     except NoNativeError as error:
-        cache.keep(failures[isinstance(error, ToolchainError)], str(error).encode())
+        cache.keep(failed if isinstance(error, ToolchainError) else left, str(error).encode())
         raise
 
 
-def _state_of(command: Sequence[str]) -> list[bytes]:
-    """Return what changes with a compiler's command, and with its file."""
+def _compilers(wanted: Wanted) -> Iterator[bytes]:
+    """Return what changes with the command of each compiler that is needed, and with its file."""
     import shutil
 
-    found = shutil.which(command[0])
-    return [repr(command).encode(), repr(found and cache.state(Path(found).resolve())).encode()]
+    from .toolchain import compiler, here, platform_named
+
+    for target in [platform_named(name) for name in wanted.platforms] or [here()]:
+        command = compiler(target)
+        found = shutil.which(command[0])
+        yield repr((wanted.fmi, command, found and cache.state(Path(found).resolve()))).encode()
 
 
 def _compared(name: str, path: Path, steps: int) -> str:
@@ -144,9 +162,9 @@ def _model(recipe: Recipe) -> type[Model]:
     return model
 
 
-def _digest(recipe: str) -> str:
-    """Return the digest of a native FMU by that of its recipe: also of the translator and the runtime."""
-    return _short(recipe.encode(), b"%d" % python_minor(), _own_code(_HERE).encode())
+def _digest(identity: str) -> str:
+    """Return the digest of a native FMU by the identity of its recipe: also of translator and runtime."""
+    return _short(identity.encode(), b"%d" % python_minor(), _own_code(_HERE).encode())
 
 
 @functools.cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-class NoNativeError(Exception):
+class NoNativeError(ValueError):
     """A native FMU that cannot be made; the text says why, and what to do."""
 
 

@@ -10,7 +10,7 @@ import typer
 
 from . import completion
 from .budget import budget
-from .build import build
+from .build import BuildCommand, build
 from .bus import bus
 from .check import check
 from .compare import compare
@@ -57,7 +57,7 @@ def command() -> Any:
         "schema": schema,
     }
     for name, verb in verbs.items():
-        app.command(name, cls=OnceCommand)(checks_paths(verb))
+        app.command(name, cls=BuildCommand if verb is build else OnceCommand)(checks_paths(verb))
     app.add_typer(results, name="results")
     return typer.main.get_command(app)
 

@@ -59,7 +59,7 @@ def test_a_copy_passes_for_the_built_in_one_and_no_other_file_does(tmp_path):
 
 
 def test_building_into_a_folder_that_cannot_be_written(tmp_path):
-    assert build_fmu("Battery", tmp_path / "made") == tmp_path / "made" / "Battery.fmu"
+    assert build_fmu("Battery", tmp_path / "made").path == tmp_path / "made" / "Battery.fmu"
     (tmp_path / "file").write_text("")
     with pytest.raises(
         ConfigError, match=r"file.below: Battery\.fmu cannot be written: .*file is a file, not"

@@ -156,7 +156,7 @@ def test_nothing_is_left_behind(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["with space", "größer", "a#b", "50%", "a%41b"])
 def test_a_temporary_folder_of_any_name(tmp_path, monkeypatch, name):
     (tmp_path / name).mkdir()
-    copy = build_fmu("Scooter", tmp_path)  # the one in the cache is unpacked already
+    copy = build_fmu("Scooter", tmp_path).path  # the one in the cache is unpacked already
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / name))
     assert len(simulate("scooter", fmus={"vehicle": copy}, stop_time=0.1)) == 11
 
@@ -166,7 +166,7 @@ def test_a_temporary_folder_of_any_name(tmp_path, monkeypatch, name):
 def test_a_temporary_folder_that_an_fmu_cannot_be_told(tmp_path, monkeypatch, name, said):
     folder = tmp_path / os.fsdecode(name)
     folder.mkdir()
-    copy = build_fmu("Scooter", tmp_path)
+    copy = build_fmu("Scooter", tmp_path).path
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
     with pytest.raises(ConfigError, match=f"the temporary folder .*{said}; set TMPDIR"):
         simulate("scooter", fmus={"vehicle": copy}, stop_time=0.1)

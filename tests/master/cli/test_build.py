@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import zipfile
 from pathlib import Path
 
+import pytest
+
+from evcosim.fmus.native import toolchain
 from support.answers import refused
+from support.needs import need_c_compiler
 
 
 def test_build(evcosim, tmp_path):
@@ -61,3 +66,171 @@ def test_a_run_warns_of_an_fmu_that_is_older_than_its_model(evcosim, tmp_path):
     assert f"car/models/Vehicle.fmu was built before car/models/vehicle.py was changed: '{command}'" in said
     assert evcosim(*command.split()[1:]).code == 0
     assert "was built before" not in evcosim(*run).out
+
+
+# -- native --------------------------------------------------------------------------------------------------
+
+TAKEN, LEFT = "x.x + u.u", "x.x + sum([u.u, dt])"
+MODEL = """
+from evcosim.models.base import Model, record, var
+
+class {name}(Model):
+    "The sum of an input."
+
+    @record
+    class Parameters:
+        scale: float = var(1.0, "", "Scale")
+
+    @record
+    class Inputs:
+        u: float = var(0.0, "", "Input")
+
+    @record
+    class State:
+        x: float = var(0.0, "", "State")
+
+    @record
+    class Outputs:
+        y: float = var(0.0, "", "Output")
+
+    @staticmethod
+    def initial(p, u):
+        return {name}.State()
+
+    @staticmethod
+    def step(p, x, u, dt):
+        return {name}.State({step})
+
+    @staticmethod
+    def outputs(p, x):
+        return {name}.Outputs(p.scale * x.x)
+"""
+
+
+@pytest.fixture
+def own(tmp_path):
+    """A file with a model that has a native form, and one that has none."""
+    need_c_compiler()
+    (tmp_path / "mine.py").write_text(MODEL.format(name="Taken", step=TAKEN))
+    (tmp_path / "two.py").write_text(
+        MODEL.format(name="First", step=TAKEN) + MODEL.format(name="Second", step=LEFT)
+    )
+    return tmp_path
+
+
+def entries(path):
+    with zipfile.ZipFile(path) as archive:
+        return archive.namelist()
+
+
+def test_a_model_of_ones_own_becomes_native(evcosim, own):
+    made = evcosim("build", "mine.py", "--native")
+    assert (made.code, made.out.strip()) == (0, str(own / "Taken.fmu"))
+    assert "sources/model.c" in entries("Taken.fmu")
+    assert not [entry for entry in entries("Taken.fmu") if entry.endswith(".py")]
+    shown = evcosim("info", "Taken.fmu").out
+    assert "FMI 2.0 Co-Simulation" in shown and "python" not in shown.lower()
+    assert evcosim("build", "mine.py", "--native", "--fmi", "3", "-o", "three").code == 0
+    assert "FMI 3.0 Co-Simulation" in evcosim("info", "three/Taken.fmu").out
+
+
+def test_it_runs_as_the_one_in_python_does_in_the_process_of_evcosim(evcosim, own):
+    assert evcosim("build", "mine.py", "--native", "-o", "native").code == 0
+    assert evcosim("build", "mine.py", "-o", "python").code == 0
+    tables = []
+    for folder in ("native", "python"):
+        run = ("run", f"{folder}/Taken.fmu", "--set", "u=0.1", "--stop-time", "1", "--no-plot", "--no-report")
+        assert evcosim(*run, "-o", f"out-{folder}").code == 0
+        units = json.loads(Path(f"out-{folder}/run.json").read_text())["units"]
+        assert [unit["isolation"] for unit in units.values()] == ["none"]
+        tables.append(Path(f"out-{folder}/results.csv").read_bytes())
+    assert tables[0] == tables[1]
+
+
+def test_a_native_fmu_without_its_library_is_compiled_again(evcosim, own):
+    assert evcosim("build", "mine.py", "--native").code == 0
+    with zipfile.ZipFile("Taken.fmu") as whole, zipfile.ZipFile("bare.fmu", "w") as bare:
+        for entry in whole.namelist():
+            if not entry.startswith("binaries/"):
+                bare.writestr(entry, whole.read(entry))
+    assert evcosim("compile", "bare.fmu").code == 0
+    tables = []
+    for fmu in ("Taken", "bare"):
+        run = ("run", f"{fmu}.fmu", "--set", "u=0.1", "--stop-time", "1", "--no-plot", "--no-report")
+        assert evcosim(*run, "-o", f"out-{fmu}").code == 0
+        tables.append(Path(f"out-{fmu}/results.csv").read_bytes().replace(b"bare", b"Taken"))
+    assert tables[0] == tables[1]
+
+
+def test_a_model_without_a_native_form_is_left_in_python_with_the_reason(evcosim, own):
+    line = own.joinpath("two.py").read_text().partition("sum(")[0].count("\n") + 1
+    made = evcosim("build", "two.py", "--native")
+    first, second, path = made.out.splitlines()
+    assert (made.code, first, path) == (0, str(own / "First.fmu"), str(own / "Second.fmu"))
+    assert second.startswith(f"Second: left in Python, because two.py:{line}: sum(")
+    assert "sources/model.c" in entries("First.fmu")
+    assert "resources/slavemodule.txt" in entries("Second.fmu")
+
+
+def test_what_is_required_and_cannot_be_had_leaves_nothing(evcosim, own):
+    refused(evcosim("build", "two.py", "--native=require", "-o", "made"), "two.py: two.py:", "sum(")
+    assert not (own / "made").exists()
+    assert evcosim("build", "mine.py", "--native=require", "-o", "made").code == 0
+
+
+def test_a_compiler_that_fails_or_is_not_there_leaves_nothing(evcosim, own, monkeypatch):
+    broken = own / "brokencc"
+    broken.write_text("#!/bin/sh\necho 'model.c:7: it is broken' >&2\nexit 4\n")
+    broken.chmod(0o755)
+    monkeypatch.setenv("CC", str(broken))
+    for target in ("mine.py", "Battery"):
+        answer = evcosim("build", target, "--native", "-o", "made")
+        refused(answer, target, "exit code 4")
+        assert "model.c:7: it is broken" in answer.err.splitlines()[1]
+    monkeypatch.setenv("CC", "/nowhere/cc")
+    refused(evcosim("build", "mine.py", "--native", "-o", "made"), "there is no C compiler '/nowhere/cc'")
+    assert not (own / "made").exists()
+
+
+def test_options_of_native_fmus(evcosim, own, monkeypatch):
+    for option, value in (("--platform", "win64"), ("--fmi", "3"), ("--fmi", "2")):
+        refused(evcosim("build", "Battery", option, value), f"{option} is for native FMUs: add --native")
+    refused(evcosim("build", "mine.py", "--native=requir"), "did you mean 'require'")
+    refused(evcosim("build", "mine.py", "--native", "--fmi", "1"), "native FMUs are of FMI 2 or 3")
+    refused(evcosim("build", "mine.py", "--native", "--native=require"), "it is given already")
+    unknown = evcosim("build", "mine.py", "--native", "--platform", "linux32")
+    refused(unknown, "there is no platform 'linux32'; the platforms are linux64, win64")
+    monkeypatch.setattr(toolchain, "_has_zig", lambda: False)
+    other = "darwin64" if toolchain.here().fmi2 != "darwin64" else "win64"
+    answer = evcosim("build", "mine.py", "--native", "--platform", other)
+    refused(answer, f"libraries for {other} are made by zig", 'pip install "evcosim[native]"')
+    assert not list(own.glob("*.fmu"))
+
+
+def test_a_library_for_each_platform(evcosim, own, monkeypatch):
+    """Those of other platforms make no difference here."""
+    monkeypatch.setattr(toolchain, "compiler", lambda target: ["cc"])
+    named = ("--platform", "linux64", "--platform", "aarch64-linux", "--platform", "linux64")
+    assert evcosim("build", "mine.py", "--native", *named).code == 0
+    libraries = [entry for entry in entries("Taken.fmu") if entry.startswith("binaries/")]
+    assert libraries == ["binaries/aarch64-linux/Taken.so", "binaries/linux64/Taken.so"]
+    run = ("run", "Taken.fmu", "--stop-time", "0.1", "--no-plot", "--no-report", "-o", "out")
+    assert evcosim(*run).code == 0
+
+
+def test_half_a_native_fmu_is_refused(evcosim, own):
+    assert evcosim("build", "mine.py", "--native").code == 0
+    content = Path("Taken.fmu").read_bytes()
+    Path("half.fmu").write_bytes(content[: len(content) // 2])
+    refused(evcosim("info", "half.fmu"), "half.fmu")
+    refused(evcosim("run", "half.fmu", "-o", "out"), "half.fmu")
+
+
+def test_a_built_in_model_becomes_native_in_the_cache_and_in_a_folder(evcosim, own, monkeypatch):
+    monkeypatch.setenv("EVCOSIM_CACHE", str(own / "cache"))
+    cached = Path(evcosim("build", "Battery", "--native").out.strip())
+    assert cached.parent == own / "cache" and cached.name.startswith("Battery_native_")
+    assert evcosim("build", "Battery", "--native=require", "-o", "made").out.strip() == "made/Battery.fmu"
+    assert Path("made/Battery.fmu").read_bytes() == cached.read_bytes()
+    three = Path(evcosim("build", "Battery", "--native", "--fmi", "3").out.strip())
+    assert three != cached and "FMI 3.0" in evcosim("info", str(three)).out

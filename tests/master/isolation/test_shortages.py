@@ -101,7 +101,7 @@ def test_files_may_have_no_size(fmu: Fmu) -> None:
 
 def test_a_disk_of_every_size_that_is_too_small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = pair(tmp_path, 0)
-    rider = build_fmu("Rider", tmp_path)  # the built-in one is unpacked already
+    rider = build_fmu("Rider", tmp_path).path  # the built-in one is unpacked already
     path.write_text(path.read_text().replace('fmu = "Rider"', f'fmu = "{rider}"'))
     for pages in (1, 2, 4, 6):
         with small_disk(tmp_path / f"disk{pages}", pages) as folder:
