@@ -6,6 +6,7 @@ its functions are what the FMU of Python calls, and the messages of failures are
 
 from __future__ import annotations
 
+import dataclasses
 import random
 import re
 import struct
@@ -24,23 +25,43 @@ _STEP_SIZES = (0.001, 0.01, 0.0173, 0.1)  # s
 _STARTS = (0.0, 0.0, 5.0, 123.456)  # s
 
 
-def first_difference(model: type[Model], library: Path, token: str, steps: int = STEPS, seed: int = 0) -> str:
+@dataclasses.dataclass
+class Counts:
+    """The calls and values of a comparison that were found to be the same."""
+
+    steps: int = 0
+    values: int = 0
+    refusals: int = 0
+
+
+def first_difference(
+    model: type[Model],
+    library: Path,
+    token: str,
+    steps: int = STEPS,
+    seed: int = 0,
+    counts: Counts | None = None,
+) -> str:
     """Return a sentence on the first value or message in which both differ within so many steps, or "".
 
-    `library` is the FMU's for this machine, `token` its guid. Raises OSError and RuntimeError, as NativeUnit.
+    `library` is the FMU's for this machine, `token` its guid; `counts` are raised by what was compared.
+    Raises OSError and RuntimeError, as NativeUnit.
     """
+    counts = counts or Counts()
     draw = random.Random(f"{model.__name__} {seed}")
     with NativeUnit(library, model, token) as unit:
         for run in range(-(-steps // _RUN)):
             if run and not unit.reset():
                 return f"fmi2Reset fails: {unit.messages[-1]}"
             del unit.messages[:]
-            if said := _compare_run(model, unit, draw, min(_RUN, steps - run * _RUN), run > 0):
+            if said := _compare_run(model, unit, draw, min(_RUN, steps - run * _RUN), run > 0, counts):
                 return said
     return ""
 
 
-def _compare_run(model: type[Model], unit: NativeUnit, draw: random.Random, steps: int, varied: bool) -> str:
+def _compare_run(
+    model: type[Model], unit: NativeUnit, draw: random.Random, steps: int, varied: bool, counts: Counts
+) -> str:
     """Return the first difference of one initialization and some steps."""
     twin = _Twin(model)
     time = draw.choice(_STARTS) if varied else 0.0
@@ -49,6 +70,7 @@ def _compare_run(model: type[Model], unit: NativeUnit, draw: random.Random, step
     went, started = unit.start(time, values), twin.start(time)
     if said := _unlike(f"the initialization at t = {time} s with {values}", went, started, unit, twin):
         return said
+    _count(counts, 0, started, twin)
     if not started:
         return ""
     dt = draw.choice(_STEP_SIZES)
@@ -61,10 +83,17 @@ def _compare_run(model: type[Model], unit: NativeUnit, draw: random.Random, step
         went, stepped = unit.step(time, dt), twin.step(time, dt)
         if said := _unlike(at, went, stepped, unit, twin):
             return said
+        _count(counts, 1, stepped, twin)
         if not stepped:
             return ""
         time += dt
     return ""
+
+
+def _count(counts: Counts, steps: int, went: bool, twin: _Twin) -> None:
+    counts.steps += steps
+    counts.values += len(twin.shown) if went else 0
+    counts.refusals += not went
 
 
 def _unlike(at: str, native: bool, python: bool, unit: NativeUnit, twin: _Twin) -> str:
