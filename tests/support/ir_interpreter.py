@@ -160,7 +160,10 @@ def _compiled(program: ir.Program) -> dict[str, Any]:
     names = set(re.findall(r"\b(py_\w+)\(", "".join(_function(f) for f in program.functions)))
     checked = {re.sub("^py_", "checked_", name): _checked(function_named(name)) for name in names}
     return (
-        scope | checked | {name: function_named(name) for name in names} | {"Failed": Failed, "shown": _shown}
+        scope
+        | checked
+        | {name: function_named(name) for name in names}
+        | {"Failed": Failed, "shown": _shown, "at": _at}
     )
 
 
@@ -176,6 +179,11 @@ def _checked(function: Callable[..., Any]) -> Callable[..., Any]:
         return result
 
     return call
+
+
+def _at(of: Any, index: int) -> Any:
+    assert 0 <= index < len(of), "an index that was not checked"
+    return of[index]
 
 
 def _shown(value: Any, spec: str) -> str:
@@ -259,7 +267,7 @@ def _e(e: ir.Expression) -> str:
             name = {"re": "real", "im": "imag"}.get(e.name)
             return f"{_e(e.of)}.{name}" if e.of.type is COMPLEX else f"{_e(e.of)}[{e.name!r}]"
         case ir.Item():
-            return f"{_e(e.of)}[{_e(e.index)}]"
+            return f"at({_e(e.of)}, {_e(e.index)})"
         case ir.Operation():
             if len(e.operands) == 1:
                 return f"({e.operator} {_e(e.operands[0])})"
