@@ -123,9 +123,12 @@ def _check_target(fault: Fault, message: str | None, messages: Sequence[MessageP
     }
     if target not in known:
         by = "on" if key == "bus" else "by"
-        there = (
-            f"a fault hits what is sent: {', '.join(sorted(known))}" if known else "no bus carries anything"
-        )
+        rule = "a fault hits what is sent"
+        if isinstance(fault, BusOff):
+            rule = (
+                "a node that sends nothing has no errors of its own that take it off the bus; nodes that send"
+            )
+        there = f"{rule}: {', '.join(sorted(known))}" if known else "no bus carries anything"
         raise ConfigError(f"{place}.{key}: nothing is sent {by} '{target}'{nearest(target, known)}; {there}")
 
 
