@@ -127,6 +127,8 @@ def _block(block: ir.Block, undeclared: dict[str, Type], frame: Frame) -> list[s
             first[places[0]].append(name)
     for k, statement in enumerate(block):
         at_once = _target_at_once(statement)
+        if at_once in frame.unread:  # its statement may not be written at all
+            at_once = None
         later = [ir.Local(undeclared[name], name) for name in first[k] if name != at_once]
         lines += [_unset(local, local.name in frame.filled) for local in later]
         declared = f"{type_name(undeclared[at_once])} " if at_once and at_once in first[k] else ""
@@ -168,7 +170,9 @@ def _can_be_within(statement: ir.Statement, name: str) -> bool:
         case ir.For():
             if name in set(named((statement.start, statement.stop))):
                 return False
-            return name == statement.local.name or _is_given_first(statement.body, name)
+            if name == statement.local.name:  # one that its body changes is not what counts
+                return name not in {target.name for target in _targets(statement.body)}
+            return _is_given_first(statement.body, name)
         case ir.While():
             if name in set(named(statement.test)):
                 return False

@@ -268,6 +268,8 @@ def _e(e: ir.Expression) -> str:
             return f"{_e(e.of)}.{name}" if e.of.type is COMPLEX else f"{_e(e.of)}[{e.name!r}]"
         case ir.Item():
             return f"at({_e(e.of)}, {_e(e.index)})"
+        case ir.Length():
+            return f"len({_e(e.of)})"
         case ir.Operation():
             if len(e.operands) == 1:
                 return f"({e.operator} {_e(e.operands[0])})"
