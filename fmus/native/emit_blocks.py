@@ -303,14 +303,14 @@ def _for(s: ir.For, inner: dict[str, Type], frame: Frame) -> list[str]:
     own = s.local.name not in given and s.local.name in inner
     inner = {n: t for n, t in inner.items() if n != s.local.name}
     counter = name if own else f"{name}_turn"
-    lines, stop = [], expression(s.stop, scope)
+    start, stop = expression(s.start, scope), expression(s.stop, scope)
     if not (isinstance(s.stop, ir.Literal) or (isinstance(s.stop, ir.Local) and s.stop.name not in given)):
-        lines, stop = [f"const int64_t {name}_stop = {stop};"], f"{name}_stop"
+        start, stop = f"{start}, {name}_stop = {stop}", f"{name}_stop"
     sign, step = ("<", f"{counter} += {s.step}") if s.step > 0 else (">", f"{counter} -= {-s.step}")
     step = {1: f"{counter}++", -1: f"{counter}--"}.get(s.step, step)
-    head = f"for (int64_t {counter} = {expression(s.start, scope)}; {counter} {sign} {stop}; {step}) {{"
+    head = f"for (int64_t {counter} = {start}; {counter} {sign} {stop}; {step}) {{"
     first = [] if own or s.local.name in frame.unread else [f"{name} = {counter};"]
-    return [*lines, f"{head}{_note(s.note)}", *_indented([*first, *_block(s.body, inner, frame)]), "}"]
+    return [f"{head}{_note(s.note)}", *_indented([*first, *_block(s.body, inner, frame)]), "}"]
 
 
 def _targets(block: ir.Block) -> Iterator[ir.Local]:

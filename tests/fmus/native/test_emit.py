@@ -363,3 +363,18 @@ def test_random_programs_are_computed_as_the_interpreter_does(seed: int, tmp_pat
                 )
                 done += 1
     assert done > failed > 10
+
+
+def test_two_loops_of_one_block_count_with_the_same_name_to_ends_of_their_own(tmp_path: Path) -> None:
+    need_c_compiler()
+    model = small("""y = 0.0
+for k in range(p.n):
+    y += u.u
+for k in range(p.n):
+    y += u.v
+return Small.State(y)""")
+    source = emit.c_source(model, lower(model), "id", "{t}")
+    assert source.count("k_stop = ") == 2
+    (tmp_path / "model.c").write_text(source)
+    command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{RUNTIME}", "model.c"]
+    subprocess.run(command, cwd=tmp_path, check=True)
