@@ -19,7 +19,7 @@ import os
 import stat
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 _RECORD = ".sha256"
@@ -177,6 +177,21 @@ def write(path: Path, content: bytes, mode: int = 0o666) -> Path:
 
 
 _unfinished: set[Path] = set()
+
+
+@contextlib.contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Give a folder that is removed at the end, also where the process ends at once."""
+    import shutil
+    import tempfile
+
+    path = Path(tempfile.mkdtemp(prefix="evcosim-"))
+    _unfinished.add(path)
+    try:
+        yield path
+    finally:
+        shutil.rmtree(path, ignore_errors=True)
+        _unfinished.discard(path)
 
 
 def take_away() -> None:

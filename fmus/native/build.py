@@ -138,14 +138,13 @@ def _compilers(wanted: Wanted) -> Iterator[bytes]:
 
 def _compared(name: str, path: Path, steps: int) -> str:
     """Return the first difference of a file from the model in Python. Raises OSError, RuntimeError."""
-    import tempfile
 
     from .check import first_difference
     from .package import token_of
 
     token = token_of(_digest(catalog_identity(name)))
-    with tempfile.TemporaryDirectory(prefix="evcosim-", ignore_cleanup_errors=True) as folder:
-        library = extracted_library(path, Path(folder))
+    with cache.temporary_folder() as folder:
+        library = extracted_library(path, folder)
         return first_difference(_model(catalog_recipe(name)), library, token, steps)
 
 

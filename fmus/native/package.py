@@ -14,7 +14,6 @@ names, so that no folder of this machine gets into a library.
 from __future__ import annotations
 
 import functools
-import tempfile
 import uuid
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -86,12 +85,12 @@ def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: in
         else describe_3(parts.model, origin, parts.experiment)
     )
     entries["documentation/licenses/evcosim.txt"] = runtime.licenses()["evcosim.txt"]
-    with tempfile.TemporaryDirectory(prefix="evcosim-") as folder:
+    with cache.temporary_folder() as folder:
         for file, content in files.items():
-            (Path(folder) / file).write_bytes(content)
+            (folder / file).write_bytes(content)
         for target in dict.fromkeys(targets):
             place = f"binaries/{target.fmi2 if fmi == 2 else target.fmi3}/{name}{target.suffix}"
-            entries[place] = toolchain.compiled(Path(folder), c_files, target)
+            entries[place] = toolchain.compiled(folder, c_files, target)
     return packed(entries)
 
 
