@@ -10,8 +10,10 @@ results", J. SIAM 6(1), 1958, for (A2).
     exp(A) = [p(-X)^-1 p(X)]^(2^s),   X = A/2^s,  |X| <= 2.69         p: Pade's of degree 13      (A1)
     V M has orthogonal rows, for an orthogonal V                      their lengths: those of M   (A2)
 
-Higham gives the coefficients of p, and the 1-norm 5.37 up to which it is exact to rounding.
-chosen: half of that, where p(-X) is so well conditioned that rounding stays below 1e-14.
+The coefficients of p are Higham's, and so is the 1-norm 5.37 up to which it is exact to rounding.
+
+published: nothing that a paper of the models prints.
+chosen: half of that norm, where p(-X) is so well conditioned that rounding stays below 1e-14.
 
 At the edges: A X = B with a singular A gives X = 0.
 """

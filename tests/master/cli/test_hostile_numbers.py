@@ -35,6 +35,7 @@ BASES = [
     "budget s.toml --engine python --workers 1 -o out",
     "bus s.toml --engine python -o out",
     "info one.dbc",
+    "build Rider --native -o out",
     "reproduce nothing",
 ]
 """Good command lines of all verbs that take a number; `reproduce` refuses its paper, after its options."""
