@@ -81,9 +81,9 @@ def content_of(recipe: Recipe, model: type[Model] | None = None, wanted: Wanted 
 
 def require_compilers(wanted: Wanted) -> None:
     """Raise ToolchainError for a platform that is unknown, or for which there is no compiler here."""
-    from .toolchain import compiler, here, platform_named
+    from .toolchain import compiler, targets
 
-    for target in [platform_named(name) for name in wanted.platforms] or [here()]:
+    for target in targets(wanted.platforms):
         compiler(target)
 
 
@@ -128,9 +128,9 @@ def _compilers(wanted: Wanted) -> Iterator[bytes]:
     """Return what changes with the command of each compiler that is needed, and with its file."""
     import shutil
 
-    from .toolchain import compiler, here, platform_named
+    from .toolchain import compiler, targets
 
-    for target in [platform_named(name) for name in wanted.platforms] or [here()]:
+    for target in targets(wanted.platforms):
         command = compiler(target)
         found = shutil.which(command[0])
         yield repr((wanted.fmi, command, found and cache.state(Path(found).resolve()))).encode()
@@ -138,7 +138,6 @@ def _compilers(wanted: Wanted) -> Iterator[bytes]:
 
 def _compared(name: str, path: Path, steps: int) -> str:
     """Return the first difference of a file from the model in Python. Raises OSError, RuntimeError."""
-
     from .check import first_difference
     from .package import token_of
 

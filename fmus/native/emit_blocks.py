@@ -27,9 +27,9 @@ _FAILURE = "&failure->python"
 class Frame:
     """A function, and what its statements need to know of its program.
 
-    `failing` are the functions of the program that can fail, `derived` the accessor of each derived value of
-    the parameters by its name. `unread` are locals of the function that nothing reads, `filled` those that a
-    call gives their value through their address.
+    `failing` are the functions of the program that can fail, with the accessors of derived values. `unread`
+    are locals of the function that nothing reads, `filled` those that a call gives their value through their
+    address.
     """
 
     function: ir.Function

@@ -230,10 +230,10 @@ def _isinstance(frame: Frame, node: ast.Call, given: Sequence[Value]) -> Value:
     value, classes = given
     assert isinstance(classes, Known)
     if isinstance(value, Known):
-        return Known(isinstance(value.value, classes.value))  # type: ignore[arg-type]
+        return Known(isinstance(value.value, classes.value))  # type: ignore[arg-type] # the value is a class, or a tuple of them
     e = frame.expr(node, value)
     python = _CLASSES.get(e.type) or getattr(e.type, "python", getattr(e.type, "enumeration", tuple))
-    return Known(issubclass(python or tuple, classes.value))  # type: ignore[arg-type]
+    return Known(issubclass(python or tuple, classes.value))  # type: ignore[arg-type] # the same
 
 
 def _any_or_all(is_all: bool) -> Builtin:

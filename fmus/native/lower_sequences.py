@@ -166,7 +166,7 @@ def _looked_up(frame: Frame, node: ast.AST, table: dict[object, object], key: Va
             node, "the values of the dictionary have different types", "write values of one type"
         )
     _refuse_others(frame, node, table, k)
-    order = sorted(range(len(values)), key=lambda i: int(list(table)[i]))  # type: ignore[call-overload]
+    order = sorted(range(len(values)), key=lambda i: int(list(table)[i]))  # type: ignore[call-overload] # a dict by integers
     numbers = [int(key) for key in sorted(table)]  # type: ignore[type-var, call-overload] # they are integers
     made = ir.Make(ArrayType(values[0].type, len(values)), tuple(values[i] for i in order))
     where = node.value if isinstance(node, ast.Subscript) else node
@@ -194,7 +194,7 @@ def _refuse_others(frame: Frame, node: ast.AST, table: dict[object, object], k: 
                 test = ir.Operation(BOOLEAN, "==", (k, ir.Literal(k.type, int(item))))
                 frame.emit(ir.If(test, (ir.Raise("KeyError", (repr(item),), place),)))
         return
-    tests = [ir.Operation(BOOLEAN, "!=", (as_integer(k), literal(int(key)))) for key in table]  # type: ignore[call-overload]
+    tests = [ir.Operation(BOOLEAN, "!=", (as_integer(k), literal(int(key)))) for key in table]  # type: ignore[call-overload] # the same
     missing: ir.Expression = tests[0]
     for test in tests[1:]:
         missing = ir.Operation(BOOLEAN, "and", (missing, test))

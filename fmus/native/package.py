@@ -70,8 +70,7 @@ def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: in
     """Return the bytes of a native FMU. Raises what `build_native` raises."""
     if fmi not in _OF_FMI:
         raise ValueError(f"there are native FMUs of FMI 2 and 3, not of {fmi}")
-    name = parts.model.__name__
-    targets = [toolchain.platform_named(each) for each in platforms] or [toolchain.here()]
+    name, targets = parts.model.__name__, toolchain.targets(platforms)
     files = sources(parts.source, fmi)
     c_files = [file for file in files if file.endswith(".c")]
     origin = Origin(

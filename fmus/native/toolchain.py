@@ -70,6 +70,11 @@ def platform_named(name: str) -> Platform:
     raise ToolchainError(f"there is no platform {name!r}; {_known()}")
 
 
+def targets(names: Sequence[str]) -> list[Platform]:
+    """Return the platforms of these names, this machine's if there are none. Raises ToolchainError."""
+    return [platform_named(name) for name in names] or [here()]
+
+
 def _known() -> str:
     return f"the platforms are {', '.join(PLATFORMS)}"
 

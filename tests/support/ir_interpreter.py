@@ -320,4 +320,4 @@ def _plain(value: Any) -> Any:
 def _fields(record: object) -> dict[str, Any]:
     if isinstance(record, dict):
         return record
-    return {name: _plain(getattr(record, name)) for name in type(record).__dataclass_fields__}  # type: ignore[attr-defined]
+    return {name: _plain(getattr(record, name)) for name in type(record).__dataclass_fields__}  # type: ignore[attr-defined] # a record
