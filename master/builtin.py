@@ -17,6 +17,7 @@ from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.file_names import check_name, near_file
 from ..cosim.reading import is_file
 from ..cosim.writing import reason
+from ..fmus.native.wanted import Wanted as Wanted  # for the verb that builds
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -129,31 +130,19 @@ class Built(NamedTuple):
     left: str = ""
 
 
-class Native(NamedTuple):
-    """A native FMU as it is asked for: where there can be none, Python's takes its place, unless `require`.
-
-    `platforms` are named as in FMI 2.0 (default: this machine's alone); `fmi` is 2 or 3.
-    """
-
-    require: bool = False
-    platforms: tuple[str, ...] = ()
-    fmi: int = 2
-
-
-def build_fmu(name: str, folder: Path | None = None, native: Native | None = None) -> Built:
+def build_fmu(name: str, folder: Path | None = None, native: Wanted | None = None) -> Built:
     """Build a built-in FMU into a folder (default: the cache, anew) and return its file.
 
     Raises ConfigError if the folder cannot be written, and for a native FMU that cannot be had.
     """
     from ..fmus import build
-    from ..fmus.native.wanted import Wanted
 
     if folder is not None:
         check_name(folder, f"{name}.fmu cannot be written: ")
     left = ""
     try:
         if native is not None:
-            path, left = build.build_native(name, folder, Wanted(*native))
+            path, left = build.build_native(name, folder, native)
         else:
             path = build.built(name, anew=True) if folder is None else build.build(name, folder)
     except ValueError as error:
@@ -167,19 +156,18 @@ def build_fmu(name: str, folder: Path | None = None, native: Native | None = Non
     return Built(name, path, left)
 
 
-def build_models(path: Path, folder: Path | None = None, native: Native | None = None) -> list[Built]:
+def build_models(path: Path, folder: Path | None = None, native: Wanted | None = None) -> list[Built]:
     """Build an FMU of each model in a Python file, beside it or into a folder, and return their files.
 
     The file is run. Raises ConfigError for what is no such file or cannot be built, and where nothing can be
     written.
     """
     from ..fmus import from_file
-    from ..fmus.native.wanted import Wanted
 
     if not is_file(path):
         raise ConfigError(f"{path}: there is no such file{near_file(path)}")
     try:
-        made = from_file.build_wanted(path, folder, Wanted(*native) if native else None)
+        made = from_file.build_wanted(path, folder, native)
     except ValueError as error:
         raise ConfigError(*f"{path}: {error}".splitlines()) from error
     except OSError as error:

@@ -12,7 +12,7 @@ from . import completion
 from .once import OnceCommand
 
 if TYPE_CHECKING:
-    from ..builtin import Native
+    from ..builtin import Wanted
 
 
 def build(
@@ -103,10 +103,10 @@ class BuildCommand(OnceCommand):
 _WITH = {"--native": "--native=auto"}
 
 
-def _native(native: str | None, platforms: list[str], fmi: int | None) -> Native | None:
+def _native(native: str | None, platforms: list[str], fmi: int | None) -> Wanted | None:
     """Return the native FMUs that are asked for; None for FMUs of Python. Raises ConfigError."""
     from ...cosim.errors import ConfigError, nearest
-    from ..builtin import Native
+    from ..builtin import Wanted
 
     if native is None:
         for option, given in (("--platform", bool(platforms)), ("--fmi", fmi is not None)):
@@ -119,4 +119,4 @@ def _native(native: str | None, platforms: list[str], fmi: int | None) -> Native
         )
     if fmi not in (None, 2, 3):
         raise ConfigError(f"--fmi {fmi}: native FMUs are of FMI 2 or 3")
-    return Native(native == "require", tuple(dict.fromkeys(platforms)), fmi or 2)
+    return Wanted(native == "require", tuple(dict.fromkeys(platforms)), fmi or 2)
