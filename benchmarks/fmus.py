@@ -31,14 +31,18 @@ def c_program(source: str, out: Path) -> Path:
 
 
 def _compiled(source: str, out: Path, *flags: str) -> Path:
+    compile_c([*flags, str(SOURCES / source), "-o", str(out)])
+    return out
+
+
+def compile_c(arguments: list[str]) -> None:
+    """Call the C compiler. Raises CannotBuild."""
     compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         raise CannotBuild("there is no C compiler: install one or set CC")
-    command = [compiler, *flags, str(SOURCES / source), "-o", str(out)]
-    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    made = subprocess.run([compiler, *arguments], capture_output=True, text=True, check=False)
     if made.returncode:
-        raise CannotBuild(f"{' '.join(command)}: {made.stderr.strip()[-500:]}")
-    return out
+        raise CannotBuild(f"{' '.join([compiler, *arguments])}: {made.stderr.strip()[-500:]}")
 
 
 def c_fmu(folder: Path, signals: int) -> Path:

@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -88,6 +88,7 @@ class Call(ctypes.Structure):
         ("references", ctypes.POINTER(ctypes.c_uint)),
         ("count", ctypes.c_size_t),
         ("values", ctypes.c_void_p),
+        ("stride", ctypes.c_size_t),
     ]
 
 
@@ -160,11 +161,11 @@ def measured(name: str, rounds: int, steps: int) -> Times:
             with zipfile.ZipFile(built(name)) as archive:
                 archive.extractall(folder)
         _empty(floor / "resources", name)
-        loop = _Loop(Path(scratch))
+        loop = Loop(Path(scratch))
         work = [
             ("model", _model_loop(model, inputs)),
-            ("floor", loop.of(_started(floor), inputs, outputs)),
-            ("fmu", loop.of(_started(unit), inputs, outputs)),
+            ("floor", loop.of(started(floor), inputs, outputs)),
+            ("fmu", loop.of(started(unit), inputs, outputs)),
         ]
         times = Times(len(inputs) + len(outputs))
         for _ in range(rounds):
@@ -180,17 +181,18 @@ def measured_files(name: str, files: Mapping[str, Path], rounds: int, steps: int
     outputs = [e for e in variables if e.causality == "output"]
     found = dict.fromkeys(files, float("inf"))
     with tempfile.TemporaryDirectory() as scratch:
-        loop, runs = _Loop(Path(scratch)), {}
+        loop, runs = Loop(Path(scratch)), {}
         for kind, file in files.items():
             with zipfile.ZipFile(file) as archive:
                 archive.extractall(Path(scratch) / kind)
-            runs[kind] = loop.of(_started(Path(scratch) / kind), inputs, outputs)
+            runs[kind] = loop.of(started(Path(scratch) / kind), inputs, outputs)
         for _ in range(rounds):
             for kind, run in runs.items():
                 found[kind] = min(found[kind], run(steps) / steps)
     return found
 
 
+Value = float | int | bool
 Run = Callable[[int], float]
 """Does so many steps and returns the seconds that they took."""
 
@@ -229,8 +231,8 @@ def _empty(resources: Path, name: str) -> None:
     own.write_text(f"{identity}_floor\n")
 
 
-def _started(folder: Path) -> FMU2Slave:
-    """An instance of an unpacked FMU in step mode."""
+def started(folder: Path, values: Mapping[Exposed, Value] = {}) -> FMU2Slave:
+    """An instance of an unpacked FMU in step mode, with these parameters and start values."""
     description = fmpy.read_model_description(folder)
     unit = FMU2Slave(
         guid=description.guid,
@@ -240,31 +242,44 @@ def _started(folder: Path) -> FMU2Slave:
     )
     unit.instantiate()
     unit.setupExperiment()
+    for e, value in values.items():
+        getattr(unit, f"set{_kind(e)}")([e.reference], [value])
     unit.enterInitializationMode()
     unit.exitInitializationMode()
     return unit
 
 
-class _Loop:
+class Loop:
     """The loop of sources/slave.c."""
 
     def __init__(self, folder: Path) -> None:
         # a PyDLL keeps Python's lock
         self._drive = ctypes.PyDLL(str(c_library("slave.c", folder / "slave.so"))).drive
 
-    def of(self, unit: FMU2Slave, inputs: list[Exposed], outputs: list[Exposed]) -> Run:
-        """Run a unit, each time from the state in which it is now."""
-        sets, gets = _calls(unit, "Set", inputs), _calls(unit, "Get", outputs)
+    def of(
+        self,
+        unit: FMU2Slave,
+        inputs: list[Exposed],
+        outputs: list[Exposed],
+        step_size: float = STEP_SIZE,
+        columns: Mapping[str, Sequence[Value]] | None = None,
+    ) -> Run:
+        """Run a unit, each time from the state in which it is now.
+
+        `columns` are the values of all inputs by name, one for each step; else each has one value.
+        """
+        given = columns or {e.variable.name: [_value(e)] for e in inputs}
+        sets, gets = _calls(unit, "Set", inputs, given), _calls(unit, "Get", outputs, {})
         state, component = unit.getFMUstate(), ctypes.c_void_p(unit.component)
         step = ctypes.cast(unit.dll.fmi2DoStep, ctypes.c_void_p)
 
         def run(steps: int) -> float:
             unit.setFMUstate(state)
-            unit.doStep(0.0, STEP_SIZE)  # what is computed once for all steps
+            unit.doStep(0.0, step_size)  # what is computed once for all steps
             begin = time.perf_counter()
             status = self._drive(
                 component, sets, ctypes.c_size_t(len(sets)), step, gets, ctypes.c_size_t(len(gets)),
-                ctypes.c_size_t(steps), ctypes.c_double(STEP_SIZE),
+                ctypes.c_size_t(steps), ctypes.c_double(step_size),
             )  # fmt: skip # as the parameters of `drive` stand
             seconds = time.perf_counter() - begin
             if status:
@@ -274,18 +289,26 @@ class _Loop:
         return run
 
 
-def _calls(unit: FMU2Slave, direction: str, variables: list[Exposed]) -> Any:
+def _calls(
+    unit: FMU2Slave, direction: str, variables: list[Exposed], columns: Mapping[str, Sequence[Value]]
+) -> Any:
     """The calls that set or get these variables, one for each FMI type, as an array of `Call`."""
     calls = []
     for kind, c_type in _COUNTED.items():
-        of_kind = [e for e in variables if e.variable.type.replace("Enumeration", "Integer") == kind]
+        of_kind = [e for e in variables if _kind(e) == kind]
         if of_kind:
             n = len(of_kind)
+            rows = list(zip(*(columns[e.variable.name] for e in of_kind), strict=True)) if columns else []
             references = (ctypes.c_uint * n)(*(e.reference for e in of_kind))
-            values = (c_type * n)(*(map(_value, of_kind) if direction == "Set" else ()))
+            values = (c_type * (n * max(1, len(rows))))(*(c_type(x).value for row in rows for x in row))
             function = ctypes.cast(getattr(unit.dll, f"fmi2{direction}{kind}"), ctypes.c_void_p)
-            calls.append(Call(function, references, n, ctypes.cast(values, ctypes.c_void_p)))
+            stride = n * ctypes.sizeof(c_type) if len(rows) > 1 else 0
+            calls.append(Call(function, references, n, ctypes.cast(values, ctypes.c_void_p), stride))
     return (Call * len(calls))(*calls)
+
+
+def _kind(e: Exposed) -> str:
+    return e.variable.type.replace("Enumeration", "Integer")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import bus, coldstart, memory, scaling, slaves, worker
+from benchmarks import bus, coldstart, memory, native, scaling, slaves, worker
 from benchmarks.asking import Figure, ask, measured
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -42,6 +42,21 @@ def test_an_fmu_costs_little_beside_its_model_and_the_calls(monkeypatch: pytest.
     assert 0.0 < found.model < found.fmu
     assert found.ratio < 1.5
     assert f"| Scooter | 11 | {1e6 * found.model:.2f} |" in slaves.report({"Scooter": found})
+
+
+def test_a_native_step_replays_what_a_unit_receives(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its inputs change from step to step; its mathematics are a part of its time, and Python is slower."""
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    ride = native.RIDES["Scooter"]._replace(scenario="fig8", steps=300)
+    given = native.received("Scooter", ride)
+    assert given.steps == 300
+    assert len(set(given.inputs["throttle"])) > 10
+    assert set(native.at_rest(given, "Scooter").inputs["throttle"]) == {0.0}
+    costs = native.measured("Scooter", ride, rounds=3)
+    assert 0.0 < costs.library < costs.motion < costs.python
+    assert costs.calls >= 4.0
+    assert f"| Scooter | {1e6 * costs.rest:.3g} |" in native.report({"Scooter": costs})
 
 
 LAZY = {
@@ -154,7 +169,7 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
         put(page, "y", "")
 
 
-@pytest.mark.parametrize("module", [ring, scaling, slaves, coldstart, memory, bus])
+@pytest.mark.parametrize("module", [ring, scaling, slaves, native, coldstart, memory, bus])
 def test_help_says_what_is_measured(
     module: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
