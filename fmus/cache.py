@@ -12,6 +12,7 @@ FMU, which stays a plain file, the first line of any other entry. What fails is 
 from __future__ import annotations
 
 import contextlib
+import contextvars
 import errno
 import functools
 import hashlib
@@ -62,6 +63,31 @@ def _home() -> Path:
         return Path(tempfile.gettempdir()) / f"evcosim-{os.geteuid() if hasattr(os, 'geteuid') else 'home'}"
 
 
+@contextlib.contextmanager
+def looking_once() -> Iterator[None]:
+    """Within the `with` block what was looked at and found in order is not looked at again.
+
+    A run looks for the FMU of each of its units, and each look asks whether a source was written since.
+    """
+    token = _seen.set({} if (seen := _seen.get()) is None else seen)
+    try:
+        yield
+    finally:
+        _seen.reset(token)
+
+
+_seen: contextvars.ContextVar[dict[object, str] | None] = contextvars.ContextVar("looked at", default=None)
+
+
+def once(about: object, look: Callable[[], str]) -> str:
+    """Return what a look finds; within `looking_once` it is asked once, unless it found "" before."""
+    if (seen := _seen.get()) is None:
+        return look()
+    if not seen.get(about):
+        seen[about] = look()
+    return seen[about]
+
+
 def fetch(name: str, make: Callable[[], bytes], anew: bool = False) -> Path:
     """Return the cached file `name`, written first with the bytes of `make` if it is missing or damaged.
 
@@ -70,7 +96,7 @@ def fetch(name: str, make: Callable[[], bytes], anew: bool = False) -> Path:
     """
     path, content = folder() / name, None
     try:
-        if not anew and holds(path):
+        if not anew and once(path, lambda: "held" if holds(path) else ""):
             return path
         if path.parent not in _replaced:
             _make_folder()
@@ -89,6 +115,15 @@ def _keep_file(path: Path, content: bytes) -> Path:
     write(path, content, _MODE)
     write(path.with_name(path.name + _RECORD), f"{_digest(content)}  {path.name}\n".encode(), _MODE)
     return path
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of a file that `fetch` found; the record beside it says it. Raises OSError."""
+    with contextlib.suppress(OSError):
+        said = path.with_name(path.name + _RECORD).read_bytes().split()
+        if path.parent == folder() and said[1:] == [path.name.encode()]:
+            return said[0].decode()
+    return _digest(path.read_bytes())
 
 
 def load(name: str) -> bytes | None:
@@ -117,13 +152,13 @@ _JUST_NOW = 100_000_000
 """Nanoseconds after a file was written, in which it may be written again and have the same times."""
 
 
-def settled(path: Path) -> tuple[int, ...] | None:
+def settled(path: Path | str) -> tuple[int, ...] | None:
     """Return the state of a file; None if it was written just now. Raises OSError where there is none."""
     found = state(path)
     return None if time.time_ns() - max(found[-2:]) < _JUST_NOW else found
 
 
-def state(path: Path) -> tuple[int, ...]:
+def state(path: Path | str) -> tuple[int, ...]:
     """Return what stays the same as long as a file is neither written nor replaced. Raises OSError."""
     about = os.lstat(path)
     times = about.st_mtime_ns, about.st_ctime_ns

@@ -47,7 +47,9 @@ def catalog_identity(name: str) -> str:
     """
     if name not in CATALOG:
         return catalog_recipe(name).identity
-    about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), _models(models_folder())))
+    folder = models_folder()
+    models = cache.once(folder, lambda: _models(folder))
+    about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), models))
     if about not in _identities:
         entry = f"identity-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
         kept = (cache.load(entry) or b"").decode("ascii", "replace")
@@ -76,11 +78,11 @@ _digests: dict[Path, tuple[object, str]] = {}
 def _models(folder: Path) -> str:
     """Return a digest of the models of this package, read again where one was written since."""
     names = (os.path.join(where, name) for where, _, found in os.walk(folder) for name in found)
-    files = [Path(name) for name in sorted(names) if name.endswith(".py")]
+    files = sorted(name for name in names if name.endswith(".py"))
     state = [(file, cache.settled(file)) for file in files]
     before, digest = _digests.get(folder, (None, ""))
     if before != state or not all(about for _, about in state):
-        digest = digest_of([part for file in files for part in (str(file).encode(), file.read_bytes())])
+        digest = digest_of([part for file in files for part in (os.fsencode(file), Path(file).read_bytes())])
         _digests[folder] = state, digest
     return digest
 

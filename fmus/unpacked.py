@@ -1,4 +1,4 @@
-"""Built-in FMUs, unpacked once into the user's cache, with the bytecode of their Python files.
+"""Built-in FMUs, of Python and native, unpacked once into the user's cache, with the bytecode of their files.
 
 To unpack an FMU, to remove it and to compile what is in it takes longer than all else at the start of a
 short run. The models that this package builds write nothing beside themselves, so that runs, at the same
@@ -14,7 +14,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import py_compile
+import stat
 import sys
 import time
 from pathlib import Path
@@ -76,13 +76,14 @@ def _is_whole(folder: Path) -> bool:
 
 def _states(folder: Path) -> bytes:
     """Return the state of each file and folder from `folder` on, a line each. Raises OSError."""
-    lines, waiting = [], [("", folder)]
+    lines, waiting = [], [""]
     while waiting:
-        name, path = waiting.pop()
-        lines.append(f"{name}: {cache.state(path)}")
-        if path.is_dir() and not path.is_symlink():
-            waiting += [(f"{name}/{each}", path / each) for each in sorted(os.listdir(path))]
-    return "\n".join(lines).encode()
+        name = waiting.pop()
+        state = cache.state(path := f"{folder}{name}")
+        lines.append(f"{name}: {state}")
+        if stat.S_ISDIR(state[2]):
+            waiting += [f"{name}/{each}" for each in sorted(os.listdir(path))]
+    return "\n".join(lines).encode("utf-8", "surrogateescape")
 
 
 def _make(folder: Path, archive: Path, binary: str) -> None:
@@ -110,7 +111,8 @@ def _rename(draft: Path, folder: Path) -> None:
 
 def _extract(archive: Path, binary: str, folder: Path) -> None:
     """Write what a run needs, with bytecode that Python takes without a look at the source."""
-    import zipfile  # a run that finds its folders unpacks nothing
+    import py_compile  # a run that finds its folders unpacks nothing
+    import zipfile
 
     with zipfile.ZipFile(archive) as packed:
         for entry in packed.namelist():

@@ -95,7 +95,16 @@ def is_ours(name: str, path: Path, digest: str) -> bool:
     """
     from ..fmus import records
 
-    return is_builtin(name, path) or records.is_own(digest)
+    return records.is_own(digest) or is_builtin(name, path)
+
+
+@contextlib.contextmanager
+def looking_once() -> Iterator[None]:
+    """Within the `with` block built-in FMUs are looked for once, however many units have them."""
+    from ..fmus import cache
+
+    with cache.looking_once():
+        yield
 
 
 def outdated(path: Path, digest: str) -> str:

@@ -40,6 +40,7 @@ from .engine.plausibility import Extremes, implausible
 from .engine.profile import Profile
 from .engine.selection import engine_class
 from .fmi.doubts import defects_of
+from .fmi.fmu import reading_once
 from .fmi.loading import load_unit
 from .isolation.decision import chosen, process_limits
 from .isolation.unit import IsolatedUnit
@@ -64,6 +65,7 @@ class Simulation:
     Raises ConfigError before any step for every input that does not fit.
     """
 
+    @reading_once()
     def __init__(
         self,
         system: str | Path | System,

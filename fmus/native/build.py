@@ -8,7 +8,6 @@ without the model, the translator and a compiler.
 from __future__ import annotations
 
 import functools
-import hashlib
 import sys
 from collections.abc import Iterator
 from importlib import import_module
@@ -56,7 +55,7 @@ def difference(name: str, steps: int = 1000) -> str:
     of Python and the mathematical library. Raises what `native_built` raises.
     """
     path = native_built(name)
-    about = (hashlib.sha256(path.read_bytes()).hexdigest(), sys.version, steps, *mathematical_library())
+    about = (cache.digest_of(path), sys.version, steps, *mathematical_library())
     entry = f"native-bits-{name}-{_short(repr(about).encode())}"
     kept = cache.load(entry)
     if kept is None:

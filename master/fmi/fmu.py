@@ -10,6 +10,7 @@ import hashlib
 import math
 import os
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from typing import Any
 from ...cosim.errors import counted, nearest
 from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
-from ..builtin import state_of
+from ..builtin import looking_once, state_of
 from .archive import FmuError, archive_limits, entries_of, extract, read_entry
 from .description import read_description
 from .types import BOOLEAN, ENUMERATION, INTEGER, REAL, STRING, FmiType, fmi_type
@@ -141,10 +142,11 @@ _once: contextvars.ContextVar[dict[str, Fmu] | None] = contextvars.ContextVar("r
 
 @contextlib.contextmanager
 def reading_once() -> Iterator[None]:
-    """Within the `with` block, `read_fmu` reads each file once, however many units have it."""
-    token = _once.set({})
+    """Within the `with` block each FMU is looked for and read once, however many units have it."""
+    token = _once.set({} if (known := _once.get()) is None else known)
     try:
-        yield
+        with looking_once():
+            yield
     finally:
         _once.reset(token)
 
@@ -169,6 +171,7 @@ def read_fmu(path: Path, strict: bool = False) -> Fmu:
 _kept: dict[str, tuple[object, Fmu]] = {}
 """FMUs that this process has read, with the states of their files and the limits then; the last one last."""
 _MOST_KEPT = 32
+_keeping = threading.Lock()
 
 
 def _unless_written(path: Path, place: str) -> Fmu:
@@ -181,9 +184,10 @@ def _unless_written(path: Path, place: str) -> Fmu:
     if fmu is None or settled_in is None or before != state:
         fmu = _read(path)
     if settled_in is not None:
-        _kept[place] = state, fmu
-        if len(_kept) > _MOST_KEPT:
-            del _kept[next(iter(_kept))]
+        with _keeping:
+            _kept[place] = state, fmu
+            if len(_kept) > _MOST_KEPT:
+                del _kept[next(iter(_kept))]
     return fmu
 
 

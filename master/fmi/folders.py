@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ...cosim.errors import ShortageError
 from ...cosim.leftovers import remove_folder
+from ..builtin import cache_folder, unpacked
 from .fmu import Fmu, FmuError, is_true
 
 
@@ -47,11 +48,8 @@ def take(fmu: Fmu, unit: str) -> Path:
 
 
 def _folder(fmu: Fmu, unit: str) -> _Folder:
-    if fmu.holds_python:
-        from ..builtin import unpacked  # which units in C do without
-
-        if (kept := unpacked(fmu.path, fmu.binary)) is not None:
-            return _Folder(kept, kept=True)
+    if fmu.path.parent == cache_folder() and (kept := unpacked(fmu.path, fmu.binary)) is not None:
+        return _Folder(kept, kept=True)
     try:
         return _Folder(fmu.extract(), kept=False)
     except ShortageError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shutil
 import subprocess
@@ -264,3 +265,40 @@ def test_a_folder_that_others_may_write_is_not_trusted_again(own_cache, monkeypa
     own_cache.chmod(0o777)
     assert cache.fetch("thing", Maker()) != path
     assert "others can write it" in capsys.readouterr().err
+
+
+def test_within_a_block_a_look_is_taken_once_unless_it_found_nothing(own_cache):
+    looks, answers = [], ["", "held", "other"]
+
+    def look():
+        looks.append(1)
+        return answers[len(looks) - 1]
+
+    with cache.looking_once():
+        assert cache.once("a", look) == ""
+        with cache.looking_once():  # the same block
+            assert cache.once("a", look) == "held"
+        assert cache.once("a", look) == "held"
+        assert cache.once("b", look) == "other"
+    assert len(looks) == 3
+    assert cache.once("b", lambda: "outside") == "outside"
+
+
+def test_after_a_block_a_damaged_file_is_seen(own_cache, capsys):
+    with cache.looking_once():
+        path = cache.fetch("a.fmu", lambda: b"content")
+        assert cache.fetch("a.fmu", lambda: b"content") == path
+    path.write_bytes(b"damaged")
+    with cache.looking_once():
+        assert cache.fetch("a.fmu", lambda: b"content").read_bytes() == b"content"
+    assert "is damaged" in capsys.readouterr().err
+
+
+def test_the_digest_of_a_file_is_that_of_its_record(own_cache, tmp_path, monkeypatch):
+    digest = hashlib.sha256(b"content").hexdigest()
+    path = cache.fetch("a.fmu", lambda: b"content")
+    assert cache.digest_of(path) == digest
+    (other := tmp_path / "a.fmu").write_bytes(b"content")  # without a record
+    assert cache.digest_of(other) == digest
+    path.with_name("a.fmu.sha256").write_text(f"{'0' * 64}  b.fmu\n")  # of another file
+    assert cache.digest_of(path) == digest

@@ -16,7 +16,9 @@ import pytest
 from evcosim.fmus import cache
 from evcosim.fmus import unpacked as unpacking
 from evcosim.fmus.build import build, built
+from evcosim.fmus.native.build import native_built
 from evcosim.fmus.unpacked import unpacked
+from support.needs import need_c_compiler
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="files have owners and modes in POSIX systems")
 
@@ -69,6 +71,18 @@ def test_python_takes_the_bytecode_and_not_the_source(battery: Path) -> None:
     assert any("matches" in line for line in own)
     assert not any("code object from" in line and ".pyc" not in line for line in own)
     assert made(battery) == folder  # nothing was written on the way
+
+
+def test_a_native_one_has_its_library_and_no_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    need_c_compiler()
+    monkeypatch.setenv("EVCOSIM_CACHE", str(tmp_path / "cache"))
+    native = native_built("Battery")
+    folder = made(native)
+    files = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert files == {BINARY, "modelDescription.xml"}
+    library = (folder / BINARY).read_bytes()
+    written(folder / BINARY)
+    assert made(native) == folder and (folder / BINARY).read_bytes() == library
 
 
 def written(file: Path) -> None:

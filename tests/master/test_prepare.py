@@ -11,8 +11,11 @@ from evcosim.cosim.can.bus_settings import BusVariation
 from evcosim.cosim.errors import ConfigError
 from evcosim.cosim.system.scenario import load_scenario
 from evcosim.cosim.system.system import load_system
+from evcosim.fmus import recipes
 from evcosim.master.builtin import fmu_file
 from evcosim.master.prepare import prepare
+from evcosim.master.simulation import Simulation
+from support.needs import need_c_compiler
 
 
 def test_what_is_known_before_the_first_step():
@@ -170,3 +173,15 @@ def test_a_time_may_be_a_fraction() -> None:
     assert plans[0].clock == plans[1].clock
     with pytest.raises(ConfigError, match=r"^step_size = 0.5 s, where the files have 0.01 s"):
         prepare("scooter", stop_time=1.25, step_size=F(1, 2))
+
+
+@pytest.mark.parametrize("units", ["python", "native", "auto"])
+def test_a_run_asks_once_whether_the_models_of_its_units_were_changed(units, monkeypatch):
+    if units != "python":
+        need_c_compiler()
+    asked, look = [], recipes._models
+    monkeypatch.setattr(recipes, "_models", lambda folder: asked.append(folder) or look(folder))
+    with Simulation("multi_drive", units=units, stop_time=0.1):  # 7 units of 5 FMUs
+        assert len(asked) == 1
+    prepare("multi_drive", units=units)
+    assert len(asked) == 2

@@ -12,6 +12,7 @@ from evcosim.master.builtin import cache_folder, fmu_file
 from evcosim.master.fmi import folders
 from evcosim.master.fmi.fmu import Fmu, FmuError, read_fmu
 from support.c_fmu import mixed_fmu
+from support.needs import need_c_compiler
 
 
 @pytest.fixture
@@ -53,8 +54,11 @@ def test_an_fmu_that_is_there_once_in_a_process_has_one_unit(fmu: Fmu) -> None:
     folders.give_back(once, "b")
 
 
-def test_a_built_in_fmu_has_a_folder_that_stays(tmp_path: Path) -> None:
-    fmu = read_fmu(fmu_file("Battery"))
+@pytest.mark.parametrize("units", ["python", "native"])
+def test_a_built_in_fmu_has_a_folder_that_stays(tmp_path: Path, units: str) -> None:
+    if units == "native":
+        need_c_compiler()
+    fmu = read_fmu(fmu_file("Battery", units=units))
     first = folders.take(fmu, "a")
     folders.give_back(fmu, "a")
     assert first.is_dir() and first.is_relative_to(cache_folder())
