@@ -1,7 +1,9 @@
 """Comparison of a native FMU with the model in Python that it was made of: every value, to the last bit.
 
-Both run with random parameters, inputs, start times and step sizes. The model in Python is called directly:
-its functions are what the FMU of Python calls, and the messages of failures are made by the same module.
+Both run with random parameters, inputs, start times and step sizes, and go back to states that were saved.
+The model in Python is called directly: its functions are what the FMU of Python calls, and the messages of
+failures are made by the same module. Where the step is long and the parameters are any, a model may take
+millions of inner steps: such runs are few and short.
 """
 
 from __future__ import annotations
@@ -11,16 +13,21 @@ import random
 import re
 import struct
 from collections.abc import Iterator
+from math import ceil
 from pathlib import Path
 from typing import Any
 
-from ...models.base import Model, Variable, violations
+from ...models.base import Model, Variable
 from ..interface import exposed
-from ..messages import Refused, message, told
 from .library import NativeUnit
+from .twin import Twin
 
 STEPS = 1000
-_RUN = 50  # steps with one set of parameters
+_RUN = 50  # steps with one set of parameters, at most
+_SPAN, _LEAST = 0.5, 3  # s that they last; steps at least
+_SHORT, _WILD = 0.002, 0.1  # s; the part of the runs with longer steps that may have any parameters
+_REFUSED = 3  # steps that may be refused in one of them
+_SAVES = 0.06  # of the steps are after a state was saved or restored
 _STEP_SIZES = (0.001, 0.01, 0.0173, 0.1)  # s
 _STARTS = (0.0, 0.0, 5.0, 123.456)  # s
 
@@ -32,6 +39,7 @@ class Counts:
     steps: int = 0
     values: int = 0
     refusals: int = 0
+    restored: int = 0
 
 
 def first_difference(
@@ -48,65 +56,90 @@ def first_difference(
     Raises OSError and RuntimeError, as NativeUnit.
     """
     counts = counts or Counts()
+    end = counts.steps + steps
     draw = random.Random(f"{model.__name__} {seed}")
     with NativeUnit(library, model, token) as unit:
-        for run in range(-(-steps // _RUN)):
+        for run in range(steps):  # as many as there are steps where none can be taken
+            if counts.steps >= end:
+                break
             if run and not unit.reset():
                 return f"fmi2Reset fails: {unit.messages[-1]}"
             del unit.messages[:]
-            if said := _compare_run(model, unit, draw, min(_RUN, steps - run * _RUN), run > 0, counts):
+            if said := _Run(model, unit, draw, counts).difference(end - counts.steps, varied=run > 0):
                 return said
     return ""
 
 
-def _compare_run(
-    model: type[Model], unit: NativeUnit, draw: random.Random, steps: int, varied: bool, counts: Counts
-) -> str:
-    """Return the first difference of one initialization and some steps."""
-    twin = _Twin(model)
-    time = draw.choice(_STARTS) if varied else 0.0
-    values = dict(_drawn(model, draw, ("parameter", "input"))) if varied else {}
-    twin.set(values)
-    went, started = unit.start(time, values), twin.start(time)
-    if said := _unlike(f"the initialization at t = {time} s with {values}", went, started, unit, twin):
-        return said
-    _count(counts, 0, started, twin)
-    if not started:
-        return ""
-    dt = draw.choice(_STEP_SIZES)
-    for k in range(steps):
-        if k:  # the first step has the inputs of the initialization
-            held = dict(_drawn(model, draw, ("input",))) if varied or k % 10 == 0 else {}
-            twin.set(held)
-            unit.set(held)
-        at = f"the step from t = {time} s of {dt} s"
-        went, stepped = unit.step(time, dt), twin.step(time, dt)
-        if said := _unlike(at, went, stepped, unit, twin):
+class _Run:
+    """One initialization and some steps of both."""
+
+    def __init__(self, model: type[Model], unit: NativeUnit, draw: random.Random, counts: Counts) -> None:
+        self.model, self.unit, self.draw, self.counts = model, unit, draw, counts
+        self.twin = Twin(model)
+        self.kept: tuple[float, tuple[Any, ...]] | None = None  # a time [s] and the twin's state there
+
+    def difference(self, most: int, varied: bool) -> str:
+        """Return the first difference, in at most so many steps; not `varied` is near the start values."""
+        draw = self.draw
+        dt = draw.choice((*_STEP_SIZES, 10.0 ** draw.uniform(-4.0, -1.0)))
+        time = draw.choice((*_STARTS, draw.uniform(0.0, 1000.0))) if varied else 0.0
+        wild, span = draw.random() < _WILD, _SPAN
+        if dt < _SHORT:
+            wild = True
+        elif wild:
+            span = 0.0
+        values = dict(_drawn(self.model, draw, ("parameter", "input"), wild)) if varied else {}
+        self.twin.set(values)
+        went, started = self.unit.start(time, values), self.twin.start(time)
+        said = self._unlike(f"the initialization at t = {time} s with {values}", went, started)
+        if said or not started:
             return said
-        _count(counts, 1, stepped, twin)
-        if not stepped:
-            return ""
-        time += dt
-    return ""
-
-
-def _count(counts: Counts, steps: int, went: bool, twin: _Twin) -> None:
-    counts.steps += steps
-    counts.values += len(twin.shown) if went else 0
-    counts.refusals += not went
-
-
-def _unlike(at: str, native: bool, python: bool, unit: NativeUnit, twin: _Twin) -> str:
-    """Return how the two are unlike after a call, in its outcome, messages or outputs, or ""."""
-    if native != python or _in_short(unit.messages) != _in_short(twin.messages):
-        words = {True: "done", False: "refused"}
-        return f"{at}: native {words[native]} {unit.messages}, in Python {words[python]} {twin.messages}"
-    if not native:
+        stepped, refused = True, 0
+        for k in range(min(most, _RUN, max(_LEAST, ceil(span / dt)))):
+            if k and stepped and draw.random() < _SAVES:
+                time, said = self._save_or_restore(time)
+                if said:
+                    return said
+            if k:  # the first step has the inputs of the initialization
+                held = dict(_drawn(self.model, draw, ("input",))) if varied or k % 10 == 0 else {}
+                self.twin.set(held)
+                self.unit.set(held)
+            taken = dt if draw.random() < 0.9 else dt * draw.uniform(0.1, 1.0)
+            went, stepped = self.unit.step(time, taken), self.twin.step(time, taken)
+            self.counts.steps += 1
+            if said := self._unlike(f"the step from t = {time} s of {taken} s", went, stepped):
+                return said
+            refused += not stepped
+            if refused == _REFUSED:
+                break
+            time += taken if stepped else 0.0
         return ""
-    for v, a, b in zip(twin.outputs, unit.get(twin.references), twin.shown, strict=True):
-        if _bits(a) != _bits(b):
-            return f"{at}: {v.name} is {a!r}, in Python {b!r}"
-    return ""
+
+    def _save_or_restore(self, time: float) -> tuple[float, str]:
+        """Save the states of both, or go back to saved ones; return the time [s] then and a difference."""
+        if self.kept is None or self.draw.random() < 0.5:
+            self.kept = time, self.twin.saved()
+            return time, self._unlike(f"the state saved at t = {time} s", self.unit.save(), True)
+        time, saved = self.kept
+        self.twin.restore(saved)
+        self.counts.restored += 1
+        restored = self.unit.restore(through_bytes=self.draw.random() < 0.5)
+        return time, self._unlike(f"the state restored at t = {time} s", restored, True)
+
+    def _unlike(self, at: str, native: bool, python: bool) -> str:
+        """Return how the two are unlike after a call, in its outcome, messages or outputs, or ""."""
+        unit, twin = self.unit, self.twin
+        if native != python or _in_short(unit.messages) != _in_short(twin.messages):
+            words = {True: "done", False: "refused"}
+            return f"{at}: native {words[native]} {unit.messages}, in Python {words[python]} {twin.messages}"
+        if not native:
+            self.counts.refusals += 1
+            return ""
+        for v, a, b in zip(twin.outputs, unit.get(twin.references), twin.shown, strict=True):
+            if _bits(a) != _bits(b):
+                return f"{at}: {v.name} is {a!r}, in Python {b!r}"
+        self.counts.values += len(twin.shown)
+        return ""
 
 
 def _in_short(messages: list[str]) -> list[str]:
@@ -121,92 +154,17 @@ def _bits(value: float | int | bool) -> bytes | int:
     return int(value)
 
 
-class _Twin:
-    """The model in Python, as `slave` runs it.
-
-    `shown` are its outputs after each call, and `messages` those of its failures and of its `notice`.
-    """
-
-    def __init__(self, model: type[Model]) -> None:
-        variables = exposed(model)
-        self._model, self._variables = model, variables
-        self._values = {e.reference: e.variable.start for e in variables}
-        self.references = [e.reference for e in variables if e.causality == "output"]
-        self.outputs = [e.variable for e in variables if e.causality == "output"]
-        self.shown: list[Any] = []
-        self.messages: list[str] = []
-        self._said: set[str] = set()
-        self._timed = any(e.causality == "independent" for e in variables)
-
-    def set(self, values: dict[int, Any]) -> None:
-        self._values.update(values)
-
-    def start(self, time: float) -> bool:
-        try:
-            self._time = time
-            self._p = self._model.Parameters(*self._of("parameter"))
-            if bad := violations(self._p):
-                raise Refused("; ".join(bad))
-            self._x = self._model.initial(self._p, self._inputs())
-            self._show(self._x)
-            return True
-        except Exception as error:  # whatever a model raises, the FMU reports
-            self._tell("fmi2ExitInitializationMode", error)
-            return False
-
-    def step(self, time: float, dt: float) -> bool:
-        try:
-            self._time = time
-            u = self._inputs()
-            x = self._model.step(self._p, self._x, u, dt)
-            notice = self._model.notice
-            said = "" if notice is None else notice(self._p, self._x, x, u)
-            if self._timed and self._model.feeds_through() and not self._model.sampled:
-                self._time = time + dt
-            self._show(x)
-            self._x = x
-        except Exception as error:  # the same
-            self._tell(f"fmi2DoStep at t = {time} s", error)
-            return False
-        if said and said not in self._said:
-            self._said.add(said)
-            self.messages.append(told(f"first at t = {time + dt:.9g} s: {said}").replace("%%", "%"))
-        return True
-
-    def _show(self, x: Any) -> None:
-        more = (self._inputs(),) if self._model.feeds_through() else ()
-        y = self._model.outputs(self._p, x, *more)
-        self.shown = [_as(v, getattr(y, v.name)) for v in self.outputs]
-
-    def _inputs(self) -> Any:
-        return self._model.Inputs(*self._of("input", "independent"))
-
-    def _of(self, *causalities: str) -> list[Any]:
-        return [
-            self._time if e.causality == "independent" else self._values[e.reference]
-            for e in self._variables
-            if e.causality in causalities
-        ]
-
-    def _tell(self, call: str, error: Exception) -> None:
-        self.messages.append(message(call, error).replace("%%", "%"))
-
-
-def _as(v: Variable, value: Any) -> Any:
-    return float(value) if v.type == "Real" else bool(value) if v.type == "Boolean" else int(value)
-
-
 def _drawn(
-    model: type[Model], draw: random.Random, causalities: tuple[str, ...]
+    model: type[Model], draw: random.Random, causalities: tuple[str, ...], wild: bool = True
 ) -> Iterator[tuple[int, Any]]:
     """Return references and random values of some of the variables of these causalities."""
     for reference, causality, v in exposed(model):
         if causality in causalities and draw.random() < (0.3 if causality == "parameter" else 0.7):
-            yield reference, _value(v, draw)
+            yield reference, _value(v, draw, wild or causality != "parameter")
 
 
-def _value(v: Variable, draw: random.Random) -> Any:
-    """Return a random value of a variable, within its range, often near its start."""
+def _value(v: Variable, draw: random.Random, wild: bool) -> Any:
+    """Return a random value of a variable, within its range, near its start unless it may be any."""
     if v.enumeration is not None:
         return draw.choice(list(v.enumeration))
     if v.type == "Boolean":
@@ -217,5 +175,5 @@ def _value(v: Variable, draw: random.Random) -> Any:
         return draw.randint(int(max(least, v.start - 5)), int(min(most, v.start + 5)))
     size = max(abs(v.start), v.nominal or 0.0) or 1.0
     near, far = v.start + size * draw.gauss(0.0, 0.2), size * draw.gauss(0.0, 2.0)
-    value = draw.choice((v.start, near, far, draw.choice((0.0, -0.0))))
+    value = draw.choice((v.start, near, far, draw.choice((0.0, -0.0))) if wild else (v.start, near))
     return min(most, max(least, value))

@@ -45,6 +45,7 @@ class NativeUnit:
         self._callbacks = _Callbacks(*functions, None)
         make = self._library.fmi2Instantiate
         make.restype = ctypes.c_void_p
+        self._saved = ctypes.c_void_p()
         self._unit = ctypes.c_void_p(
             make(
                 model.__name__.encode(),
@@ -63,6 +64,7 @@ class NativeUnit:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._call("FreeFMUstate", ctypes.byref(self._saved))
         self._library.fmi2FreeInstance(self._unit)
 
     def start(self, time: float, values: dict[int, Any]) -> bool:
@@ -82,6 +84,25 @@ class NativeUnit:
     def step(self, time: float, dt: float) -> bool:
         """Take a step of dt at a time, both in s; False where it is discarded."""
         return self._call("DoStep", ctypes.c_double(time), ctypes.c_double(dt), 1)
+
+    def save(self) -> bool:
+        """Save the state, in place of an earlier one (fmi2GetFMUstate); False where that is refused."""
+        return self._call("GetFMUstate", ctypes.byref(self._saved))
+
+    def restore(self, through_bytes: bool) -> bool:
+        """Go back to the saved state, or to what its bytes make of it; False where that is refused."""
+        if not through_bytes:
+            return self._call("SetFMUstate", self._saved)
+        size, other = ctypes.c_size_t(), ctypes.c_void_p()
+        if not self._call("SerializedFMUstateSize", self._saved, ctypes.byref(size)):
+            return False
+        data = ctypes.create_string_buffer(size.value)
+        restored = (
+            self._call("SerializeFMUstate", self._saved, data, size)
+            and self._call("DeSerializeFMUstate", data, size, ctypes.byref(other))
+            and self._call("SetFMUstate", other)
+        )
+        return self._call("FreeFMUstate", ctypes.byref(other)) and restored
 
     def set(self, values: dict[int, Any]) -> bool:
         """Set values by reference; False where one is refused."""

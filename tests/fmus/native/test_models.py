@@ -22,8 +22,8 @@ from evcosim.models.base import Model
 from support.needs import need_c_compiler
 
 WARNINGS = ("-Wall", "-Wextra", "-pedantic", "-Werror")
-SLOW = {"TwoMotorVehicle": 60, "TwoWheelerBraking": 120, "DetailedTwoWheeler": 240}
-"""Steps of models of which a step is thousands of Python's instructions."""
+SLOW = {"TwoMotorVehicle": 200}
+"""Steps of models of which a step can be millions of Python's instructions."""
 STEPS, SEEDS = 1000, 4
 UNITS = {"scooter": 1.0, "lane_keeping": 1.0, "multi_drive": 0.2, "braking": 0.3}
 """Seconds of each system that are run with both kinds of units."""
@@ -70,22 +70,37 @@ def test_every_bit_is_python_s(name: str, tmp_path: Path) -> None:
         assert first_difference(model_named(name), library, token, steps, seed, counts) == ""
     assert counts.steps > SEEDS * steps // 2  # where it fails is the same too, and ends a run
     assert counts.values >= counts.steps
+    assert counts.restored >= steps // 40
 
 
-def test_a_difference_is_found(tmp_path: Path) -> None:
+WRONG = {
+    "another version of the model": ("model.c", "power / 3600.0", "power / 3600.0000000000005"),  # Wh
+    "a state that is not taken back": (
+        "saved.c",
+        "memcpy(m->state, const_block_of(saved, STATE)",
+        "memcpy(m->state, m->state",
+    ),
+    "bytes that lose a value": ("saved.c", "read |= (uint64_t)part << (8 * k)", "read |= part"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_a_difference_is_found(what: str, tmp_path: Path) -> None:
     """The comparison can fail: the library of a model does not pass for another version of it."""
     path = native_built("Battery")
     with zipfile.ZipFile(path) as archive:
         archive.extractall(tmp_path)
-    source = tmp_path / "sources" / "model.c"
+    file, right, wrong = WRONG[what]
+    source = tmp_path / "sources" / file
     text = source.read_text()
-    assert "power / 3600.0" in text  # Wh
-    source.write_text(text.replace("power / 3600.0", "power / 3600.0000000000005"))
+    assert text.count(right) == 1
+    source.write_text(text.replace(right, wrong))
     files = [file.name for file in source.parent.glob("*.c")]
     library = tmp_path / "other.so"
     library.write_bytes(toolchain.compiled(source.parent, files, toolchain.here()))
     token = fmpy.read_model_description(path).guid
-    assert " is " in first_difference(model_named("Battery"), library, token, 200, 0)
+    said = first_difference(model_named("Battery"), library, token, 400, 0)
+    assert " is " in said or "native refused" in said
 
 
 @pytest.mark.parametrize("system", system_names())
