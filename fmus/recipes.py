@@ -1,7 +1,7 @@
 """Recipes of FMUs: all that goes into one, known without importing the model, and its digest.
 
-The digest is that of the model's sources, of pythonfmu's parts and of the code of this package, which puts
-the FMU together: equal recipes give equal bytes.
+There are two: `model_digest` of the model's sources and of the code of this package, which puts the FMU
+together, and `digest` of that and of pythonfmu's parts, for FMUs of Python. Equal recipes give equal bytes.
 """
 
 from __future__ import annotations
@@ -22,8 +22,15 @@ _OWN_LICENSE = "MIT"
 _HERE = Path(__file__).parent
 
 
+class Digests(NamedTuple):
+    """The digests of a recipe, each of 32 hexadecimal digits."""
+
+    fmu: str
+    model: str
+
+
 class Recipe(NamedTuple):
-    """The ingredients of an FMU, known without importing the model; `digest` has 32 hexadecimal digits."""
+    """The ingredients of an FMU, known without importing the model; digests have 32 hexadecimal digits."""
 
     name: str
     module: str
@@ -31,45 +38,70 @@ class Recipe(NamedTuple):
     experiment: Experiment
     version: str
     license: str
-    digest: str
+    model_digest: str
+
+    @property
+    def digest(self) -> str:
+        """The digest of the FMU of Python: of pythonfmu's parts too, which must be installed."""
+        return digest_of([self.model_digest.encode(), _pythonfmu().encode()])[:32]
+
+    @property
+    def digests(self) -> Digests:
+        """Both digests."""
+        return Digests(self.digest, self.model_digest)
 
     @property
     def identity(self) -> str:
-        """Name of the package inside the FMU, which stands for this version of the model."""
-        return f"{self.name}_{self.digest[:12]}"
+        """Name of the package inside the FMU of Python."""
+        return identity_of(self.name, self.digest)
 
 
 def catalog_identity(name: str) -> str:
-    """Return the identity of a catalog FMU, as its recipe says; the cache keeps it by all that may change it.
+    """Return the identity of a catalog FMU, as its recipe says. Raises ValueError for an unknown name."""
+    return identity_of(name, catalog_digests(name).fmu)
+
+
+def catalog_digests(name: str) -> Digests:
+    """Return the digests of a catalog FMU's recipe; the cache keeps them by all that may change them.
 
     To follow the import statements of a model takes longer than all the rest of finding its FMU.
     Raises ValueError for an unknown name.
     """
     if name not in CATALOG:
-        return catalog_recipe(name).identity
+        return catalog_recipe(name).digests
     folder = models_folder()
     models = cache.once(folder, lambda: _models(folder))
     about = repr((name, CATALOG[name], _common(_HERE, runtime.version("evcosim")), models))
-    if about not in _identities:
-        entry = f"identity-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
+    if about not in _found:
+        entry = f"digests-{name}-{hashlib.sha256(about.encode()).hexdigest()[:16]}"
         kept = (cache.load(entry) or b"").decode("ascii", "replace")
-        if not re.fullmatch(rf"{name}_[0-9a-f]{{12}}", kept):
-            kept = catalog_recipe(name).identity
+        if not re.fullmatch(f"{name} [0-9a-f]{{32}} [0-9a-f]{{32}}", kept):
+            kept = " ".join((name, *catalog_recipe(name).digests))
             cache.keep(entry, kept.encode())  # a cache that keeps nothing is told with the FMU
-        _identities[about] = kept
-    return _identities[about]
+        _found[about] = Digests(*kept.split()[1:])
+    return _found[about]
 
 
-_identities: dict[str, str] = {}
+_found: dict[str, Digests] = {}
+
+
+def identity_of(name: str, digest: str) -> str:
+    """Return the name of the package inside an FMU of Python, which stands for this version of the model."""
+    return f"{name}_{digest[:12]}"
 
 
 @functools.cache
 def _common(folder: Path, version: str) -> str:
     """Return a digest of what all FMUs have in common; `folder` is that of this package."""
+    return digest_of([version.encode(), *_flat(own_code(folder)), _pythonfmu().encode()])
+
+
+@functools.cache
+def _pythonfmu() -> str:
+    """Return a digest of pythonfmu's parts of an FMU, and of the licenses."""
     parts = runtime.binaries(), runtime.python_files(), runtime.licenses()
-    return digest_of(
-        [version.encode(), *_flat(own_code(folder)), *(p for part in parts for p in _flat(part))]
-    )
+    about = [runtime.version("pythonfmu").encode(), *(p for part in parts for p in _flat(part))]
+    return digest_of(about)
 
 
 _digests: dict[Path, tuple[object, str]] = {}
@@ -114,9 +146,7 @@ def recipe_of(
             repr(about).encode(),
             *(part for source in sources for part in (source.path.encode(), source.content)),
             *_flat(own_code(_HERE)),
-            *_flat(runtime.binaries()),
-            *_flat(runtime.python_files()),
-            *_flat(runtime.licenses()),
+            runtime.license_text("evcosim"),
         ]
     )
     return Recipe(name, module, sources, experiment, version, license, digest[:32])

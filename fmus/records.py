@@ -11,9 +11,12 @@ from pathlib import Path
 from . import cache
 
 
-def note(content: bytes, name: str, folder: Path | None = None) -> None:
-    """Note an FMU of these bytes as built here, with its name and the folder of the model's files."""
-    noted = f"{name}\n{folder or ''}\n"
+def note(content: bytes, name: str, folder: Path | None = None, library: str = "") -> None:
+    """Note an FMU of these bytes as built here, with its name and the folder of the model's files.
+
+    `library` says where the machine code of a native one came from.
+    """
+    noted = f"{name}\n{folder or ''}\n{library}\n"
     cache.keep(_entry(hashlib.sha256(content).hexdigest()), noted.encode("utf-8", "surrogateescape"))
 
 
@@ -28,8 +31,18 @@ def is_own(digest: str) -> bool:
 
 def folder_of(digest: str) -> list[Path]:
     """Return the folder of the files of which `build_model` made the FMU of a SHA-256, if it is known."""
+    return [Path(folder)] if (folder := _noted(digest)[1]) else []
+
+
+def library_of(digest: str) -> str:
+    """Return where the machine code of the native FMU of a SHA-256 came from; "" where nothing is known."""
+    return _noted(digest)[2]
+
+
+def _noted(digest: str) -> list[str]:
+    """Return name, folder and library that are noted of an FMU, each "" where nothing is."""
     noted = (cache.load(_entry(digest)) or b"").decode("utf-8", "surrogateescape").split("\n")
-    return [Path(noted[1])] if len(noted) > 1 and noted[1] else []
+    return [*noted, "", "", ""][:3]
 
 
 def _entry(digest: str) -> str:

@@ -26,7 +26,7 @@ def python_files() -> dict[str, bytes]:
 @functools.cache
 def licenses() -> dict[str, bytes]:
     """Return the license texts by file name below documentation/licenses."""
-    return {f"{name}.txt": _license(name) for name in ("evcosim", "pythonfmu")}
+    return {f"{name}.txt": license_text(name) for name in ("evcosim", "pythonfmu")}
 
 
 @functools.cache
@@ -45,7 +45,8 @@ def _folder() -> Path:
     return Path(spec.origin).parent
 
 
-def _license(distribution: str) -> bytes:
+@functools.cache
+def license_text(distribution: str) -> bytes:
     """Return the license text of an installed distribution. Raises FileNotFoundError where it has none.
 
     The text lies in dist-info/licenses since metadata version 2.4, before in dist-info itself. A checkout's

@@ -8,12 +8,13 @@ import platform
 import sys
 from pathlib import Path
 
-_OLDEST, _NEWEST = 11, 14
+MINORS = range(11, 15)
+"""The minor versions of Python 3 whose rules and words the runtime knows."""
 
 
 def python_minor() -> int:
     """Return the minor version of Python 3 that generated C follows: this one's, or the nearest known."""
-    return min(max(sys.version_info.minor, _OLDEST), _NEWEST)
+    return min(max(sys.version_info.minor, MINORS[0]), MINORS[-1])
 
 
 @functools.cache

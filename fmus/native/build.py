@@ -2,7 +2,8 @@
 
 What takes long is done once: the FMU is kept by the digest of all that goes into it, and so is the reason why
 there is none, and the outcome of the comparison with the model in Python. What is there already is found
-without the model, the translator and a compiler.
+without the model, the translator and a compiler. What is not is made with a library that a wheel has shipped
+for these very sources, or else compiled.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import cache, records
-from ..recipes import Recipe, catalog_identity, catalog_recipe, digest_of
+from ..recipes import Recipe, catalog_digests, catalog_recipe, digest_of
 from .basis import mathematical_library, python_minor
 from .errors import NoNativeError, ToolchainError, Unsupported
 from .wanted import DEFAULT, Wanted
@@ -33,9 +34,9 @@ def native_built(name: str, anew: bool = False, wanted: Wanted = DEFAULT) -> Pat
     With `anew` it is built in any case. Raises Unsupported for a model that has no native form,
     ToolchainError where it cannot be compiled, ValueError for an unknown name.
     """
-    digest = _digest(catalog_identity(name))
+    digest = _digest(catalog_digests(name).model)
     kind = Wanted(False, wanted.platforms, wanted.fmi)
-    key = digest if kind == DEFAULT else _short(digest.encode(), repr(kind).encode())
+    key = _short(digest.encode(), b"%d" % python_minor(), repr(kind).encode())
     return cache.fetch(f"{name}_native_{key[:12]}.fmu", lambda: _made(name, digest, anew, wanted), anew)
 
 
@@ -66,7 +67,7 @@ def difference(name: str, steps: int = 1000) -> str:
 
 def native_parts(recipe: Recipe, model: type[Model]) -> NativeParts:
     """Return what the native FMU of a recipe's model is made of. Raises Unsupported."""
-    return _parts(recipe, model, _digest(recipe.identity))
+    return _parts(recipe, model, _digest(recipe.model_digest))
 
 
 def content_of(recipe: Recipe, model: type[Model] | None = None, wanted: Wanted = DEFAULT) -> bytes:
@@ -74,24 +75,37 @@ def content_of(recipe: Recipe, model: type[Model] | None = None, wanted: Wanted 
 
     Raises Unsupported, ToolchainError, ValueError for an unknown unit of measure or another version of FMI.
     """
-    require_compilers(wanted)
+    _require_libraries(wanted, built_in=model is None)
     return _noted(native_parts(recipe, model or _model(recipe)), wanted)
 
 
-def require_compilers(wanted: Wanted) -> None:
-    """Raise ToolchainError for a platform that is unknown, or for which there is no compiler here."""
+def library_of(path: Path) -> str:
+    """Return where the machine code of a native FMU came from; "" for a file that is none of this machine's.
+
+    It is noted of the bytes of the file, and stays in the cache with it.
+    """
+    return records.library_of(cache.digest_of(path))
+
+
+def _require_libraries(wanted: Wanted, built_in: bool) -> None:
+    """Raise ToolchainError for a platform that is unknown, or for which nothing makes libraries here.
+
+    Those of built-in models may be shipped.
+    """
+    from .shipped import offers
     from .toolchain import compiler, targets
 
     for target in targets(wanted.platforms):
-        compiler(target)
+        if not (built_in and offers(target)):
+            compiler(target)
 
 
 def _noted(parts: NativeParts, wanted: Wanted) -> bytes:
-    from .package import native_content
+    from .package import native_made
 
-    content = native_content(parts, platforms=wanted.platforms, fmi=wanted.fmi)
-    records.note(content, parts.model.__name__)
-    return content
+    made = native_made(parts, platforms=wanted.platforms, fmi=wanted.fmi)
+    records.note(made.content, parts.model.__name__, library=made.library)
+    return made.content
 
 
 def extracted_library(path: Path, folder: Path) -> Path:
@@ -110,7 +124,7 @@ def _made(name: str, digest: str, anew: bool, wanted: Wanted) -> bytes:
 
     What was refused is not tried again, with the same compiler.
     """
-    require_compilers(wanted)  # without one, nothing is imported and lowered in vain
+    _require_libraries(wanted, built_in=True)  # without one, nothing is imported and lowered in vain
     left, failed = f"native-left-{digest}", f"native-failed-{_short(digest.encode(), *_compilers(wanted))}"
     for entry, kind in ((left, Unsupported), (failed, ToolchainError)):
         if not anew and (kept := cache.load(entry)) is not None:
@@ -124,15 +138,22 @@ def _made(name: str, digest: str, anew: bool, wanted: Wanted) -> bytes:
 
 
 def _compilers(wanted: Wanted) -> Iterator[bytes]:
-    """Return what changes with the command of each compiler that is needed, and with its file."""
+    """Return what changes with the version of Python, with a compiler's command and with its file."""
     import shutil
 
+    from .shipped import offers
     from .toolchain import compiler, targets
 
+    yield b"%d" % python_minor()
     for target in targets(wanted.platforms):
-        command = compiler(target)
+        try:
+            command = compiler(target)
+        except ToolchainError:  # a library may be shipped
+            command = [""]
         found = shutil.which(command[0])
-        yield repr((wanted.fmi, command, found and cache.state(Path(found).resolve()))).encode()
+        yield repr(
+            (wanted.fmi, offers(target), command, found and cache.state(Path(found).resolve()))
+        ).encode()
 
 
 def _compared(name: str, path: Path, steps: int) -> str:
@@ -140,10 +161,21 @@ def _compared(name: str, path: Path, steps: int) -> str:
     from .check import first_difference
     from .package import token_of
 
-    token = token_of(_digest(catalog_identity(name)))
+    token = token_of(_digest(catalog_digests(name).model))
     with cache.temporary_folder() as folder:
         library = extracted_library(path, folder)
         return first_difference(_model(catalog_recipe(name)), library, token, steps)
+
+
+def sources_by_version(name: str) -> dict[int, str]:
+    """Return the C of a built-in model for each minor version of Python 3. Raises Unsupported, ValueError."""
+    from . import emit, lower, package
+    from .basis import MINORS
+
+    recipe = catalog_recipe(name)
+    model, digest = _model(recipe), _digest(recipe.model_digest)
+    program, given = lower.lower(model), (package.identity_of(name, digest), package.token_of(digest))
+    return {minor: emit.c_source(model, program, *given, minor) for minor in MINORS}
 
 
 def _parts(recipe: Recipe, model: type[Model], digest: str) -> NativeParts:
@@ -159,9 +191,12 @@ def _model(recipe: Recipe) -> type[Model]:
     return model
 
 
-def _digest(identity: str) -> str:
-    """Return the digest of a native FMU by the identity of its recipe: also of translator and runtime."""
-    return _short(identity.encode(), b"%d" % python_minor(), _own_code(_HERE).encode())
+def _digest(model_digest: str) -> str:
+    """Return the digest of a native FMU by that of its recipe's model: also of translator and runtime.
+
+    It is the same for every version of Python, so that a library can be shipped for several.
+    """
+    return _short(model_digest.encode(), _own_code(_HERE).encode())
 
 
 @functools.cache

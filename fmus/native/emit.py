@@ -19,15 +19,19 @@ from .emit_types import c_name, definition, parts, type_name
 from .values import Type
 
 
-def c_source(model: type[Model], program: ir.Program, identity: str, token: str) -> str:
+def c_source(
+    model: type[Model], program: ir.Program, identity: str, token: str, minor: int | None = None
+) -> str:
     """Return model.c of a model, of the program that it was lowered to.
 
-    `identity` is that of its FMU, to which saved states belong, and `token` the guid of its description.
+    `identity` is that of its FMU, to which saved states belong, `token` the guid of its description, and
+    `minor` the version of Python 3 that it follows, by default this one's.
     """
     functions = Functions(program)
+    minor = minor or python_minor()
     pieces = [
         f"/* {program.name}: {comment(program.about)}\n\n   Made by evcosim of the model in Python. */",
-        f"/* The Python 3 whose rules and words it follows. */\n#define PY_VERSION_MINOR {python_minor()}\n",
+        f"/* The Python 3 whose rules and words it follows. */\n#define PY_VERSION_MINOR {minor}\n",
         '#include <string.h>\n\n#include "model.h"\n',
         *_types(model, program),
         *(

@@ -25,10 +25,11 @@ from .. import cache, runtime
 from ..archive import packed
 from ..catalog import Experiment
 from ..description import Origin, describe, written
-from . import toolchain
+from . import shipped, toolchain
 from .description3 import describe_3
 
 _RUNTIME = Path(__file__).with_name("c")
+MODEL = "model.c"
 _OF_FMI = {2: ("fmi2.c", "fmi2_types.h"), 3: ("fmi3.c", "fmi3_types.h")}
 """The files of the runtime that only one version of FMI needs."""
 
@@ -68,6 +69,21 @@ def build_native(
 
 def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: int = 2) -> bytes:
     """Return the bytes of a native FMU. Raises what `build_native` raises."""
+    return native_made(parts, platforms=platforms, fmi=fmi).content
+
+
+class Made(NamedTuple):
+    """The bytes of a native FMU, and where its libraries came from: `SHIPPED` or "compiled by gcc"."""
+
+    content: bytes
+    library: str
+
+
+SHIPPED = "shipped with evcosim"
+
+
+def native_made(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: int = 2) -> Made:
+    """Return a native FMU, and where its libraries came from. Raises what `build_native` raises."""
     if fmi not in _OF_FMI:
         raise ValueError(f"there are native FMUs of FMI 2 and 3, not of {fmi}")
     name, targets = parts.model.__name__, toolchain.targets(platforms)
@@ -83,21 +99,32 @@ def native_content(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: in
         if fmi == 2
         else describe_3(parts.model, origin, parts.experiment)
     )
-    entries["documentation/licenses/evcosim.txt"] = runtime.licenses()["evcosim.txt"]
+    entries["documentation/licenses/evcosim.txt"] = runtime.license_text("evcosim")
+    made: list[str] = []
+    for target in dict.fromkeys(targets):
+        place = f"binaries/{target.fmi2 if fmi == 2 else target.fmi3}/{name}{target.suffix}"
+        entries[place], how = _library(files, target)
+        made.append(how)
+    return Made(packed(entries), "; ".join(dict.fromkeys(made)))
+
+
+def _library(files: dict[str, bytes], target: toolchain.Platform) -> tuple[bytes, str]:
+    """Return the library of these sources for a platform, and where it came from. Raises ToolchainError."""
+    if (library := shipped.library(files, target)) is not None:
+        return library, SHIPPED
+    command = toolchain.compiler(target)
     with cache.temporary_folder() as folder:
         for file, content in files.items():
             (folder / file).write_bytes(content)
-        for target in dict.fromkeys(targets):
-            place = f"binaries/{target.fmi2 if fmi == 2 else target.fmi3}/{name}{target.suffix}"
-            entries[place] = toolchain.compiled(folder, c_files, target)
-    return packed(entries)
+        made = toolchain.compiled(folder, [file for file in files if file.endswith(".c")], target)
+    return made, f"compiled by {toolchain.named(command)}"
 
 
 def sources(model_c: str, fmi: int) -> dict[str, bytes]:
     """Return the files of the folder `sources` by name: the model and the runtime of a version of FMI."""
     others = {file for version, files in _OF_FMI.items() if version != fmi for file in files}
     files = {name: content for name, content in _runtime().items() if name not in others}
-    return {"model.c": model_c.encode(), **files}
+    return {MODEL: model_c.encode(), **files}
 
 
 @functools.cache

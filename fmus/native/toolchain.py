@@ -27,7 +27,7 @@ _MATHEMATICAL = (
 EXACT = ("-std=c99", "-ffp-contract=off", *(f"-fno-builtin-{name}" for name in _MATHEMATICAL.split()))
 """Flags without which a library computes something else than Python."""
 
-_FLAGS = ("-O2", "-shared", "-fvisibility=hidden", *EXACT)
+_FLAGS = ("-O2", "-fvisibility=hidden", *EXACT)
 _SHOWN = 12  # lines of a compiler's messages
 _TIME = 600.0  # s; zig compiles the libraries of a platform at its first use
 
@@ -79,16 +79,34 @@ def _known() -> str:
     return f"the platforms are {', '.join(PLATFORMS)}"
 
 
-def compiled(folder: Path, sources: Sequence[str], target: Platform) -> bytes:
-    """Return the shared library of the C files of a folder, by their names in it.
+def compiled(folder: Path, sources: Sequence[str], target: Platform, command: Sequence[str] = ()) -> bytes:
+    """Return the shared library of the C files (or objects) of a folder, by their names in it.
 
-    Raises ToolchainError where there is no compiler for the platform, and where it fails.
+    `command` is the compiler, by default that of the platform. Raises ToolchainError where there is none, and
+    where it fails.
     """
-    command = compiler(target)
     library = f"library{target.suffix}"
-    position = [] if target.suffix == ".dll" else ["-fPIC"]
     ending = [] if target.suffix == ".dll" else ["-lm"]
-    line = [*command, *_FLAGS, *position, *sources, "-o", library, *ending]
+    return _made(folder, ["-shared", *sources], target, command, library, ending)
+
+
+def compiled_object(folder: Path, source: str, target: Platform, command: Sequence[str] = ()) -> bytes:
+    """Return a C file of a folder as an object, for `compiled`. Raises ToolchainError."""
+    return _made(folder, ["-c", source], target, command, "object.o", [])
+
+
+def _made(
+    folder: Path,
+    arguments: Sequence[str],
+    target: Platform,
+    command: Sequence[str],
+    file: str,
+    ending: Sequence[str],
+) -> bytes:
+    """Return what a compiler writes into a file of a folder. Raises ToolchainError."""
+    command = command or compiler(target)
+    position = [] if target.suffix == ".dll" else ["-fPIC"]
+    line = [*command, *_FLAGS, *position, *arguments, "-o", file, *ending]
     try:
         done = subprocess.run(line, cwd=folder, capture_output=True, timeout=_TIME, check=False)
     except FileNotFoundError as error:
@@ -100,7 +118,7 @@ def compiled(folder: Path, sources: Sequence[str], target: Platform) -> bytes:
         raise ToolchainError(f"{command[0]} cannot be run: {error.strerror or error}") from error
     except subprocess.TimeoutExpired as error:
         raise ToolchainError(f"{shlex.join(command)} took more than {_TIME:g} s") from error
-    made = folder / library
+    made = folder / file
     if done.returncode or not made.is_file():
         raise ToolchainError(_failure(command, target, done))
     return made.read_bytes()
@@ -117,28 +135,39 @@ def compiler(target: Platform) -> list[str]:
         for name in ("cc", "gcc", "clang"):
             if shutil.which(name):
                 return [name]
-        if not _has_zig():
+        if not has_zig():
             raise ToolchainError(
                 "there is no C compiler here (cc, gcc, clang): install one (apt-get install gcc), name it in "
                 'the environment variable CC, or pip install "evcosim[native]", which brings one'
             )
-    if not _has_zig():
+    if not has_zig():
         raise ToolchainError(
             f"libraries for {target.fmi2} are made by zig, which is not installed here: "
             'pip install "evcosim[native]"'
         )
+    return zig(target)
+
+
+def zig(target: Platform) -> list[str]:
+    """Return the command of zig's compiler for a platform; of Linux, for old versions of glibc too."""
     return [sys.executable, "-m", "ziglang", "cc", "-target", target.zig, "-s"]
 
 
-def _has_zig() -> bool:
+def named(command: Sequence[str]) -> str:
+    """Return the short name of a compiler: gcc, zig."""
+    return "zig" if "ziglang" in command else Path(command[0]).name
+
+
+def has_zig() -> bool:
+    """Return True if zig is installed, from PyPI's package ziglang."""
     return importlib.util.find_spec("ziglang") is not None
 
 
-def _failure(command: list[str], target: Platform, done: subprocess.CompletedProcess[bytes]) -> str:
+def _failure(command: Sequence[str], target: Platform, done: subprocess.CompletedProcess[bytes]) -> str:
     """Return that a compiler failed, and the first lines that it said."""
     said = (done.stderr + done.stdout).decode("utf-8", "replace").strip().splitlines()
     shown = [f"  {line}" for line in said[:_SHOWN]] or ["  (it says nothing)"]
     if len(said) > _SHOWN:
         shown.append(f"  ({len(said) - _SHOWN} more lines)")
-    end = f"exit code {done.returncode}" if done.returncode else "no library was written"
+    end = f"exit code {done.returncode}" if done.returncode else "nothing was written"
     return "\n".join([f"{shlex.join(command)} fails for {target.fmi2} ({end}):", *shown])

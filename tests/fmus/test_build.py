@@ -159,20 +159,21 @@ def test_a_second_run_builds_nothing(own_cache, monkeypatch):
 
 def test_a_kept_identity_is_that_of_the_recipe(own_cache, monkeypatch):
     """It is found without following imports, made anew where it is damaged, and another for another model."""
-    monkeypatch.setattr(recipes, "_identities", {})
+    monkeypatch.setattr(recipes, "_found", {})
     expected = built("Battery").stem
-    (entry,) = own_cache.glob("identity-*")
+    (entry,) = own_cache.glob("digests-*")
     followed = []
     collect = recipes.collect
     monkeypatch.setattr(recipes, "collect", lambda *given: followed.append(given) or collect(*given))
     for content, count in ((entry.read_bytes(), 0), (b"", 1), (b"\n", 1), (entry.read_bytes()[:-1], 1)):
-        monkeypatch.setattr(recipes, "_identities", {})
+        monkeypatch.setattr(recipes, "_found", {})
         entry.write_bytes(content)
         followed.clear()
         assert built("Battery").stem == expected
         assert len(followed) == count
-    assert cache.keep(entry.name, b"Scooter_0123456789ab") == ""  # whole, and of another model
-    monkeypatch.setattr(recipes, "_identities", {})
+    other = f"Scooter {'0' * 32} {'1' * 32}".encode()
+    assert cache.keep(entry.name, other) == ""  # whole, and of another model
+    monkeypatch.setattr(recipes, "_found", {})
     assert built("Battery").stem == expected
 
 
@@ -228,7 +229,7 @@ def test_four_processes_may_build_at_once(own_cache):
     assert len(set(printed)) == 1
     identity = Path(printed[0].strip()).stem
     kept = {file.name for file in own_cache.iterdir()}
-    assert {name for name in kept if not name.startswith("identity-Battery-")} == {
+    assert {name for name in kept if not name.startswith("digests-Battery-")} == {
         f"{identity}.fmu",
         f"{identity}.fmu.sha256",
     }

@@ -12,7 +12,7 @@ from typing import Any
 import fmpy
 import pytest
 
-from evcosim.fmus import records
+from evcosim.fmus import recipes, records
 from evcosim.fmus.build import build_model
 from evcosim.fmus.catalog import Experiment
 from evcosim.fmus.native import basis, build, check, emit, lower, toolchain
@@ -159,7 +159,7 @@ def test_another_translator_runtime_python_or_model_is_another_file(
         other.setattr(build, "python_minor", lambda: 99)
         names.add(native_built("Battery").name)
     with monkeypatch.context() as other:
-        other.setattr(build, "catalog_identity", lambda name: f"{name}_0123456789ab")
+        other.setattr(build, "catalog_digests", lambda name: recipes.Digests("0" * 32, "1" * 32))
         names.add(native_built("Battery").name)
     assert len(names) == 6
 
@@ -223,7 +223,7 @@ def test_without_a_compiler_nothing_is_lowered_and_nothing_is_kept(
     with monkeypatch.context() as bare:
         bare.delenv("CC", raising=False)
         bare.setenv("PATH", str(tmp_path))
-        bare.setattr(toolchain, "_has_zig", lambda: False)
+        bare.setattr(toolchain, "has_zig", lambda: False)
         with pytest.raises(ToolchainError, match="there is no C compiler here"):
             native_built("Battery")
     assert not list(own_cache.glob("native-*"))

@@ -242,7 +242,7 @@ def test_a_compiler_that_fails(parts: Callable[..., Any], tmp_path: Path) -> Non
 def test_no_compiler(parts: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(toolchain, "_has_zig", lambda: False)
+    monkeypatch.setattr(toolchain, "has_zig", lambda: False)
     with pytest.raises(toolchain.ToolchainError, match=r"no C compiler here .*evcosim\[native\]"):
         build_native(parts("Handmade"), tmp_path)
     monkeypatch.setenv("CC", "no-such-compiler -O1")
@@ -269,7 +269,7 @@ def test_a_compiler_that_writes_nothing(
     parts: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("CC", "true")
-    with pytest.raises(toolchain.ToolchainError, match="no library was written"):
+    with pytest.raises(toolchain.ToolchainError, match="nothing was written"):
         build_native(parts("Handmade"), tmp_path)
 
 
@@ -280,7 +280,7 @@ def test_an_unknown_platform(parts: Callable[..., Any], tmp_path: Path) -> None:
 
 
 def test_zig_is_missing(parts: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(toolchain, "_has_zig", lambda: False)
+    monkeypatch.setattr(toolchain, "has_zig", lambda: False)
     with pytest.raises(toolchain.ToolchainError, match=r"for win64 .*: pip install \"evcosim\[native\]\""):
         build_native(parts("Handmade"), tmp_path, platforms=("win64",))
 

@@ -200,7 +200,7 @@ def test_options_of_native_fmus(evcosim, own, monkeypatch):
     refused(evcosim("build", "mine.py", "--native", "--native=require"), "it is given already")
     unknown = evcosim("build", "mine.py", "--native", "--platform", "linux32")
     refused(unknown, "there is no platform 'linux32'; the platforms are linux64, win64")
-    monkeypatch.setattr(toolchain, "_has_zig", lambda: False)
+    monkeypatch.setattr(toolchain, "has_zig", lambda: False)
     other = "darwin64" if toolchain.here().fmi2 != "darwin64" else "win64"
     answer = evcosim("build", "mine.py", "--native", "--platform", other)
     refused(answer, f"libraries for {other} are made by zig", 'pip install "evcosim[native]"')
