@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from types import TracebackType
@@ -24,12 +24,12 @@ from ..cosim.can.logs.frames import BusLog
 from ..cosim.can.logs.writing import write_can_log
 from ..cosim.errors import ConfigError, RunError, nearest
 from ..cosim.interface import Value
-from ..cosim.plan.events import check_event
+from ..cosim.plan.events import check_event, checked_course
 from ..cosim.plan.plan import Plan
 from ..cosim.plan.steps import check_steps, whole_steps
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.results.results import Results
-from ..cosim.row_store import Grid
+from ..cosim.row_store import Array, Grid
 from ..cosim.shortage import LINEAR_ALGEBRA, require_memory
 from ..cosim.system.run_options import RunOptions
 from ..cosim.system.scenario import Bias, Event, Override, Reset, Scenario, Set
@@ -47,7 +47,7 @@ from .isolation.unit import IsolatedUnit
 from .keeping import KeptRun, ended
 from .manifest import manifest, saturations
 from .prepare import check_decodable, check_frames, prepare
-from .unit import Unit
+from .unit import Unit, terminate
 from .warned import warnings_text
 
 _LEAST = 150e6  # bytes of address space for the libraries that models may use
@@ -227,6 +227,14 @@ class Simulation:
         """Let the input `name` receive `value` from now on, whatever drives it. Raises ConfigError."""
         self._do(Override.model_construct(time=self.time, action="override", variable=name, value=value))
 
+    def follow(self, name: str, values: Sequence[float] | Array) -> None:
+        """Let the Real input `name` receive `values`, one in each step from now on, as if by `override`.
+
+        The last one stays. Raises ConfigError for another input, and unless `values` has the shape (n,).
+        """
+        self._require_units()
+        self._engine.follow(name, checked_course(name, values, self._interfaces, self.plan.inputs))
+
     def bias(self, name: str, value: float) -> None:
         """Let the input `name` receive `value` more than what drives it, from now on. Raises ConfigError."""
         self._do(Bias.model_construct(time=self.time, action="bias", variable=name, value=value))
@@ -337,7 +345,7 @@ class Simulation:
     def _end(self, orderly: bool, error: BaseException | None) -> None:
         try:
             if orderly:
-                self._terminate()
+                terminate(self._units.values())
         except RunError as failure:
             error = failure
             raise
@@ -347,16 +355,6 @@ class Simulation:
             self._free()
             if self._kept is not None:
                 self._kept.end(ended(self.results, self.finished, error), error)
-
-    def _terminate(self) -> None:
-        failures: list[RunError] = []
-        for unit in self._units.values():
-            try:
-                unit.terminate()
-            except RunError as error:
-                failures.append(error)
-        if failures:
-            raise failures[0]
 
     def _free(self) -> None:
         for unit in self._units.values():

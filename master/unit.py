@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Protocol
 
@@ -114,3 +114,15 @@ class Unit(Protocol):
 
     def free(self) -> None:
         """Release everything; may be called twice."""
+
+
+def terminate(units: Iterable[Unit]) -> None:
+    """Terminate all units, also those behind one that cannot be. Raises the error of the first of these."""
+    failures: list[RunError] = []
+    for unit in units:
+        try:
+            unit.terminate()
+        except RunError as error:
+            failures.append(error)
+    if failures:
+        raise failures[0]

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from numbers import Real
 from typing import assert_never
+
+import numpy as np
 
 from ..clock import Clock
 from ..errors import ConfigError, nearest, short
 from ..interface import UnitInterface, VariableInfo
+from ..row_store import Array
 from ..system.scenario import Bias, Event, Override, Reset, Scenario, Set
 from ..system.values import as_double, checked, of_type
 from ..texts import Texts
@@ -73,6 +76,31 @@ def check_event(
             assert_never(event)
 
 
+def checked_course(
+    name: str,
+    values: Sequence[float] | Array,
+    interfaces: Mapping[str, UnitInterface],
+    inputs: Mapping[str, InputPlan],
+) -> Array:
+    """Return the values that an input is to receive, one in each step, as doubles, shape (n,).
+
+    Raises ConfigError unless it is a Real input, and all are finite numbers that it can have.
+    """
+    variable = _named_input(name, "follow", interfaces, inputs, "follow")
+    if variable.type != "Real":
+        raise ConfigError(f"follow: {name} is of type {variable.type}; override sets one value of it")
+    try:
+        course: Array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ConfigError(f"follow: {name} needs a list of numbers, not {short(values)}") from error
+    if course.ndim != 1 or not course.size:
+        raise ConfigError(f"follow: {name} needs at least one number, in one row: shape {course.shape}")
+    full = dataclasses.replace(variable, name=name)
+    for extreme in (course.min(), course.max()):  # NaN is both
+        of_type(float(extreme), full, "follow")
+    return course
+
+
 def _input_of(
     event: Override | Bias | Reset,
     interfaces: Mapping[str, UnitInterface],
@@ -80,11 +108,20 @@ def _input_of(
     place: str,
 ) -> VariableInfo:
     """Return the event's input. Raises ConfigError when there is none of its name."""
-    name = event.variable
+    return _named_input(event.variable, event.action, interfaces, inputs, place)
+
+
+def _named_input(
+    name: str,
+    action: str,
+    interfaces: Mapping[str, UnitInterface],
+    inputs: Mapping[str, InputPlan],
+    place: str,
+) -> VariableInfo:
     if name not in inputs:
         raise ConfigError(
             f"{place}: there is no input '{name}'{nearest(name, inputs)}; "
-            f"{event.action} acts on what a unit receives"
+            f"{action} acts on what a unit receives"
         )
     unit, _, variable = name.partition(".")
     return interfaces[unit].variables[variable]

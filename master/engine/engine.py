@@ -7,140 +7,35 @@ results, bit for bit.
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import functools
-import math
 import sys
 import time
 from collections.abc import Callable, Mapping
-from typing import Literal, assert_never
+from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cosim.clock import Clock
 from ...cosim.errors import RunError
 from ...cosim.interface import Value
 from ...cosim.plan.plan import Plan
-from ...cosim.plan.turns import TurnTimes
-from ...cosim.plan.unit_plan import UnitPlan
 from ...cosim.row_store import RowStore, Table
 from ...cosim.system.scenario import Bias, Event, Override, Reset, Set
-from ...cosim.visible import on_one_line
 from ..unit import Unit, floats
 from .ending import EndedWithin, Ending
 from .frame_path import frames_of
 from .initialization import typed
 from .profile import Profile
-from .routes import Act, compile_routes
+from .routes import Act
 from .schedule import Action, schedule, waiting
 from .sender import senders_of
 from .text_notes import TextNotes
+from .turn import Effect, Turn
 
 CHUNK_SECONDS = 0.1
 """The time [s] after which a chunk of steps ends; progress and Ctrl-C are looked at between two chunks."""
 _LEAST, _FIRST = 256, 16384  # the longest chunk has at least so many steps; the first one at most
 _ROOM = 2**22  # bytes that a chunk's rows and stimuli may take
-
-
-@dataclasses.dataclass(frozen=True)
-class Effect:
-    """The effect of an event on an input: `value` replaces the received one, or is added to it.
-
-    Both engines match all kinds, so that mypy names them where a new one is missing.
-    """
-
-    kind: Literal["replace", "add"]
-    value: float
-
-
-class Turn:
-    """One unit in the schedule: its actions, and the overrides and biases of its inputs by slot.
-
-    `memory` has shape (size,); `times` are those of the unit's FMU steps. `ending` gets its request for the
-    end of the run.
-    """
-
-    def __init__(
-        self, unit: Unit, plan: UnitPlan, memory: memoryview[float], clock: Clock, ending: Ending
-    ) -> None:
-        self.unit, self.plan, self.memory, self.ending = unit, plan, memory, ending
-        self.take = compile_routes(plan.routes, memory)
-        self.times = TurnTimes(clock, plan.every, plan.substeps, plan.first)
-        outputs = [group for group in plan.groups if group.kind != "input"]
-        self.continuous = [group for group in outputs if group.kind == "continuous"]
-        self.published = [
-            (slice(g.slot, g.slot + len(g.variables)), memory[g.latest : g.latest + len(g.variables)])
-            for g in self.continuous
-        ]
-        self.read = [
-            (memory[slot : slot + len(g.variables)], g)
-            for g in outputs
-            if g.type == "Real"
-            for slot in [g.latest if g.kind == "continuous" else g.slot]
-        ]
-        self.has_feedthrough = any(group.feedthrough for group in outputs)
-        self.effects: dict[int, Effect] = {}  # by input slot
-
-    def begin(self, k: int) -> None:
-        """Apply overrides and biases to the inputs, set them, and begin the unit's step."""
-        if self.effects:
-            self.apply_effects()
-        self.unit.set_inputs()
-        if self.has_feedthrough:
-            self.unit.get_feedthrough()
-        self.unit.start_step(self.times.steps(k))
-
-    def end(self, k: int) -> None:
-        """Wait for the step and read the outputs.
-
-        Raises RunError when one is NaN or infinite, EndedWithin when the unit ended within the step.
-        """
-        self.unit.finish_step()
-        if self.unit.asked_end is not None:
-            self._request_end(k, self.unit.asked_end)
-        self.unit.get_outputs()
-        self.check_finite()
-
-    def _request_end(self, k: int, asked: float) -> None:
-        clock, end = self.times.clock, k + self.plan.every
-        if clock.told:
-            end = min(end, clock.steps)
-        self.ending.request(self.unit.name, asked, (k, end), (clock.at(k), clock.at(end)))
-
-    def publish(self, k: int) -> None:
-        """Make the outputs after the step, but for the sampled ones, those valid at the next point."""
-        for valid, latest in self.published:
-            self.memory[valid] = latest
-
-    def apply_effects(self) -> None:
-        """Override and bias the slots of inputs."""
-        for slot in self.effects:
-            self.memory[slot] = self.affected(slot, self.memory[slot])
-
-    def affected(self, slot: int, value: float) -> float:
-        """Return what the input of a slot receives in place of a value."""
-        effect = self.effects.get(slot)
-        if effect is None:
-            return value
-        match effect.kind:
-            case "replace":
-                return effect.value
-            case "add":
-                return value + effect.value
-            case _:
-                assert_never(effect.kind)
-
-    def check_finite(self) -> None:
-        """Raise RunError when an output that was just read is NaN or infinite."""
-        for values, group in self.read:
-            # the fastest check: NaN and infinity survive the sum, which huge finite values can reach as well
-            if not math.isfinite(sum(values)):
-                for v, value in zip(group.variables, values, strict=True):
-                    if not math.isfinite(value):
-                        unit = f" {v.unit}" if v.unit else ""
-                        name = f"{self.unit.name}.{v.name}"
-                        raise RunError(on_one_line(f"{name} = {value}{unit}: an output must be finite"))
 
 
 class Engine:
@@ -179,6 +74,7 @@ class Engine:
         self.senders = senders_of(plan, self.view, self.late, log_raw)
         self.frames = frames_of(plan, self.senders, self.memory, log_raw)
         self._events = list(plan.events)
+        self._followed: dict[str, Effect] = {}  # the courses of inputs that no step sets
         self._turn_of_input = {
             group.slot + i: turn
             for turn in self.turns
@@ -334,10 +230,22 @@ class Engine:
         while self._events and self._events[0][0] <= self.k:
             _, event = self._events.pop(0)
             self.effect(event)
+        for name, effect in self._followed.items():
+            if effect.changes(self.k):
+                self._show(name)
 
     def _steps_to_event(self) -> int:
-        """Return the number of steps before the next event."""
-        return self._events[0][0] - self.k if self._events else sys.maxsize
+        """Return the number of steps before the next event, or change of an input that no step sets."""
+        changes = [effect.steps_to_change(self.k) for effect in self._followed.values()]
+        event = self._events[0][0] - self.k if self._events else None
+        return min((steps for steps in (*changes, event) if steps is not None), default=sys.maxsize)
+
+    def follow(self, name: str, course: NDArray[np.float64]) -> None:
+        """Let an input receive one value after the other, shape (n,), in each step from now on.
+
+        The last one stays. One that no step sets is set where the value changes.
+        """
+        self._affect(name, Effect("follow", course=course, first=self.k))
 
     def effect(self, event: Event) -> None:
         """Let an event act from now on, whatever its time; `plan.events.check_event` has accepted it."""
@@ -360,7 +268,15 @@ class Engine:
             effects.pop(slot, None)
         else:
             effects[slot] = effect
+        self._followed.pop(name, None)
+        if effect is not None and effect.kind == "follow" and self._set_by_no_step(name):
+            self._followed[name] = effect
         self._show(name)
+
+    def _set_by_no_step(self, name: str) -> bool:
+        received = self.plan.inputs[name]
+        of_unit = name.partition(".")[2]
+        return of_unit in self._turn_of_input[received.slot].plan.free and received.mailbox is not None
 
     def _set(self, event: Set) -> None:
         """Set an input that nothing drives, or a tunable parameter."""
@@ -376,8 +292,8 @@ class Engine:
         received = self.plan.inputs[name]
         turn = self._turn_of_input[received.slot]
         of_unit = name.partition(".")[2]
-        if of_unit in turn.plan.free and received.mailbox is not None:
-            value = turn.affected(received.slot, float(self.memory[received.mailbox]))
+        if received.mailbox is not None and self._set_by_no_step(name):
+            value = turn.affected(received.slot, float(self.memory[received.mailbox]), self.k)
             self._set_now(name, typed(turn.plan.interface.variables[of_unit], value, self.plan.texts))
 
     def _set_now(self, name: str, value: Value) -> None:

@@ -40,8 +40,9 @@ ROUTE = 4
 
 SLOT, EFFECT_KIND, VALUE_OF = range(3)
 EFFECT_WIDTH = 3
-ADD_TO, REPLACE = range(2)
-"""Columns of EFFECTS, and the kinds: the value is added to the one in the slot, or replaces it."""
+ADD_TO, REPLACE, FOLLOW = range(3)
+"""Columns of EFFECTS, and the kinds: the value is added to the one in the slot, or replaces it, or it is the
+row of DRIVES whose value of the step replaces it."""
 
 # ---- C calls
 

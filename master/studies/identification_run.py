@@ -35,6 +35,7 @@ _SETTLED = 1e-3  # change of the mean from one window to the next, as a share of
 _WINDOWS = 60  # to wait for rest before giving up
 _TRIES = 12  # inputs tried for a working point
 _PULSES = 6  # half periods of the square wave
+_REPORTED = 4096  # steps at most between two reports of progress
 
 
 def longest(sweep: Sweep, step_size: float) -> float:
@@ -246,11 +247,11 @@ class IdentificationRun:
         begin = len(self._column(self.input)) - 1
         count = max(1, round(length / (self.hold * self.step)))
         values = center + signal(self.centers(count, self.hold))
-        for i, value in enumerate(values.tolist()):
-            self.simulation.override(self.input, value)
-            self.simulation.step(self.hold)
-            if i % 64 == 0:
-                self.progress(what, i / count)
+        self.simulation.follow(self.input, np.repeat(values, self.hold))
+        part = max(1, _REPORTED // self.hold)
+        for i in range(0, count, part):
+            self.simulation.step(min(part, count - i) * self.hold)
+            self.progress(what, i / count)
         u, y = self._column(self.input)[begin:-1], self._column(self.output)[begin:]
         return u, self.convert.scale * y + self.convert.offset
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from ...machine import tables as L
-from ..engine import Effect
+from ..turn import Effect
 
 
 def effect_kind(effect: Effect) -> int:
@@ -15,5 +15,7 @@ def effect_kind(effect: Effect) -> int:
             return L.REPLACE
         case "add":
             return L.ADD_TO
+        case "follow":
+            return L.FOLLOW
         case _:
             assert_never(effect.kind)

@@ -48,7 +48,8 @@ class CompiledEngine(Engine):
         self._under_way = first, rows
         # the arrays that are the chunk's own
         log, starts = self._log_buffer(count)
-        drives = np.ascontiguousarray(drives)
+        courses = [effect.over(first, count) for effect in program.followed]
+        drives = np.vstack((drives, *courses)) if courses else np.ascontiguousarray(drives)
         addresses[L.OPS], addresses[L.DRIVES] = ops.ctypes.data, drives.ctypes.data
         addresses[L.ROWS_OF_RUN], addresses[L.LOG] = rows.ctypes.data, log.ctypes.data
         # the steps, in machine code

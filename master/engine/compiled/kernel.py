@@ -141,6 +141,12 @@ def python_act(t, o, k):
 
 
 @inlined
+def driven(t, row, s):
+    """Return the value of a row of DRIVES in step s of the chunk."""
+    return number(word(t, L.DRIVES), row * word(word(t, L.STATE), L.ROOM) + s)
+
+
+@inlined
 def operate(t, m, o, s, k, now, time):
     """Do the operation in row o, in step k (s of the chunk) at `time` [s], whose numerator is `now`."""
     kind, a, b = word(o, L.KIND), word(o, L.A), word(o, L.B)
@@ -175,13 +181,15 @@ def operate(t, m, o, s, k, now, time):
         for j in range(b):
             put_number(row, j, number(m, word(columns, j)))
     elif kind == L.DRIVE:
-        put_number(m, a, number(word(t, L.DRIVES), b * word(word(t, L.STATE), L.ROOM) + s))
+        put_number(m, a, driven(t, b, s))
     elif kind == L.EFFECT:
         e = word(t, L.EFFECTS) + 8 * L.EFFECT_WIDTH * a
         for _ in range(b):
             slot = word(e, L.SLOT)
             if word(e, L.EFFECT_KIND) == L.REPLACE:
                 put_number(m, slot, number(e, L.VALUE_OF))
+            elif word(e, L.EFFECT_KIND) == L.FOLLOW:
+                put_number(m, slot, driven(t, word(e, L.VALUE_OF), s))
             else:
                 put_number(m, slot, number(m, slot) + number(e, L.VALUE_OF))
             e += 8 * L.EFFECT_WIDTH

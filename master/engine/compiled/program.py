@@ -11,11 +11,12 @@ from ...machine import tables as L
 from ...machine.hands import Hand, HandedOver
 from ...machine.rows import CallRows, Cells, KernelTable, Recheck, direct, fill, table
 from ...unit import Unit
-from ..engine import Engine, Turn
+from ..engine import Engine
 from ..profile import Part, part_of
 from ..routes import Act
 from ..schedule import Action
 from ..sender import Sender
+from ..turn import Effect, Turn
 from .codes import effect_kind
 from .rows import mapped, signal_row, times_row
 
@@ -45,6 +46,7 @@ class Program:
         self.signals: list[tuple[Sender, int]] = []  # the message of each row, and the signal's place in it
         self.logged: list[Sender] = []
         self.called, self.stepped = units.called, units.stepped  # the instances of CALLS and UNITS
+        self.followed: list[Effect] = []  # the courses in the chunk, which stand behind the stimuli
         self._effect_rows = 0
         self._handed: dict[str, int] = {}  # rows of HANDS by unit
         self._waiting: dict[int, int] = {}
@@ -75,25 +77,32 @@ class Program:
     def chunk(self, k: int, count: int) -> tuple[KernelTable, list[int]]:
         """Return the operations that are due in steps k to k + count - 1, and their places in all of them.
 
-        Their DUE is set to the first step from k on; overrides and biases are the present ones.
+        Their DUE is set to the first step from k on; overrides and biases are the present ones, and
+        `followed` are the courses among them.
         """
         first, every = self.ops[:, L.FIRST], self.ops[:, L.EVERY]
         passed = np.maximum(k - first, 0)
         due = first + -(-passed // every) * every
         self.ops[:, L.DUE] = due
         busy = due < k + count
+        self.followed = []
         for op, row, turn in self.effects:
             if not turn.effects:
                 busy[op] = False
                 continue
             self.ops[op, L.B] = len(turn.effects)
             for i, (slot, effect) in enumerate(turn.effects.items(), row):
-                fill(
-                    self.effect_table, i,
-                    {L.SLOT: slot, L.EFFECT_KIND: effect_kind(effect), L.VALUE_OF: float(effect.value)},
-                )  # fmt: skip # a row
+                fill(self.effect_table, i, {L.SLOT: slot, L.EFFECT_KIND: effect_kind(effect)})
+                fill(self.effect_table, i, {L.VALUE_OF: self._value_of(effect)})
         places = np.flatnonzero(busy)
         return self.ops[places], places.tolist()
+
+    def _value_of(self, effect: Effect) -> float | int:
+        """Return the value of an effect, or the row of its course among the stimuli of the chunk."""
+        if effect.kind != "follow":
+            return float(effect.value)
+        self.followed.append(effect)
+        return len(self._engine.plan.drives) + len(self.followed) - 1
 
     def parts(self) -> list[Part]:
         """Return the part of each operation, for a profile."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import get_args, get_type_hints
 
 from evcosim.master.engine.compiled.codes import effect_kind
-from evcosim.master.engine.engine import Effect
+from evcosim.master.engine.turn import Effect
 
 
 def test_kinds_of_effects_differ() -> None:
