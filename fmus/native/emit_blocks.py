@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from . import ir
 from .emit_expressions import Scope, argument_list, expression, handed
+from .emit_inlining import derived_name
 from .emit_types import c_name, type_name
 from .values import (
     BOOLEAN,
@@ -274,11 +275,6 @@ def _derive(s: ir.Derive, declared: str, frame: Frame) -> list[str]:
     if s.target.name in frame.unread:
         return []
     return [f"{declared}{target} = {accessor}({given}{memory});{_note(s.note)}"]
-
-
-def derived_name(parameters: str, name: str) -> str:
-    """Return the name of the function that gives a derived value of the parameters."""
-    return f"{parameters}_{name}"
 
 
 def _if(s: ir.If, inner: dict[str, Type], frame: Frame) -> list[str]:

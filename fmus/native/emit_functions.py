@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from . import ir
-from .emit_blocks import Frame, body, derived_name, named, read
+from .emit_blocks import Frame, body, named, read
 from .emit_expressions import Scope
+from .emit_inlining import Calls, called, derived_name
 from .emit_types import argument, c_name, type_name
 from .values import COMPLEX, ArrayType, EnumType, ListType, ParametersType, Scalar, StructType, Type
 
@@ -73,13 +74,15 @@ class Functions:
         accessors = {derived_name(type_name(p), name): by for p, name, _, by in self._derived}
         self.failing = frozenset(fails | {name for name, by in accessors.items() if by in fails})
         self.with_memory = self._in_need_of_memory(accessors)
+        self._in_place = Calls(program).in_place()
+        self._apart = frozenset([*accessors.values(), *(f"{f.name}_computed" for f in remembered(program))])
 
     def _in_need_of_memory(self, accessors: dict[str, str]) -> frozenset[str]:
         """Return the functions that remember their calls, and those that call one of them, however deep."""
-        calls = {f.name: set(_called(f.body)) for f in self._program.functions}
+        calls = {f.name: set(called(f.body)) for f in self._program.functions}
         calls |= {name: {by} for name, by in accessors.items()}
         needing = {f.name for f in remembered(self._program)}
-        while more := {name for name, called in calls.items() if called & needing} - needing:
+        while more := {name for name, its in calls.items() if its & needing} - needing:
             needing |= more
         return frozenset(needing)
 
@@ -117,7 +120,13 @@ class Functions:
         if fails:
             given.append("model_failure *failure")
         returned = "bool" if fails else "void" if f.returns is None else type_name(f.returns)
-        return f"static {returned} {c_name(name)}({', '.join(given) or 'void'})"
+        return f"{self._linkage(name)} {returned} {c_name(name)}({', '.join(given) or 'void'})"
+
+    def _linkage(self, name: str) -> str:
+        """Return how a function is declared: what is computed once is kept out of what each step does."""
+        return (
+            "MODEL_IN_PLACE" if name in self._in_place else "MODEL_APART" if name in self._apart else "static"
+        )
 
     def _function(self, f: ir.Function, name: str) -> str:
         addresses = frozenset(a.name for a in f.arguments if isinstance(a.type, ListType | ParametersType))
@@ -160,8 +169,8 @@ class Functions:
         memory = ["Memory *memory"] if own in self.with_memory else []
         if own in self.failing:
             given = [f"{type_name(p)} *p", f"{type_name(type_)} *result", *memory, "model_failure *failure"]
-            return f"static bool {own}({', '.join(given)})"
-        return f"static {type_name(type_)} {own}({', '.join([f'{type_name(p)} *p', *memory])})"
+            return f"{self._linkage(own)} bool {own}({', '.join(given)})"
+        return f"{self._linkage(own)} {type_name(type_)} {own}({', '.join([f'{type_name(p)} *p', *memory])})"
 
     def _accessor(self, p: ParametersType, name: str, type_: Type, by: str) -> str:
         """Return the function that gives what is derived from the parameters, computed at its first use."""
@@ -177,18 +186,3 @@ class Functions:
         known = [f"    {line}" for line in (*compute, f"p->{name}_known = true;")]
         lines = [f"if (!p->{name}_known) {{", *known, "}", *leave]
         return f"{self._accessor_head(p, name, type_)}\n{{\n" + "".join(f"    {x}\n" for x in lines) + "}\n"
-
-
-def _called(block: object) -> Iterator[str]:
-    """Return the names of the functions of the program that a block calls, accessors of parameters too."""
-    if isinstance(block, ir.Call | ir.Invoke):
-        yield block.function
-    if isinstance(block, ir.Derive):
-        yield derived_name(type_name(block.parameters.type), block.name)
-    if isinstance(block, tuple):
-        for part in block:
-            yield from _called(part)
-    elif hasattr(block, "__dataclass_fields__") and not isinstance(block, ir.Place):
-        for name in block.__dataclass_fields__:
-            if name != "type":
-                yield from _called(getattr(block, name))

@@ -8,6 +8,16 @@
 
 #include "failure.h"
 
+#if defined(__GNUC__)
+/* A function of a step is computed where it is called, so that no record is copied for the call; what a step
+   finds known already is not. */
+#define MODEL_IN_PLACE static inline __attribute__((always_inline))
+#define MODEL_APART static __attribute__((noinline))
+#else
+#define MODEL_IN_PLACE static inline
+#define MODEL_APART static
+#endif
+
 /* One variable that FMI sees; its value reference is its place in the table. */
 typedef struct {
     const char *name;

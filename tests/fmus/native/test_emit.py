@@ -378,3 +378,22 @@ return Small.State(y)""")
     (tmp_path / "model.c").write_text(source)
     command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{RUNTIME}", "model.c"]
     subprocess.run(command, cwd=tmp_path, check=True)
+
+
+def test_a_step_is_computed_in_place_and_what_is_known_already_is_not() -> None:
+    derived = "@cached_property\ndef both(self):\n    return self.a + self.a"
+    long = "".join(f"value = value * {k}.0\n    " for k in range(100))
+    above = f"def twice(value):\n    return value + value\n\n\ndef long(value):\n    {long}return value"
+    model = small(
+        "return Small.State(twice(long(long(long(long(u.u))))) + p.both)", derived=derived, above=above
+    )
+    source = emit.c_source(model, lower(model), "id", "{t}")
+    for head in (
+        "MODEL_IN_PLACE State step(",
+        "MODEL_IN_PLACE double twice(",
+        "MODEL_IN_PLACE double Parameters_both(",
+        "MODEL_APART double compute_both(",
+        "static double long_(",  # 400 statements in place of four calls
+        "static State initial(",
+    ):
+        assert source.count(f"\n{head}") == 2, head  # declared and defined
