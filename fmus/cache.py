@@ -148,6 +148,17 @@ def keep(name: str, content: bytes) -> str:
     return ""
 
 
+def leave(pattern: str, most: int) -> str:
+    """Remove the oldest entries whose names fit a pattern, but for `most`; return "", or why it cannot be."""
+    try:
+        entries = [(path.stat().st_mtime_ns, path) for path in folder().glob(pattern)]
+        for _, path in sorted(entries)[: max(0, len(entries) - most)]:
+            path.unlink(missing_ok=True)
+    except OSError as error:  # another process removes them, or may
+        return error.strerror or str(error)
+    return ""
+
+
 _JUST_NOW = 100_000_000
 """Nanoseconds after a file was written, in which it may be written again and have the same times."""
 

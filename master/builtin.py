@@ -48,6 +48,16 @@ def keep(name: str, content: bytes) -> str:
     return cache.keep(name, content)
 
 
+def keep_some(name: str, content: bytes, most: int) -> str:
+    """Keep bytes as `keep` does, with so many entries at most whose names begin alike, up to the first "-".
+
+    The oldest ones leave the cache.
+    """
+    from ..fmus import cache
+
+    return cache.keep(name, content) or cache.leave(f"{name.partition('-')[0]}-*", most)
+
+
 def state_of(path: str) -> tuple[int, ...] | None:
     """Return the state of a file, which stays the same until it is written; None if it was just now.
 

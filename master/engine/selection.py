@@ -45,10 +45,10 @@ def compile_engine() -> str:
     What is there is not compiled anew.
     Return a notice if that is impossible, else "".
     """
-    from .compiled.cache import compiled, served, wire
+    from .compiled.cache import compiled, one_operation, served, wire
 
     try:
-        notices = compiled()[1], compiled(timed=True)[1], wire()[1]
+        notices = compiled()[1], compiled(timed=True)[1], one_operation()[1], wire()[1]
     except (ImportError, OSError) as error:  # OSError: no memory is left for its libraries
         return _without_numba(error)
     served()

@@ -15,7 +15,6 @@ import struct
 from collections.abc import Callable
 
 import llvmlite.binding as llvm
-import numba
 
 _ALLOCATED, _PROGBITS, _SYMBOLS, _RELOCATIONS = 2, 1, 2, 4  # elf.h
 _PC32, _PLT32 = 2, 4
@@ -37,6 +36,8 @@ def flat(function: Callable[..., int], signature: str = "int64(int64)") -> bytes
 
     Raises NotFlatError.
     """
+    import numba  # half a second; code in LLVM's language needs none of it
+
     compiling = numba.njit(signature, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
     made = compiling(function)
     (compiled,) = made.overloads.values()
@@ -44,10 +45,10 @@ def flat(function: Callable[..., int], signature: str = "int64(int64)") -> bytes
     parameters = llvm.parse_assembly(text).get_function(name).arguments
     kinds = [str(parameter.type) for parameter in parameters]
     entry = _entry(name, f"i{compiled.signature.return_type.bitwidth}", kinds)
-    return linked(_object(text.replace("\ndefine ", f"\n{entry}\ndefine ", 1)), _ENTRY)
+    return linked(object_of(text.replace("\ndefine ", f"\n{entry}\ndefine ", 1)), _ENTRY)
 
 
-def _object(text: str) -> bytes:
+def object_of(text: str) -> bytes:
     """Return the object file of a module in LLVM's language, for this processor."""
     module = llvm.parse_assembly(text)
     target = llvm.Target.from_default_triple().create_target_machine(

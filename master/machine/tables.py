@@ -108,8 +108,8 @@ mailbox)."""
 
 WANTED, STEPS_DONE, START_STEP, OPERATIONS, ROOM, AT, CALLED, DETAIL, PYTHON = range(9)
 CLOCK, CLOCK_A, CLOCK_B, NOTED, STOP_STEP, YIELD, SYSCALL, FUTEX, SEND_BELL, UNLOCK, LOCK = range(9, 20)
-WIRE_CODE = 20
-STATE_SIZE = 21
+WIRE_CODE, OPERATE = range(20, 22)
+STATE_SIZE = 22
 """Places in STATE: steps wanted and done, the first one, the number of OPS, the number of steps with values
 of stimuli; the operation that the kernel is at, the row of CALLS within it (-1: none), and a detail;
 addresses of the function of Python and of the clock, and the clock's arguments, one of which is the address
@@ -117,7 +117,8 @@ of TICKS; 1 if any column WARNINGS or TIMES is not 0; the step at the stop time;
 give the core away, call the system, and send, and the number of the system call futex; functions of Python
 that give its lock back while a side sleeps, and take it (0: the side does not hold it); the address of the
 frame path's function, which gets that of the table WIRE: addresses and numbers of rows of its tables, in the
-order of `cosim.can.wire.tables.Wire`."""
+order of `cosim.can.wire.tables.Wire`; and that of the function that does one operation, for code that does
+the others itself."""
 CLOCK_FIRST, CLOCK_ADVANCE, CLOCK_STOP, CLOCK_DIVISOR, SECONDS, VALUE, TICK_0, TICK_1, NAP = range(9)
 NUMBERS_SIZE = 9
 """Places in NUMBERS: the numbers of the run's clock, and its numerator at STOP_STEP; the longest duration of

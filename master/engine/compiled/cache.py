@@ -54,9 +54,10 @@ _OF_FRAMES = (
 )  # fmt: skip # names
 KERNEL = Piece("engine", "the engine", _OF_KERNEL)
 TIMED = Piece("engine-timed", "the engine", _OF_KERNEL)
+OPERATION = Piece("operation", "the engine", _OF_KERNEL)
 TURNS = Piece("turns", "the turns of isolated units", ("evcosim.master.machine.serving", *_MACHINE))
 WIRE = Piece("wire", "the frames of buses", _OF_FRAMES)
-PIECES = (KERNEL, TIMED, TURNS, WIRE)
+PIECES = (KERNEL, TIMED, OPERATION, TURNS, WIRE)
 
 
 class Made(Protocol):
@@ -83,6 +84,19 @@ def wire() -> tuple[int, str]:
     return _address(WIRE)
 
 
+def one_operation() -> tuple[int, str]:
+    """Return the address of the function that does one operation and a notice, as `compiled` does."""
+    return _address(OPERATION)
+
+
+def operation() -> int:
+    """Return the address of the function that does one operation; 0: the cache has none.
+
+    It is made with the kernel.
+    """
+    return _made[OPERATION.name].address if _found(OPERATION) else 0
+
+
 def at_hand(timed: bool, frames: bool) -> bool:
     """Return True if a run finds its machine code without numba: `frames`: it has some on a bus."""
     return all(_found(piece) for piece in [TIMED if timed else KERNEL, *([WIRE] if frames else [])])
@@ -94,6 +108,8 @@ def _address(piece: Piece) -> tuple[int, str]:
         from .compiling import made
 
         _made[piece.name], reason = made(piece)
+        if piece is KERNEL:  # no run waits for it alone
+            _address(OPERATION)
         if reason:
             notice = f"cannot use the cache folder {cache_folder()} ({reason}): the engine is compiled anew"
     return _made[piece.name].address, notice
@@ -135,10 +151,10 @@ def _kept(piece: Piece) -> bytes | None:
 
 def entry(piece: Piece, kind: str = "bin") -> str:
     """Return the name of a piece's entry in the cache. Raises ImportError without numba."""
-    return f"{piece.name}-{_digest(piece.sources)}.{kind}"
+    return f"{piece.name}-{digest(piece.sources)}.{kind}"
 
 
-def _digest(sources: tuple[str, ...]) -> str:
+def digest(sources: tuple[str, ...]) -> str:
     """Return a digest of these modules, of the libraries that compile them and of this processor."""
     parts = [_source(name) for name in (*sources, *_COMPILING)]
     parts += [importlib.metadata.version(name).encode() for name in _LIBRARIES]

@@ -28,13 +28,14 @@ from ...machine.hands import POSSIBLE
 from ...machine.loaded import Loaded
 from ..progress import announce
 from . import frames, kernel
-from .cache import KERNEL, TIMED, TURNS, WIRE, Made, Piece, entry
+from .cache import KERNEL, OPERATION, TIMED, TURNS, WIRE, Made, Piece, entry
 
 _NOTHING = b"\xc3"  # ret
 _OF_ONE = "int64(int64)"
 _FUNCTIONS: dict[Piece, tuple[Callable[..., int], str]] = {
     KERNEL: (kernel.run, _OF_ONE),
     TIMED: (kernel.run_timed, _OF_ONE),
+    OPERATION: (kernel.run_one, "int64(int64, int64, int64, int64)"),
     TURNS: (serving.run, _OF_ONE),
     WIRE: (frames.function(), frames.SIGNATURE),
 }

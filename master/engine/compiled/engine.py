@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -14,13 +14,14 @@ from ....cosim.can.quantization import ChannelError
 from ...fmi import crash
 from ...machine import tables as L
 from ...machine.hands import HandedOver
-from ...machine.rows import collect_warnings
+from ...machine.rows import KernelTable, collect_warnings
 from ...machine.surroundings import Surroundings, address
 from ..engine import CHUNK_SECONDS, Engine
 from .addresses import wire_table
-from .cache import compiled, served, wire
+from .cache import compiled, operation, served, wire
 from .placement import Placement
 from .program import Program
+from .straight import Straight
 
 _Python = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64)
 _Helper = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
@@ -36,13 +37,13 @@ class CompiledEngine(Engine):
 
     name = "compiled"
     _program: Program | None = None
+    _straight: Straight | None = None
 
     def _run(self, count: int, drives: NDArray[np.float64], rows: NDArray[np.float64]) -> None:
         program = self._program
         assert program is not None  # it was made at the start
         state, first, addresses = self._state, self.k, self._addresses
-        # the operations that are due in this chunk
-        ops, self._places = program.chunk(first, count)
+        kernel, ops = self._kernel_for(program, first, count)
         state[L.WANTED], state[L.STEPS_DONE], state[L.START_STEP], state[L.ROOM] = count, 0, first, count
         state[L.OPERATIONS], state[L.CALLED] = len(ops), -1
         self._under_way = first, rows
@@ -56,7 +57,7 @@ class CompiledEngine(Engine):
         self._raised: BaseException | None = None
         try:
             with self._crash_report(program):
-                result = self._kernel(addresses.ctypes.data)
+                result = kernel(addresses.ctypes.data)
         finally:  # also when Ctrl-C comes within
             self.k = first + int(state[L.STEPS_DONE])
             self._collect(log, starts)
@@ -66,6 +67,23 @@ class CompiledEngine(Engine):
             if result != L.RAISED:
                 self._recheck(program, result)
             self._finish_step(program, rows, first)
+
+    def _kernel_for(
+        self, program: Program, first: int, count: int
+    ) -> tuple[Callable[[int], int], KernelTable]:
+        """Return the function that does the next `count` steps, and its operations."""
+        if self._straight is None or not self._straight.address:
+            # the operations that are due in this chunk
+            ops, self._places = program.chunk(first, count)
+            return self._kernel, ops
+        program.begin(first)
+        self._places = self._all_places
+        return self._kind(self._straight.address), program.ops
+
+    def advance(self, steps: int, progress: Callable[[int], None] | None = None) -> None:
+        if self._straight is not None:
+            self._straight.expect(steps)
+        super().advance(steps, progress)
 
     def rows_under_way(self) -> NDArray[np.float64]:
         if (under_way := self._under_way) is None:
@@ -146,10 +164,14 @@ class CompiledEngine(Engine):
         notice = self._load_wire()
         for place, array in (tables | self._surroundings.tables).items():
             self._addresses[place] = array.ctypes.data
-        kind = _HOLDING if program.holds_python else _RELEASING
+        self._kind = _HOLDING if program.holds_python else _RELEASING
         function, self.notice = compiled(timed=self.profile is not None)
         self.notice = self.notice or notice
-        self._kernel = kind(function)
+        self._kernel = self._kind(function)
+        self._state[L.OPERATE] = operation()
+        self._all_places = list(range(len(program.ops)))
+        if self.profile is None:
+            self._straight = Straight(program)
         self._quicken()
 
     def _load_wire(self) -> str:

@@ -256,3 +256,10 @@ def run(t):
 def run_timed(t):
     """Follow the tables and add up the time of each operation, with that of reading the clock."""
     return follow(t, True)
+
+
+def run_one(t, o, s, k):
+    """Do the operation in row o, in step k (s of the chunk), as code of its own asks for it."""
+    now = numerator(t, k)
+    time = now / number(word(t, L.NUMBERS), L.CLOCK_DIVISOR)
+    return operate(t, word(t, L.MEMORY), o, s, k, now, time)

@@ -77,25 +77,30 @@ class Program:
     def chunk(self, k: int, count: int) -> tuple[KernelTable, list[int]]:
         """Return the operations that are due in steps k to k + count - 1, and their places in all of them.
 
-        Their DUE is set to the first step from k on; overrides and biases are the present ones, and
+        They are as `begin` sets them.
+        """
+        self.begin(k)
+        busy = self.ops[:, L.DUE] < k + count
+        for op, _, _ in self.effects:
+            busy[op] &= self.ops[op, L.B] > 0
+        places = np.flatnonzero(busy)
+        return self.ops[places], places.tolist()
+
+    def begin(self, k: int) -> None:
+        """Set DUE of all operations to the first step from k on, and the present overrides and biases.
+
         `followed` are the courses among them.
         """
         first, every = self.ops[:, L.FIRST], self.ops[:, L.EVERY]
         passed = np.maximum(k - first, 0)
         due = first + -(-passed // every) * every
         self.ops[:, L.DUE] = due
-        busy = due < k + count
         self.followed = []
         for op, row, turn in self.effects:
-            if not turn.effects:
-                busy[op] = False
-                continue
             self.ops[op, L.B] = len(turn.effects)
             for i, (slot, effect) in enumerate(turn.effects.items(), row):
                 fill(self.effect_table, i, {L.SLOT: slot, L.EFFECT_KIND: effect_kind(effect)})
                 fill(self.effect_table, i, {L.VALUE_OF: self._value_of(effect)})
-        places = np.flatnonzero(busy)
-        return self.ops[places], places.tolist()
 
     def _value_of(self, effect: Effect) -> float | int:
         """Return the value of an effect, or the row of its course among the stimuli of the chunk."""

@@ -13,10 +13,12 @@ from evcosim.cosim.units.spellings import EXACT
 from evcosim.cosim.units.words import WORDS
 from evcosim.master.engine.compiled.engine import CompiledEngine
 from evcosim.master.engine.initialization import initialize
+from evcosim.master.machine.hands import POSSIBLE
 from evcosim.master.simulation import Simulation
 from support.c_fmu import mixed_fmu
 from support.mocks import MockUnit, plan_of, real, started
 from support.needs import need_c_compiler
+from support.straight import by_code, is_straight
 
 pytestmark = pytest.mark.usefixtures("warm_units")
 
@@ -39,27 +41,29 @@ variable = "n0.u0"
 """
 
 
-def run(engine, system, scenario=None, steps=None, **options):
+def run(engine, system, scenario=None, steps=None, straight=False, **options):
     """Recorded bits, saturations, warnings and the error's text ("": none)."""
     options = {"isolation": "none"} | options
-    with Simulation(system, scenario, engine=engine, **options) as simulation:
+    with by_code(straight), Simulation(system, scenario, engine=engine, **options) as simulation:
         assert simulation.manifest()["experiment"]["engine"] == engine
         error = ""
         try:
             simulation.step(min(simulation.plan.steps, steps or simulation.plan.steps))
         except RunError as failure:
             error = str(failure)
+        assert is_straight(simulation._engine) == (straight and POSSIBLE)
         results = simulation.results
         bits = np.stack([results[v.name] for v in results.variables]).view(np.int64)
         return bits, simulation.manifest()["saturations"], simulation.warnings, error
 
 
 def same(system, scenario=None, steps=None, **options):
-    """Both engines agree; what they gave."""
+    """Both engines agree, the compiled one by its tables and by code for the structure; what they gave."""
     python = run("python", system, scenario, steps, **options)
-    compiled = run("compiled", system, scenario, steps, **options)
-    assert python[1:] == compiled[1:]
-    assert np.array_equal(python[0], compiled[0])
+    for straight in (False, True):
+        compiled = run("compiled", system, scenario, steps, straight, **options)
+        assert python[1:] == compiled[1:]
+        assert np.array_equal(python[0], compiled[0])
     return python
 
 
