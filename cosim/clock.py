@@ -16,6 +16,7 @@ rounding alone: by no more than 5e-12 of itself, half of its 12th digit, and a t
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -144,6 +145,7 @@ def steps_to(delay: float, step: float) -> int:
     return Clock.counted(0.0, step, 0).step_at(delay)
 
 
+@functools.lru_cache(maxsize=1024)  # a plan asks often for the same few times
 def _decimal(seconds: float) -> Fraction:
     """Return the number that was written: 0.01 is 1/100, not the nearest double."""
     return Fraction(repr(float(seconds)))

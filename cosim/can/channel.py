@@ -20,6 +20,7 @@ for a function that counts them.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any, assert_never
@@ -65,14 +66,6 @@ class MessageChannel:
     ConfigError when a route's signal is not of the message, is given twice, or cannot be carried.
     """
 
-    transmit: Callable[[Any, int], None]
-    """Send the message: transmit(memory, k).
-
-    `memory` is an indexable of floats (fastest: a memoryview of doubles); `k` is the communication step, for
-    the records only, since the caller knows when the message is due. All signals are read and checked before
-    any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
-    """
-
     def __init__(
         self,
         message: Message,
@@ -89,10 +82,24 @@ class MessageChannel:
         ]
         self._log, self._logged = bytearray(), raw_store(len(routes))
         self._format = struct.Struct("<q" + "".join(_log_type(op)[0] for op in self.operations))
-        self.source = _source(self.routes, self.operations, log_raw)
+
+    @property
+    def source(self) -> str:
+        """The text of `transmit`."""
+        return _source(self.routes, self.operations, self.logs)
+
+    @functools.cached_property
+    def transmit(self) -> Callable[[Any, int], None]:
+        """Send the message: transmit(memory, k).
+
+        `memory` is an indexable of floats (fastest: a memoryview of doubles); `k` is the communication step,
+        for the records only, since the caller knows when the message is due. All signals are read and checked
+        before any receiver's slot is written. Raises ChannelError for a value that cannot be sent.
+        """
         names = self._names() | {"extend": self._log.extend, "pack": self._format.pack}
-        exec(compile(self.source, f"<channel {message.name}>", "exec"), names)
-        self.transmit = names["transmit"]
+        exec(compile(self.source, f"<channel {self.message.name}>", "exec"), names)
+        transmit: Callable[[Any, int], None] = names["transmit"]
+        return transmit
 
     @property
     def saturations(self) -> dict[str, Saturation]:

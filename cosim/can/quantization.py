@@ -41,7 +41,7 @@ import math
 import struct
 import sys
 from collections.abc import Callable
-from typing import Literal, assert_never
+from typing import Literal, NamedTuple, assert_never
 
 from ..errors import ConfigError, RunError
 from .bus_settings import BusSettings, Rounding
@@ -204,21 +204,41 @@ def operation(signal: Signal, settings: BusSettings) -> SignalOperation:
 
     Raises ConfigError when no value at all can be sent.
     """
-    low, high = _unsaturated(signal, settings)
-    if low > high:
+    about = repr((
+        *(signal.length, signal.signed, signal.is_float, signal.scale, signal.offset),
+        *(signal.minimum, signal.maximum, signal.not_available, settings.rounding, settings.overflow),
+    ))  # fmt: skip # in words, since -0.0 equals 0.0, and 1 equals 1.0
+    if (limits := _limits.get(about)) is None:
+        limits = _limits_of(signal, settings)
+        if len(_limits) >= _MOST_LIMITS:
+            _limits.clear()
+        _limits[about] = limits
+    if limits.low > limits.high:
         raise ConfigError(f"signal '{signal.name}': no value in {_range_text(signal)} can be sent")
-    saturates = settings.overflow == "saturate"
-    return SignalOperation(
-        signal=signal,
-        kind=_kind(signal),
-        settings=settings,
-        scale=float(signal.scale),
-        offset=float(signal.offset),
-        low=low,
-        high=high,
-        raw_below=reference(signal, settings, -math.inf)[0] if saturates else None,
-        raw_above=reference(signal, settings, math.inf)[0] if saturates else None,
-    )
+    scale, offset = float(signal.scale), float(signal.offset)
+    return SignalOperation(signal, _kind(signal), settings, scale, offset, *limits)
+
+
+class _Limits(NamedTuple):
+    """The numbers of a SignalOperation that are searched for, and do not depend on a signal's name."""
+
+    low: float
+    high: float
+    raw_below: int | float | None
+    raw_above: int | float | None
+
+
+_limits: dict[str, _Limits] = {}
+"""Those that this process has found, by all that they depend on."""
+_MOST_LIMITS = 4096
+
+
+def _limits_of(signal: Signal, settings: BusSettings) -> _Limits:
+    low, high = _unsaturated(signal, settings)
+    if low > high or settings.overflow != "saturate":
+        return _Limits(low, high, None, None)
+    below, above = (reference(signal, settings, end)[0] for end in (-math.inf, math.inf))
+    return _Limits(low, high, below, above)
 
 
 def _kind(signal: Signal) -> Kind:

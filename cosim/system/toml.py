@@ -152,12 +152,17 @@ def read_toml(path: Path, model: type[_Model]) -> _Model:
     try:
         # as the text of a file, with the line ends of all systems
         text = content(path).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
-        data = parsed(text)
+        data = _parsed_before(text) if len(text) <= _KEPT else parsed(text)
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: is not UTF-8 text: {error.reason} at byte {error.start}") from error
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path}: is not valid TOML: {error}") from error
     return validate(data, model, str(path))
+
+
+_KEPT = 100_000
+"""Characters of a text whose tables a process keeps, as of a system that runs often; models copy them."""
+_parsed_before = functools.lru_cache(maxsize=32)(parsed)
 
 
 def validate(data: Any, model: type[_Model], place: str) -> _Model:

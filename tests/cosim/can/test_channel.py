@@ -328,3 +328,10 @@ def test_sixteen_signals_take_less_than_six_microseconds(log_raw: bool) -> None:
         _best(lambda: transmit(memory, 0), 1000) / _best(move, 1000) for _ in range(3)
     )  # both are measured at the same time, so a busy machine slows both
     assert ratio < 4.0, f"{ratio:.2f} times the yardstick\n{channel.source}"
+
+
+def test_the_code_is_made_for_who_calls_it() -> None:
+    """The compiled engine does the transmissions itself."""
+    channel = channel_of(THROTTLE)
+    assert "transmit" not in vars(channel)
+    assert channel.transmit is channel.transmit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from fractions import Fraction
 
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from evcosim.cosim.can import quantization
 from evcosim.cosim.can.bus_settings import BusSettings
 from evcosim.cosim.can.database import Signal
 from evcosim.cosim.can.quantization import ChannelError, decode, operation, quantize, reference
@@ -82,6 +84,39 @@ def test_the_constants_are_those_of_the_definition(signal: Signal) -> None:
         other = operation(signal, BusSettings(overflow=overflow))  # type: ignore[arg-type] # plain text
         assert (other.raw_below, other.raw_above) == (None, None)
     assert op.settings == SATURATE
+
+
+ALIKE = [
+    dataclasses.replace(Signal("S", 0, 32, is_float=is_float), **changes)
+    for is_float in (False, True)
+    for changes in (
+        {"scale": 1},
+        {"scale": 1.0},
+        {"offset": 0.0, "minimum": 0.0},
+        {"offset": -0.0, "minimum": -0.0},
+        {"offset": -0.0, "maximum": 0},
+        {"name": "T", "start": 32},
+        {"signed": True},
+        {"not_available": 0},
+    )
+]
+
+
+@given(st.lists(st.tuples(st.sampled_from(ALIKE), settings), min_size=2))
+def test_constants_that_were_found_before_are_those_of_the_same_signal(
+    asked: list[tuple[Signal, BusSettings]],
+) -> None:
+    together = [repr(operation(signal, use)) for signal, use in asked]
+    for (signal, use), found in zip(asked, together, strict=True):
+        quantization._limits.clear()
+        assert repr(operation(signal, use)) == found
+
+
+def test_the_constants_that_are_kept_are_so_many_at_most(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(quantization, "_MOST_LIMITS", 3)
+    for length in range(1, 9):
+        operation(Signal("S", 0, length), SATURATE)
+        assert len(quantization._limits) <= 3
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field, ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from evcosim.cosim.errors import ConfigError
-from evcosim.cosim.system.system import SystemFile, load_system
+from evcosim.cosim.system.system import SystemFile, load_system, system_names
 from evcosim.cosim.system.toml import (
     DATA,
     FileModel,
@@ -171,3 +172,19 @@ def test_a_whole_number_that_a_double_rounds_is_refused_for_a_key_of_doubles() -
         ValidationError, match="x = 9007199254740993 is no number that a double holds exactly"
     ):
         Numbers(x=2**53 + 1)
+
+
+def test_what_is_made_of_a_text_twice_has_nothing_in_common() -> None:
+    """The tables of a text are kept, and whoever changes what was made of them changes that alone."""
+
+    def parts(model: object) -> Iterator[object]:
+        for part in vars(model).values() if isinstance(model, BaseModel) else model:  # type: ignore[attr-defined] # of its kind
+            if isinstance(part, list | dict | BaseModel):
+                yield part
+                yield from parts(list(part.values()) if isinstance(part, dict) else part)
+
+    for name in system_names():
+        path = DATA / "systems" / f"{name}.toml"
+        first, second = read_toml(path, SystemFile), read_toml(path, SystemFile)
+        assert first == second
+        assert not {id(part) for part in parts(first)} & {id(part) for part in parts(second)}
