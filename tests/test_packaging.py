@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import hashlib
 import importlib.util
+import json
 import re
 import shutil
 import subprocess
@@ -15,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+from evcosim.fmus.catalog import CATALOG
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -100,9 +104,9 @@ def test_a_whole_wheel_passes(check_wheel, tmp_path):
     assert found_in(check_wheel, tmp_path, contents(check_wheel)) == []
 
 
-def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes]) -> list[str]:
-    """Return the defects that the check finds in a wheel of these files."""
-    wheel = folder / "evcosim.whl"
+def found_in(check_wheel: Any, folder: Path, files: dict[str, bytes], platform: str = "any") -> list[str]:
+    """Return the defects that the check finds in a wheel of these files for a platform."""
+    wheel = folder / f"evcosim-0-py3-none-{platform}.whl"
     with zipfile.ZipFile(wheel, "w") as archive:
         for name, data in files.items():
             archive.writestr(name, data)
@@ -146,3 +150,58 @@ def test_a_wheel_with_less_or_another_file_fails(check_wheel, tmp_path, name):
     assert found_in(check_wheel, tmp_path, without) == [f"it lacks {name}"]
     older = whole | {name: b"# an earlier version\n"}
     assert found_in(check_wheel, tmp_path, older) == [f"{name} is not the one of the package"]
+
+
+@pytest.fixture
+def shipped() -> dict[str, bytes]:
+    """The libraries of a wheel for a platform, and their record."""
+    content = b"a library"
+    digest = hashlib.sha256(content).hexdigest()
+    keys = [(name, fmi, minor) for name in CATALOG for fmi in (2, 3) for minor in (11, 12, 13, 14)]
+    record = {repr(key): (f"{key[0]}_fmi{key[1]}_py311.so", digest) for key in keys}
+    files = {file: content for file, _ in record.values()}
+    files["record.json"] = json.dumps({"linux64": record}).encode()
+    return {f"{SHIPPED}{name}": data for name, data in files.items()}
+
+
+SHIPPED = "evcosim/fmus/native/shipped/"
+
+
+def test_a_wheel_for_a_platform_has_the_libraries(check_wheel, tmp_path, shipped):
+    whole = contents(check_wheel)
+    assert found_in(check_wheel, tmp_path, whole | shipped, "manylinux_2_17_x86_64") == []
+    assert found_in(check_wheel, tmp_path, whole, "manylinux_2_17_x86_64") == [
+        f"it lacks {SHIPPED}record.json"
+    ]
+    found = found_in(check_wheel, tmp_path, whole | shipped)  # said to be a pure one
+    assert len(found) == len(shipped) and all("which no package has" in text for text in found)
+
+
+def test_libraries_that_are_not_the_recorded_ones_fail(check_wheel, tmp_path, shipped):
+    whole, name = contents(check_wheel) | shipped, f"{SHIPPED}Scooter_fmi2_py311.so"
+    changed = found_in(check_wheel, tmp_path, whole | {name: b"another"}, "manylinux_2_17_x86_64")
+    assert set(changed) == {f"{name} is not the recorded one"}
+    lacking = {key: data for key, data in whole.items() if key != name}
+    assert found_in(check_wheel, tmp_path, lacking, "linux_x86_64") == [f"it lacks {name}"]
+    more = whole | {f"{SHIPPED}Old_fmi2_py311.so": b""}
+    assert found_in(check_wheel, tmp_path, more, "linux_x86_64") == [
+        f"it has {SHIPPED}Old_fmi2_py311.so, which no package has"
+    ]
+
+
+def test_a_model_that_is_left_out_of_the_libraries_fails(check_wheel, tmp_path, shipped):
+    record = json.loads(shipped[f"{SHIPPED}record.json"])
+    left = {key: row for key, row in record["linux64"].items() if not row[0].startswith("Battery_fmi3")}
+    files = {name: data for name, data in shipped.items() if "Battery_fmi3" not in name}
+    files[f"{SHIPPED}record.json"] = json.dumps({"win64": left}).encode()
+    found = found_in(check_wheel, tmp_path, contents(check_wheel) | files, "linux_x86_64")
+    assert found == [
+        f"{SHIPPED}record.json is of win64",
+        f"{SHIPPED}record.json has 4 libraries of Battery, not 8",
+    ]
+
+
+def test_a_wheel_that_is_too_large_fails(check_wheel, tmp_path, monkeypatch):
+    monkeypatch.setattr(check_wheel, "_MOST", 1000)
+    (said,) = found_in(check_wheel, tmp_path, contents(check_wheel))
+    assert re.fullmatch(r"it has \d{6,} bytes, more than 1000", said)
