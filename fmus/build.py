@@ -152,18 +152,18 @@ def made_of(
     """Return the FMU of a model of one's own, noted as built here. Raises what `build_model` raises."""
     module, file = file_of(model.__module__)
     recipe = recipe_of(model.__qualname__, module, file, experiment or Experiment(), version, license)
-    left = ""
+    left, folder = "", own_roots(module, file).folder
     if wanted is not None:
         from .native.build import content_of
 
         try:
-            return Made(recipe.name, content_of(recipe, model, wanted))
+            return Made(recipe.name, content_of(recipe, model, wanted, folder))
         except Unsupported as error:
             if wanted.require:
                 raise
             left = str(error)
     content = _content(recipe, model)
-    records.note(content, recipe.name, own_roots(module, file).folder)
+    records.note(content, recipe.name, folder)
     return Made(recipe.name, content, left)
 
 

@@ -14,7 +14,7 @@ from . import cache
 from .build import made_of
 from .catalog import CATALOG, Experiment, model_file
 from .native.wanted import Wanted
-from .outdated import carried_model
+from .outdated import model_files
 
 
 def build_file(path: Path, folder: Path | None = None) -> list[Path]:
@@ -53,11 +53,11 @@ def build_wanted(path: Path, folder: Path | None, wanted: Wanted | None) -> list
 
 def _check_free(fmu: Path, path: Path) -> None:
     """Raise ValueError where the FMU is that of another file, which has a model of the same name."""
-    module = carried_model(fmu)
-    other = path.with_name(f"{module}.py")
-    if module and module != path.stem and other.is_file():
+    others = model_files(fmu)
+    if others and path not in others:
+        other = others[0].name if others[0].parent == path.parent else others[0]
         raise ValueError(
-            f"{fmu.name} is there already, of {other.name}: give one of the two models another name, or "
+            f"{fmu.name} is there already, of {other}: give one of the two models another name, or "
             "build it elsewhere (--output)"
         )
 

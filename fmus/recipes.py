@@ -18,6 +18,9 @@ from . import cache, runtime
 from .catalog import CATALOG, Experiment, model_file
 from .sources import Source, collect, models_folder
 
+PYTHON_FILES = "sources/python_files.txt"
+"""The entry of a native FMU that names the files of a user's own model, with digests, as `sha256sum` does."""
+
 _OWN_LICENSE = "MIT"
 _HERE = Path(__file__).parent
 
@@ -54,6 +57,13 @@ class Recipe(NamedTuple):
     def identity(self) -> str:
         """Name of the package inside the FMU of Python."""
         return identity_of(self.name, self.digest)
+
+    @property
+    def python_files(self) -> str:
+        """The content of `PYTHON_FILES`, the model's file first; "" for a built-in model."""
+        own = [each for each in self.sources if each.module.partition(".")[0] != "evcosim"]
+        own.sort(key=lambda each: (each.module != self.module, each.path))
+        return "".join(f"{hashlib.sha256(each.content).hexdigest()}  {each.path}\n" for each in own)
 
 
 def catalog_identity(name: str) -> str:

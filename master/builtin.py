@@ -127,12 +127,10 @@ def outdated(path: Path, digest: str) -> str:
     found = changed_source(path, digest)
     if found is None:
         return ""
-    changed, model = found
-    said = f"{path} was built before {_as_typed(changed)} was changed"
-    if path.resolve().parent == model.parent:
-        return f"{said}: 'evcosim build {shlex.quote(_as_typed(model))}' builds it anew"
-    into = shlex.quote(str(path.parent))
-    return f"{said}: 'evcosim build {shlex.quote(_as_typed(model))} -o {into}' builds it anew"
+    command = f"evcosim build {shlex.quote(_as_typed(found.model))}{found.options}"
+    if path.resolve().parent != found.model.parent:
+        command += f" -o {shlex.quote(str(path.parent))}"
+    return f"{path} was built before {_as_typed(found.file)} was changed: '{command}' builds it anew"
 
 
 def _as_typed(file: Path) -> str:

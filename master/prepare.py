@@ -160,7 +160,8 @@ def _is_a_name(system: System, unit: str) -> bool:
 def _outdated(fmus: Mapping[str, Fmu]) -> list[str]:
     """Return a sentence for each FMU of the user's own whose model was changed since it was built."""
     cache = cache_folder().resolve()  # what is in it, is of the sources that there are
-    own = [fmu for fmu in fmus.values() if fmu.holds_python and not fmu.path.resolve().is_relative_to(cache)]
+    made = [fmu for fmu in fmus.values() if fmu.holds_python or fmu.c_sources]
+    own = [fmu for fmu in made if not fmu.path.resolve().is_relative_to(cache)]
     return list(dict.fromkeys(said for fmu in own if (said := outdated(fmu.path, fmu.digest))))
 
 

@@ -70,13 +70,16 @@ def native_parts(recipe: Recipe, model: type[Model]) -> NativeParts:
     return _parts(recipe, model, _digest(recipe.model_digest))
 
 
-def content_of(recipe: Recipe, model: type[Model] | None = None, wanted: Wanted = DEFAULT) -> bytes:
+def content_of(
+    recipe: Recipe, model: type[Model] | None = None, wanted: Wanted = DEFAULT, folder: Path | None = None
+) -> bytes:
     """Return the bytes of the native FMU of a recipe's model, which are noted as built here.
 
-    Raises Unsupported, ToolchainError, ValueError for an unknown unit of measure or another version of FMI.
+    `folder` is that of the files of a model of the user's own. Raises Unsupported, ToolchainError, ValueError
+    for an unknown unit of measure or another version of FMI.
     """
     _require_libraries(wanted, built_in=model is None)
-    return _noted(native_parts(recipe, model or _model(recipe)), wanted)
+    return _noted(native_parts(recipe, model or _model(recipe)), wanted, folder)
 
 
 def library_of(path: Path) -> str:
@@ -100,11 +103,11 @@ def _require_libraries(wanted: Wanted, built_in: bool) -> None:
             compiler(target)
 
 
-def _noted(parts: NativeParts, wanted: Wanted) -> bytes:
+def _noted(parts: NativeParts, wanted: Wanted, folder: Path | None = None) -> bytes:
     from .package import native_made
 
     made = native_made(parts, platforms=wanted.platforms, fmi=wanted.fmi)
-    records.note(made.content, parts.model.__name__, library=made.library)
+    records.note(made.content, parts.model.__name__, folder, made.library)
     return made.content
 
 
@@ -183,7 +186,8 @@ def _parts(recipe: Recipe, model: type[Model], digest: str) -> NativeParts:
 
     identity, token = package.identity_of(recipe.name, digest), package.token_of(digest)
     source = emit.c_source(model, lower.lower(model), identity, token)
-    return package.NativeParts(model, source, digest, recipe.experiment, recipe.version, recipe.license)
+    about = recipe.experiment, recipe.version, recipe.license, recipe.python_files
+    return package.NativeParts(model, source, digest, *about)
 
 
 def _model(recipe: Recipe) -> type[Model]:

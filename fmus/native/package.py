@@ -5,6 +5,7 @@
     sources/model.c                        the model
     sources/*.c, *.h                       the runtime of all models
     sources/buildDescription.xml           which files, which flags
+    sources/python_files.txt               the files of a model of the user's own, with their digests
     documentation/licenses/evcosim.txt
 
 The same sources and compilers give the same bytes. Compilers see the files of `sources` alone, under the same
@@ -25,6 +26,7 @@ from .. import cache, runtime
 from ..archive import packed
 from ..catalog import Experiment
 from ..description import Origin, describe, written
+from ..recipes import PYTHON_FILES
 from . import shipped, toolchain
 from .description3 import describe_3
 
@@ -35,7 +37,10 @@ _OF_FMI = {2: ("fmi2.c", "fmi2_types.h"), 3: ("fmi3.c", "fmi3_types.h")}
 
 
 class NativeParts(NamedTuple):
-    """The ingredients of a native FMU; `digest` has 32 hexadecimal digits and stands for all of them."""
+    """The ingredients of a native FMU; `digest` has 32 hexadecimal digits and stands for all of them.
+
+    `python_files` is the content of the entry of that name, left out where it is empty.
+    """
 
     model: type[Model]
     source: str
@@ -43,6 +48,7 @@ class NativeParts(NamedTuple):
     experiment: Experiment
     version: str
     license: str
+    python_files: str = ""
 
 
 def identity_of(name: str, digest: str) -> str:
@@ -99,6 +105,8 @@ def native_made(parts: NativeParts, *, platforms: Sequence[str] = (), fmi: int =
         if fmi == 2
         else describe_3(parts.model, origin, parts.experiment)
     )
+    if parts.python_files:
+        entries[PYTHON_FILES] = parts.python_files.encode()
     entries["documentation/licenses/evcosim.txt"] = runtime.license_text("evcosim")
     made: list[str] = []
     for target in dict.fromkeys(targets):

@@ -54,15 +54,19 @@ def test_build_of_a_file_of_ones_own(evcosim, tmp_path):
     refused(evcosim("build", "model.c"), "model.c: is C code, not a model", "docs/how-to/c-vehicle.md")
 
 
-def test_a_run_warns_of_an_fmu_that_is_older_than_its_model(evcosim, tmp_path):
+@pytest.mark.parametrize("native", [(), ("--native",)])
+def test_a_run_warns_of_an_fmu_that_is_older_than_its_model(native, evcosim, tmp_path):
     """The command that the warning names ends it."""
+    if native:
+        need_c_compiler()
     assert evcosim("new", "car").code == 0
+    assert evcosim("build", "car/models/vehicle.py", *native).out.endswith("car/models/Vehicle.fmu\n")
     run = ("run", "car/car.toml", "--stop-time", "1", "--no-plot", "--no-report", "-o", "out")
     assert "was built before" not in evcosim(*run).out
     model = tmp_path / "car" / "models" / "vehicle.py"
     model.write_text(model.read_text(encoding="utf-8").replace("var(40.0", "var(50.0"), encoding="utf-8")
     said = " ".join(evcosim(*run).out.split())
-    command = "evcosim build car/models/vehicle.py"
+    command = " ".join(("evcosim build car/models/vehicle.py", *native))
     assert f"car/models/Vehicle.fmu was built before car/models/vehicle.py was changed: '{command}'" in said
     assert evcosim(*command.split()[1:]).code == 0
     assert "was built before" not in evcosim(*run).out
