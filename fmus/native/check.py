@@ -2,8 +2,8 @@
 
 Both run with random parameters, inputs, start times and step sizes, and go back to states that were saved.
 The model in Python is called directly: its functions are what the FMU of Python calls, and the messages of
-failures are made by the same module. Where the step is long and the parameters are any, a model may take
-millions of inner steps: such runs are few and short.
+failures are made by the same module. Where its parameters are any, a model may take millions of inner steps:
+such runs are short.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from .twin import Twin
 
 STEPS = 1000
 _RUN = 50  # steps with one set of parameters, at most
-_SPAN, _LEAST = 0.5, 3  # s that they last; steps at least
-_SHORT, _WILD = 0.002, 0.1  # s; the part of the runs with longer steps that may have any parameters
+_SPAN, _LEAST = 0.5, 5  # s that they last; steps at least
+_WILD = 0.2  # of the runs have any parameters, and few steps
 _REFUSED = 3  # steps that may be refused in one of them
 _SAVES = 0.06  # of the steps are after a state was saved or restored
 _STEP_SIZES = (0.001, 0.01, 0.0173, 0.1)  # s
@@ -83,11 +83,7 @@ class _Run:
         draw = self.draw
         dt = draw.choice((*_STEP_SIZES, 10.0 ** draw.uniform(-4.0, -1.0)))
         time = draw.choice((*_STARTS, draw.uniform(0.0, 1000.0))) if varied else 0.0
-        wild, span = draw.random() < _WILD, _SPAN
-        if dt < _SHORT:
-            wild = True
-        elif wild:
-            span = 0.0
+        wild = draw.random() < _WILD
         values = dict(_drawn(self.model, draw, ("parameter", "input"), wild)) if varied else {}
         self.twin.set(values)
         went, started = self.unit.start(time, values), self.twin.start(time)
@@ -95,7 +91,7 @@ class _Run:
         if said or not started:
             return said
         stepped, refused = True, 0
-        for k in range(min(most, _RUN, max(_LEAST, ceil(span / dt)))):
+        for k in range(min(most, _LEAST if wild else _RUN, max(_LEAST, ceil(_SPAN / dt)))):
             if k and stepped and draw.random() < _SAVES:
                 time, said = self._save_or_restore(time)
                 if said:
@@ -175,5 +171,6 @@ def _value(v: Variable, draw: random.Random, wild: bool) -> Any:
         return draw.randint(int(max(least, v.start - 5)), int(min(most, v.start + 5)))
     size = max(abs(v.start), v.nominal or 0.0) or 1.0
     near, far = v.start + size * draw.gauss(0.0, 0.2), size * draw.gauss(0.0, 2.0)
-    value = draw.choice((v.start, near, far, draw.choice((0.0, -0.0))) if wild else (v.start, near))
+    other = v.start * 4.0 ** draw.uniform(-1.0, 1.0)
+    value = draw.choice((v.start, near, far, draw.choice((0.0, -0.0))) if wild else (v.start, near, other))
     return min(most, max(least, value))
