@@ -46,7 +46,7 @@ static void send(const instance *m, fmi2Status status, const char *category, con
 }
 
 /* Tell why a call failed, and return its status. */
-static fmi2Status error(instance *m, const char *call)
+MODEL_SELDOM static fmi2Status error(instance *m, const char *call)
 {
     if (outer_of(m)->tells_errors)
         send(m, fmi2Error, errors, instance_message(m, call, m->text, true));
@@ -191,11 +191,9 @@ EXPORT fmi2Status fmi2GetReal(fmi2Component c, references r, size_t count, fmi2R
 {
     if (!c)
         return fmi2Error;
-    if (!readable(c, real_kind, r, count))
-        return error(c, "fmi2GetReal");
-    for (size_t k = 0; k < count; k++)
-        values[k] = instance_real(c, r[k]);
-    return fmi2OK;
+    if (instance_is(c, KNOWN) && instance_ready(c) && instance_get_reals(c, real_kind, r, count, values))
+        return fmi2OK;
+    return error(c, "fmi2GetReal");
 }
 
 EXPORT fmi2Status fmi2GetInteger(fmi2Component c, references r, size_t count, fmi2Integer values[])
@@ -232,10 +230,8 @@ EXPORT fmi2Status fmi2SetReal(fmi2Component c, references r, size_t count, const
 {
     if (!c)
         return fmi2Error;
-    if (!settable(c, real_kind, r, count))
+    if (!instance_is(c, SETTABLE) || !instance_set_reals(c, real_kind, r, count, values))
         return error(c, "fmi2SetReal");
-    for (size_t k = 0; k < count; k++)
-        instance_put_real(c, r[k], values[k]);
     instance_was_set(c);
     return fmi2OK;
 }
@@ -303,7 +299,7 @@ EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, references unkno
 /* -- steps ---------------------------------------------------------------------------------------- */
 
 /* Tell why the step at t failed. */
-static fmi2Status discarded(instance *m, fmi2Real t)
+MODEL_SELDOM static fmi2Status discarded(instance *m, fmi2Real t)
 {
     outer_of(m)->asks_to_end = true;
     if (outer_of(m)->tells_errors)

@@ -223,11 +223,11 @@ GET(Float64)
 {
     if (!m)
         return fmi3Error;
-    if (!readable(m, float64, r, count, value_count))
-        return error(m, "fmi3GetFloat64");
-    for (size_t k = 0; k < count; k++)
-        values[k] = instance_real(m, r[k]);
-    return fmi3OK;
+    if (count != value_count ? readable(m, float64, r, count, value_count)
+                             : instance_is(m, KNOWN) && instance_ready(m) &&
+                                   instance_get_reals(m, float64, r, count, values))
+        return fmi3OK;
+    return error(m, "fmi3GetFloat64");
 }
 
 GET(Int32)
@@ -267,10 +267,10 @@ SET(Float64)
 {
     if (!m)
         return fmi3Error;
-    if (!settable(m, float64, r, count, value_count))
+    if (count != value_count
+            ? !settable(m, float64, r, count, value_count)
+            : !instance_is(m, SETTABLE) || !instance_set_reals(m, float64, r, count, values))
         return error(m, "fmi3SetFloat64");
-    for (size_t k = 0; k < count; k++)
-        instance_put_real(m, r[k], values[k]);
     instance_was_set(m);
     return fmi3OK;
 }

@@ -10,6 +10,12 @@
 
 enum { ALIGNMENT = 16, NUMBER_TEXT = PY_REPR_SIZE };
 
+#if defined __GNUC__ /* what a step seldom does is no part of its function */
+#define APART static __attribute__((cold, noinline))
+#else
+#define APART static
+#endif
+
 /* -- texts ---------------------------------------------------------------------------------------- */
 
 /* Cut off the part of a character of UTF-8 that stands at the end of a text that was cut. */
@@ -62,7 +68,7 @@ bool instance_refuse(instance *m, const char *format, ...)
 }
 
 /* Make the model's failure the reason: exception, its text and its place. */
-static bool failed(instance *m)
+APART bool failed(instance *m)
 {
     end_whole(m->failure.text, sizeof m->failure.text);
     return instance_refuse(m, "%s: %s (%s:%d)", m->failure.exception, m->failure.text, m->failure.file,
@@ -135,12 +141,23 @@ static void fill_places(instance *m, instance_place *places, uint32_t *integers)
         places[k].offset = (uint32_t)v->offset;
         places[k].type = type;
         places[k].record = v->causality == 'p' ? PARAMETERS : v->causality == 'o' ? OUTPUTS : INPUTS;
-        places[k].settable_later = v->causality == 'i' ? type : 0;
-        places[k].settable_at_first = v->causality == 'p' ? type : places[k].settable_later;
+        places[k].settable = v->causality == 'i' ? SETTABLE : v->causality == 'p' ? SETTABLE & ~IN_STEPPING : 0;
         if (v->causality == 'o' && v->type == 'i')
             integers[m->integer_count++] = (uint32_t)k;
         if (v->causality == 't')
             m->clock = instance_at(m, (uint32_t)k);
+    }
+}
+
+/* Count the reals that lie one after the other, from each variable on. */
+static void fill_runs(instance *m, instance_place *places)
+{
+    for (uint32_t k = m->count; k-- > 0;) {
+        instance_place *const one = &places[k], *const next = one + 1;
+        const bool more = k + 1 < m->count && next->run > 0 && next->run < LONGEST_RUN &&
+                          next->record == one->record && next->settable == one->settable &&
+                          next->offset == one->offset + sizeof(double);
+        one->run = (uint8_t)(one->type != REAL ? 0 : more ? next->run + 1 : 1);
     }
 }
 
@@ -194,6 +211,7 @@ instance *instance_new(const char *integer_word, bool with_time, size_t own_size
         places[m->count].type = REAL;
         places[m->count++].record = TIME;
     }
+    fill_runs(m, places);
     instance_reset(m);
     return m;
 }
@@ -362,7 +380,7 @@ static bool is_new(instance *m, const char *sentence)
 }
 
 /* Make the model's sentence a notice, once. */
-static void tell(instance *m, double time)
+APART void tell(instance *m, double time)
 {
     if (!is_new(m, m->sentence))
         return;
@@ -375,15 +393,14 @@ static void tell(instance *m, double time)
     m->notice = m->text;
 }
 
-static bool may_step(instance *m, double dt)
+/* Refuse a step: it is not the time for it, or it has no length. */
+APART bool no_step(instance *m, double dt)
 {
     char shown[NUMBER_TEXT];
     if (m->phase < STEPPING)
         return instance_refuse(m, "the initialization mode has not been left");
     if (m->phase == ENDED)
         return instance_refuse(m, "it was terminated");
-    if (0.0 < dt && dt < INFINITY)
-        return true;
     return instance_refuse(m, "the step is %s s: it must be finite and longer than 0",
                            real_text(dt, "", shown));
 }
@@ -392,13 +409,12 @@ bool instance_step(instance *m, double t, double dt)
 {
     unsigned char *const p = m->records[PARAMETERS], *const u = m->records[INPUTS];
     m->notice = NULL;
-    if (!may_step(m, dt))
-        return false;
+    if (m->phase != STEPPING || !(0.0 < dt && dt < INFINITY))
+        return no_step(m, dt);
     if (m->clock)
         set_time(m, t);
     if (!model.step(p, m->state, u, dt, m->memory, m->next_state, &m->failure))
         return failed(m);
-    m->sentence[0] = '\0';
     if (model.notice &&
         !model.notice(p, m->state, m->next_state, u, m->memory, m->sentence, MODEL_TEXT, &m->failure))
         return failed(m);

@@ -22,10 +22,13 @@ typedef enum { CREATED, INITIALIZING, STEPPING, ENDED } instance_phase;
 /* The place of a variable's value. */
 typedef struct {
     uint32_t offset;
-    uint8_t type;   /* REAL, INTEGER, ... */
-    uint8_t record; /* index of `records` */
-    uint8_t settable_at_first, settable_later;
+    uint8_t type;     /* REAL, INTEGER, ... */
+    uint8_t record;   /* index of `records` */
+    uint8_t settable; /* in these phases: bits as IN_CREATED ... */
+    uint8_t run;      /* so many variables from this one on are reals, one after the other, all settable alike */
 } instance_place;
+
+enum { LONGEST_RUN = 255 };
 
 enum { PARAMETERS, INPUTS, OUTPUTS, TIME, RECORDS };
 
@@ -74,7 +77,7 @@ enum { /* phases in which a function of the outer interface may be called */
 };
 
 /* Refuse a call unless the instance is in one of these phases. */
-bool instance_not_now(instance *m);
+MODEL_SELDOM bool instance_not_now(instance *m);
 static inline bool instance_is(instance *m, int phases)
 {
     return (phases & 1 << m->phase) != 0 || instance_not_now(m);
@@ -108,8 +111,9 @@ static inline bool instance_ready(instance *m)
 
 /* -- values: check the references, then read or write each, then say that something was set ------- */
 
-bool instance_unknown(instance *m, instance_kind kind, const uint32_t *references, size_t count);
-bool instance_not_settable(instance *m, instance_kind kind, const uint32_t *references, size_t count);
+MODEL_SELDOM bool instance_unknown(instance *m, instance_kind kind, const uint32_t *references, size_t count);
+MODEL_SELDOM bool instance_not_settable(instance *m, instance_kind kind, const uint32_t *references,
+                                        size_t count);
 
 /* Return true where all references are of variables of the kind. */
 static inline bool instance_has(instance *m, instance_kind kind, const uint32_t *references, size_t count)
@@ -125,7 +129,7 @@ static inline bool instance_can_set_one(const instance *m, instance_kind kind, u
     if (reference >= m->count)
         return false;
     const instance_place place = m->places[reference];
-    return ((m->phase < STEPPING ? place.settable_at_first : place.settable_later) & kind.types) != 0;
+    return (place.type & kind.types) != 0 && (place.settable >> m->phase & 1) != 0;
 }
 
 /* Return true where all references are of variables of the kind that can be set now. */
@@ -174,6 +178,56 @@ static inline void instance_put_integer(instance *m, uint32_t reference, int64_t
 static inline void instance_put_boolean(instance *m, uint32_t reference, bool value)
 {
     *(bool *)instance_at(m, reference) = value;
+}
+
+/* Read reals, those of references that follow each other as the run of numbers that they are. */
+static inline bool instance_get_reals(instance *m, instance_kind kind, const uint32_t *references,
+                                      size_t count, double *values)
+{
+    for (size_t k = 0; k < count;) {
+        const uint32_t first = references[k];
+        const size_t run = first < m->count ? m->places[first].run : 0, left = count - k;
+        const size_t most = run < left ? run : left;
+        if (run == 0)
+            return instance_unknown(m, kind, references, count);
+        const double *const at = instance_at(m, first);
+        size_t n = 0;
+        do {
+            values[k + n] = at[n];
+            n++;
+        } while (n < most && references[k + n] == first + n);
+        k += n;
+    }
+    return true;
+}
+
+/* Return true where all references are of one run of reals that can be set now; there is at least one. */
+static inline bool instance_is_run(const instance *m, const uint32_t *references, size_t count)
+{
+    const uint32_t first = references[0];
+    if (first >= m->count || count > m->places[first].run || !(m->places[first].settable >> m->phase & 1))
+        return false;
+    for (size_t k = 1; k < count; k++)
+        if (references[k] != first + k)
+            return false;
+    return true;
+}
+
+/* Write reals, all of them or none. */
+static inline bool instance_set_reals(instance *m, instance_kind kind, const uint32_t *references,
+                                      size_t count, const double *values)
+{
+    if (count > 0 && instance_is_run(m, references, count)) {
+        double *const at = instance_at(m, references[0]);
+        for (size_t k = 0; k < count; k++)
+            at[k] = values[k];
+        return true;
+    }
+    if (!instance_can_set(m, kind, references, count))
+        return false;
+    for (size_t k = 0; k < count; k++)
+        instance_put_real(m, references[k], values[k]);
+    return true;
 }
 
 /* Something was set: what depends on it is stale. */
