@@ -3,63 +3,92 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import importlib
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 import typer
 
 from . import completion
-from .budget import budget
-from .build import BuildCommand, build
-from .bus import bus
-from .check import check
-from .compare import compare
-from .compile import compile_
-from .identify import identify
-from .info import info
-from .listing import list_
-from .new import new
 from .once import OnceCommand
-from .plot import plot
-from .reproduce import reproduce
-from .results import results
-from .run import run
-from .schema import schema
 from .typed_paths import checks_paths
+
+_PLAIN: dict[str, Any] = {
+    "add_completion": False,  # its options cannot name a shell; ours stand below
+    "rich_markup_mode": None,  # rich's boxes would cost a third of the time that --help may take
+    "pretty_exceptions_enable": False,
+}
+_VERBS = {
+    "run": ".run:run",
+    "new": ".new:new",
+    "list": ".listing:list_",
+    "info": ".info:info",
+    "check": ".check:check",
+    "plot": ".plot:plot",
+    "compare": ".compare:compare",
+    "identify": ".identify:identify",
+    "reproduce": ".reproduce:reproduce",
+    "build": ".build:build",
+    "compile": ".compile:compile_",
+    "budget": ".budget:budget",
+    "bus": ".bus:bus",
+    "schema": ".schema:schema",
+    "results": ".results:results",
+}
+"""The modules of the verbs, and their functions in these."""
+_OF_CLASS = {"build": ".build:BuildCommand"}
 
 
 @functools.cache
 def command() -> Any:
     """The click command of `evcosim` with all its verbs."""
-    # plain help: rich's boxes would cost a third of the time that --help may take
-    app = typer.Typer(
-        name="evcosim",
-        add_completion=False,  # its options cannot name a shell; ours stand below
-        rich_markup_mode=None,
-        pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
-    )
+    app = typer.Typer(name="evcosim", context_settings={"help_option_names": ["-h", "--help"]}, **_PLAIN)
     app.callback(invoke_without_command=True)(_global_options)
-    verbs: dict[str, Callable[..., int | None]] = {
-        "run": run,
-        "new": new,
-        "list": list_,
-        "info": info,
-        "check": check,
-        "plot": plot,
-        "compare": compare,
-        "identify": identify,
-        "reproduce": reproduce,
-        "build": build,
-        "compile": compile_,
-        "budget": budget,
-        "bus": bus,
-        "schema": schema,
-    }
-    for name, verb in verbs.items():
-        app.command(name, cls=BuildCommand if verb is build else OnceCommand)(checks_paths(verb))
-    app.add_typer(results, name="results")
-    return typer.main.get_command(app)
+    group = typer.main.get_command(app)
+    group.commands = Verbs()  # type: ignore[attr-defined] # of a group, which it is
+    return group
+
+
+class Verbs(Mapping[str, Any]):
+    """The click commands of the verbs by name, each made when it is asked for.
+
+    A command has one verb, and what the others are made of takes longer than a short run.
+    """
+
+    def __init__(self) -> None:
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._made:
+            self._made[name] = _made(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_VERBS)
+
+    def __len__(self) -> int:
+        return len(_VERBS)
+
+    def __contains__(self, name: object) -> bool:
+        return name in _VERBS
+
+
+def _made(name: str) -> Any:
+    """Make the click command of a verb, which may be a group of verbs. Raises KeyError for no verb."""
+    verb = _imported(_VERBS[name])
+    if not isinstance(verb, typer.Typer):
+        app, kind = typer.Typer(**_PLAIN), _imported(_OF_CLASS[name]) if name in _OF_CLASS else OnceCommand
+        app.command(name, cls=kind)(checks_paths(verb))
+        verb = app
+    made = typer.main.get_command(verb)
+    made.name = name
+    return made
+
+
+def _imported(place: str) -> Any:
+    """Return what "module:name" names in this package."""
+    module, _, name = place.partition(":")
+    return getattr(importlib.import_module(module, __package__), name)
 
 
 def _print_version(wanted: bool) -> None:

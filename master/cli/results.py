@@ -10,7 +10,9 @@ import typer
 from .once import OnceCommand
 from .typed_paths import checks_paths
 
-results = typer.Typer(help="What is done with the folder of a run.", rich_markup_mode=None)
+results = typer.Typer(
+    help="What is done with the folder of a run.", add_completion=False, rich_markup_mode=None
+)
 
 
 @results.callback()

@@ -14,9 +14,9 @@ import faulthandler
 import signal
 import sys
 from collections.abc import Callable
-from typing import Any
 
 from ...cosim.visible import on_one_line
+from .crash_code import Addresses, Handler, handler
 
 _SIGNALS = ("SIGSEGV", "SIGABRT", "SIGBUS", "SIGFPE", "SIGILL")
 _STDERR = 2
@@ -62,7 +62,7 @@ class CrashReport:
         self._nothing = self._all = _Text("")
         self._units: dict[object, tuple[str, _Text]] = {}  # name and file of each, and the text about it
         self._kept: list[_Text] = []
-        self._handler: Any = None
+        self._handler: Handler | None = None
         self._list()
         self.rest()
 
@@ -126,8 +126,11 @@ class CrashReport:
         write, handle, again = (
             ctypes.cast(library[name], ctypes.c_void_p).value or 0 for name in ("write", "signal", "raise")
         )
-        self._handler = _machine_code(ctypes.addressof(self._root), write, handle, again)
-        address = ctypes.c_void_p(self._handler.get_function_address("crashed"))
+        try:
+            self._handler = handler(Addresses(ctypes.addressof(self._root), write, handle, again))
+        except OSError:  # the system lets no such code run, and a crash is reported by faulthandler alone
+            return
+        address = ctypes.c_void_p(self._handler.address)
         faulthandler.disable()
         for name in _SIGNALS:
             library.signal(ctypes.c_int(getattr(signal, name)), address)
@@ -135,37 +138,3 @@ class CrashReport:
 
 
 _report: CrashReport | None = None
-
-
-def _machine_code(root: int, write: int, handle: int, again: int) -> Any:
-    """Compile void crashed(int signal): write both texts, then let the same signal end the process.
-
-    The arguments are the addresses of `_root` and of the C functions write, signal and raise, which are
-    among the few that a signal handler may call.
-    """
-    from llvmlite import binding, ir
-
-    integer, long = ir.IntType(32), ir.IntType(64)
-    module = ir.Module()
-    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [integer]), "crashed")
-    builder = ir.IRBuilder(function.append_basic_block())
-
-    def at(address: Any) -> Any:
-        return builder.load(builder.inttoptr(address, long.as_pointer()))
-
-    def call(address: int, *arguments: Any) -> None:
-        kind = ir.FunctionType(long, [a.type for a in arguments])
-        builder.call(builder.inttoptr(long(address), kind.as_pointer()), arguments)
-
-    place = builder.mul(at(at(long(root + 8))), long(16))
-    for row in (builder.add(at(long(root)), place), at(long(root + 16))):
-        call(write, integer(_STDERR), at(row), at(builder.add(row, long(8))))
-    call(handle, function.args[0], long(0))  # the default, which ends the process
-    call(again, function.args[0])
-    builder.ret_void()
-    binding.initialize_native_target()
-    binding.initialize_native_asmprinter()
-    machine = binding.Target.from_default_triple().create_target_machine()
-    made = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), machine)
-    made.finalize_object()
-    return made

@@ -7,6 +7,7 @@ import io
 
 from matplotlib.figure import Figure
 
+from evcosim.master.cli.app import command
 from evcosim.master.simulation import simulate
 
 for _name in (
@@ -17,7 +18,6 @@ for _name in (
     "evcosim.cosim.figures.shown",
     "evcosim.cosim.report.page",
     "evcosim.cosim.results.compare",
-    "evcosim.master.cli.app",
     "evcosim.master.engine.compiled.engine",
     "evcosim.master.fmi.exchange",
     "evcosim.master.fmi.loading",
@@ -30,6 +30,7 @@ for _name in (
 ):
     importlib.import_module(_name)
 
+list(command().commands.values())  # the modules of the verbs
 for _name in ("scooter", "lane_keeping", "braking", "multi_drive"):
     simulate(_name, stop_time=0.02, engine="python")  # the models of its FMUs are imported
 _figure = Figure(layout="constrained")

@@ -11,7 +11,7 @@ from evcosim.master.cli import app
 from evcosim.master.engine.selection import compile_engine
 from evcosim.master.machine.hands import POSSIBLE
 
-LIGHT = "import sys, evcosim.master.cli.app as app; app.command(); print(*sys.modules)"
+LIGHT = "import sys, evcosim.master.cli.app as app; list(app.command().commands.values()); print(*sys.modules)"
 
 
 def test_help_names_every_verb(process):
@@ -35,6 +35,23 @@ def test_help_imports_nothing_heavy():
         "pint",
     }
     assert not heavy & set(loaded.split())
+
+
+VERBS = """
+import sys
+from evcosim.master.cli import app
+app.command().commands[sys.argv[1]]
+print(*(name.rpartition(".")[2] for name in sys.modules if name.startswith("evcosim.master.cli.")))
+"""
+
+
+@pytest.mark.parametrize("verb", ["run", "list", "results"])
+def test_a_verb_is_made_without_the_others(verb):
+    loaded = subprocess.run(
+        [sys.executable, "-c", VERBS, verb], capture_output=True, text=True, check=True
+    ).stdout.split()
+    modules = {place[1:].partition(":")[0] for place in app._VERBS.values()}
+    assert modules & set(loaded) == {"listing" if verb == "list" else verb}
 
 
 USED = """
