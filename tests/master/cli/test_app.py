@@ -11,7 +11,9 @@ from evcosim.master.cli import app
 from evcosim.master.engine.selection import compile_engine
 from evcosim.master.machine.hands import POSSIBLE
 
-LIGHT = "import sys, evcosim.master.cli.app as app; list(app.command().commands.values()); print(*sys.modules)"
+LIGHT = (
+    "import sys, evcosim.master.cli.app as app; list(app.command().commands.values()); print(*sys.modules)"
+)
 
 
 def test_help_names_every_verb(process):

@@ -1,4 +1,4 @@
-"""The handler of a crash: instruction by instruction and from LLVM it writes the same and ends the process."""
+"""The handler of a crash: written out and from LLVM it writes the same texts and ends the process."""
 
 from __future__ import annotations
 
