@@ -18,7 +18,7 @@ _STDERR = 2
 
 
 class Addresses(NamedTuple):
-    """What the handler needs: its table of three addresses, and the C functions write, signal and raise.
+    """All that the handler uses: its table of three addresses, and the C functions write, signal and raise.
 
     The table has the address of a table of texts, of the cell with the number of one of them, and of another
     text. A text is two int64: the address of its characters and their number.
