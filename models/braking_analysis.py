@@ -167,10 +167,10 @@ def equilibria(p: Parameters, gains: Gains, target: SetPoint = TARGET) -> list[E
     """Return the equilibria of (6) with (9) and the true speed that Newton's method finds from 49 starts."""
     from scipy.optimize import root  # slow to import
 
-    torques = proportional(gains, target)
+    loop = _closed_loop(p, gains, target)
 
     def rates(x: Array) -> Array:
-        return _rates(p, torques, x)
+        return loop(x.reshape(2, 1)).reshape(2)
 
     found: list[Equilibrium] = []
     for start in np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, 7)]), axis=-1).reshape(-1, 2):
@@ -190,10 +190,10 @@ def end_points(p: Parameters, gains: Gains, starts: Array, target: SetPoint = TA
     """
     from scipy.integrate import solve_ivp  # slow to import
 
-    torques = proportional(gains, target)
+    loop = _closed_loop(p, gains, target)
 
     def rates(_: float, x: Array) -> Array:
-        return _rates(p, torques, x.reshape(-1, 2).T).T.reshape(-1)
+        return loop(x.reshape(-1, 2).T).T.reshape(-1)
 
     # Each start couples its own two slips alone: the Jacobian is banded.
     solution = solve_ivp(
@@ -248,6 +248,30 @@ def _rates(p: Parameters, torques: Torques, x: Array) -> Array:
     at = reduced(p, x[0], x[1])
     torque_f, torque_r = torques(x[0], x[1])
     return np.array([torque_f - at.psi_front, torque_r - at.psi_rear])  # (6)
+
+
+def _closed_loop(p: Parameters, gains: Gains, target: SetPoint) -> Callable[[Array], Array]:
+    """Return `_rates` under (9) with the true speed, as a function of x, shape (2, n).
+
+    It is called some 10^5 times: both wheels are one array, slopes are left out, and what does not change is
+    computed once. The numbers are those of `reduced` and `proportional` to the last bit.
+    """
+    th_1, th_2, th_3 = FRICTION[p.road]
+    h, base, lever = p.center_height, p.wheelbase, p.wheel_inertia / p.wheel_radius
+    force = p.wheel_radius * p.mass / p.wheelbase
+    weight = np.array([[GRAVITY * p.rear_distance], [GRAVITY * p.front_distance]])
+    weight_f, weight_r = weight[:, 0].tolist()
+    shift, k, wanted = np.array([[-h], [h]]), np.array(gains)[:, None], np.array(target)[:, None]
+
+    def rates(x: Array) -> Array:
+        size = np.abs(x)
+        mu = np.copysign(th_1 * (1.0 - np.exp(-th_2 * size)) - th_3 * size, x)
+        mu_f, mu_r = mu
+        a = -(weight_f * mu_f + weight_r * mu_r) / (base - h * (mu_f - mu_r))  # v'
+        psi = force * (weight + shift * a) * mu - lever * (1.0 - x) * a  # (7), (8)
+        return np.asarray(np.maximum(0.0, k * (wanted - x)) - psi)  # (6), (9)
+
+    return rates
 
 
 def _friction(road: Road, slip: Array) -> Array:
