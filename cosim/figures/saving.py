@@ -53,7 +53,7 @@ def _laid_out(figure: Figure) -> Iterator[None]:
         return
     with _quietly():
         engine.execute(figure)
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)  # not "none": before each file a figure with that is drawn another time
     try:
         yield
     finally:
