@@ -41,7 +41,7 @@ from .braking_runs import (
     stop_of,
     stops,
 )
-from .page import Findings, Found, Page, Paper, at_most, holds, near, page
+from .page import Findings, Found, Page, Paper, Picture, at_most, holds, near, page
 
 _END = (
     "ideal signals; below 2 m/s torques are frozen and half a newton meter decides whether a wheel locks: "
@@ -83,6 +83,10 @@ def _at(target: analysis.SetPoint) -> str:
     return f"set points {target.front:g} and {target.rear:g}"
 
 
+def _pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
+    return pictures(found, _EXTRA, _HEIGHTS, _INERTIAS)
+
+
 def _page(found: dict[str, Any]) -> Page:
     return page(
         "braking",
@@ -99,7 +103,7 @@ def _page(found: dict[str, Any]) -> Page:
         ),
         found={**_table(found), **_propositions(found), **_maneuvers(found)},
         own={**_critical(), **_delay(found), **_vehicle(found), **detailed.own(found)},
-        pictures=pictures(found, _EXTRA, _HEIGHTS, _INERTIAS),
+        pictures=_pictures(found),
         commands=(
             "evcosim run braking",
             "evcosim run braking -s estimated_speed",
@@ -282,4 +286,4 @@ def _three(found: dict[str, Any], kind: str, i: int, expected: tuple[float, ...]
     )
 
 
-PAPER = Paper("braking", _runs, _page)
+PAPER = Paper("braking", _runs, _page, _pictures)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,9 @@ def pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
             Picture(
                 f"fig{number}",
                 f"Fig. {number}: {text}; slips of the wheels, true and by (16), down to 2 m/s",
-                _slips(number, text, {label: found[name + plant] for plant, label in _PLANTS.items()}),
+                functools.partial(
+                    _slips, number, text, {label: found[name + plant] for plant, label in _PLANTS.items()}
+                ),
             )
             for number, (name, text) in enumerate(CAPTIONS.items(), 4)
         ),

@@ -46,14 +46,14 @@ def pictures(
 ) -> tuple[Picture, ...]:
     """Return all pictures; the runs have delays `extra` [s], and `heights` and `inertias` as shares."""
     return (
-        Picture("friction", "Fig. 2: friction by Burckhardt's formula on four roads", _friction()),
-        Picture("psi", _ABOUT_FIG_3, _psi_lines()),
-        Picture("psi-roads", _ABOUT_PSI, _psi()),
-        Picture("propositions", _ABOUT_PROPOSITIONS, _portraits()),
+        Picture("friction", "Fig. 2: friction by Burckhardt's formula on four roads", _friction),
+        Picture("psi", _ABOUT_FIG_3, _psi_lines),
+        Picture("psi-roads", _ABOUT_PSI, _psi),
+        Picture("propositions", _ABOUT_PROPOSITIONS, _portraits),
         *braking_maneuvers.pictures(found),
         _lock(found["estimated_speed"]),
-        Picture("vehicle", _ABOUT_VEHICLE, _vehicle(found, heights, inertias)),
-        Picture("delay", _ABOUT_DELAY, _delay(found, extra)),
+        Picture("vehicle", _ABOUT_VEHICLE, lambda: _vehicle(found, heights, inertias)),
+        Picture("delay", _ABOUT_DELAY, lambda: _delay(found, extra)),
     )
 
 

@@ -315,4 +315,4 @@ def _first_angle(results: Results, axle: str) -> Found:
     return near(ours, printed_angle, _HALF_A_DIGIT * _TARGET, "rad", digits=5)
 
 
-PAPER = Paper("lane_keeping", _runs, _page)
+PAPER = Paper("lane_keeping", _runs, _page, pictures)

@@ -41,14 +41,18 @@ def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
         Picture(
             "steering",
             "Beyond the paper: the step with two and with four steered wheels",
-            _compared("Lane keeping: two or four steered wheels", steps, 1.7),
+            lambda: _compared("Lane keeping: two or four steered wheels", steps, 1.7),
         ),
         Picture(
             "disturbances",
             "Beyond the paper: crosswind, and a blow-out of the left front tire, over the bus",
-            _compared("Lane keeping: crosswind, and a blown tire", disturbed, 1.9),
+            lambda: _compared("Lane keeping: crosswind, and a blown tire", disturbed, 1.9),
         ),
-        Picture("delay", "Beyond the paper: zero, one and two more steps of 10 ms of delay", _delay(found)),
+        Picture(
+            "delay",
+            "Beyond the paper: zero, one and two more steps of 10 ms of delay",
+            lambda: _delay(found),
+        ),
     )
 
 

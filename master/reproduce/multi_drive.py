@@ -15,7 +15,7 @@ from . import multi_drive_cases as cases
 from . import multi_drive_numbers as numbers
 from .multi_drive_numbers import DENSITY, FINE_STEPS, largest, launch, maneuver, of_print
 from .multi_drive_pictures import Effect, pictures
-from .page import Findings, Found, Page, Paper, at_most, holds, near, page
+from .page import Findings, Found, Page, Paper, Picture, at_most, holds, near, page
 from .sampling import sampled
 
 _FAIR = "the published comparison rewards the gain and not the coupling"
@@ -82,6 +82,10 @@ def _dip_at(step_size: float) -> float:
     return maneuver(simulate(system, parameters=parameters, ideal=True, stop_time=_LAST_EVENT)).dip
 
 
+def _pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
+    return pictures(found, {kappa: found[f"coupling {kappa}"] for kappa in _COUPLINGS})
+
+
 def _page(found: dict[str, Any]) -> Page:
     return page(
         "multi_drive",
@@ -110,7 +114,7 @@ def _page(found: dict[str, Any]) -> Page:
             ),
         },
         own=_own(found),
-        pictures=pictures(found, {kappa: found[f"coupling {kappa}"] for kappa in _COUPLINGS}),
+        pictures=_pictures(found),
         commands=(
             "evcosim run multi_drive",
             "evcosim run multi_drive --set controller.coupling=0",
@@ -209,4 +213,4 @@ def _machine(machine: Results, ideal: dict[int, Results]) -> dict[str, list[Foun
     }
 
 
-PAPER = Paper("multi_drive", _runs, _page)
+PAPER = Paper("multi_drive", _runs, _page, _pictures)

@@ -101,12 +101,12 @@ def pictures(found: Mapping[str, Any]) -> tuple[Picture, ...]:
         Picture(
             "slips",
             "For the abstract: slips of the driving wheels; more slip gives more force up to 17 %",
-            _columns("Two-motor car: slips", [("", "slip [%]", found, _slips)]),
+            lambda: _columns("Two-motor car: slips", [("", "slip [%]", found, _slips)]),
         ),
         Picture(
             "cases",
             "Of section 6: a slope on a straight road, and a right-hand curve on a level one, each alone",
-            _columns(
+            lambda: _columns(
                 "Two-motor car: slope alone, curve alone",
                 [
                     (", slope", "slope alone:\nspeed [km/h]", found, _speed),

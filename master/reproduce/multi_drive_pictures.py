@@ -74,7 +74,7 @@ def pictures(found: Mapping[str, Any], coupled: Mapping[float, tuple[Effect, Eff
             "coupling",
             "Beyond the paper: coupling, and gain in its place. At κ = 1 both have twice the published gain "
             "for equal errors, which is more than the loop carries at 100 Hz",
-            _coupling_figure(coupled),
+            lambda: _coupling_figure(coupled),
         ),
         Picture.over_time(
             "machine",

@@ -8,11 +8,13 @@ what they were found to be before, and are not counted.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...cosim.report.charts import charts
+from ...cosim.report.redrawn import redrawn
 from ..studies.parallel import Task
 from . import parameters, printed
 
@@ -66,20 +68,31 @@ class Row:
 class Picture:
     """A figure of the paper, redrawn, or one beyond it: `stem` names its files.
 
-    `panels` are the same curves in HTML, to zoom into; "" for those of the figure's own lines, if they are
-    over time.
+    It is drawn on first use, by `draw`, which may be in another process than the page. `write_panels` returns
+    the same curves in HTML, to zoom into; None: those of the figure's own lines, if they are over time.
     """
 
     stem: str
     caption: str
-    figure: Figure
-    panels: str = ""
+    draw: Callable[[], Figure]
+    write_panels: Callable[[], str] | None = None
+
+    @functools.cached_property
+    def figure(self) -> Figure:
+        """The figure."""
+        return self.draw()
+
+    @functools.cached_property
+    def panels(self) -> str:
+        """The curves in HTML, or ""."""
+        return self.write_panels() if self.write_panels is not None else redrawn(self.figure)
 
     @classmethod
     def over_time(cls, stem: str, caption: str, results: Results, spec: FigureSpec | None = None) -> Picture:
         """Return the picture of results over time, by a spec or their own one, with its panels."""
         spec = spec or results.figure
-        return cls(stem, caption, results.plot(spec=spec), charts(results, spec, search=False))
+        draw = functools.partial(results.plot, spec=spec)
+        return cls(stem, caption, draw, functools.partial(charts, results, spec, search=False))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -103,11 +116,15 @@ class Page:
 
 @dataclasses.dataclass(frozen=True)
 class Paper:
-    """A paper: its independent runs, and the function from their return values, by name, to the page."""
+    """A paper: its independent runs, and the functions from their return values, by name, to the page.
+
+    The pictures of the page are those of `pictures`, which draws none before it is looked at.
+    """
 
     name: str
     runs: Callable[[], tuple[Task[Any], ...]]
     page: Callable[[dict[str, Any]], Page]
+    pictures: Callable[[dict[str, Any]], Sequence[Picture]]
 
 
 def page(

@@ -6,13 +6,12 @@ import base64
 import dataclasses
 import html
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...cosim.figures import draw as figures
 from ...cosim.report.assets import policy, styles
 from ...cosim.report.assets import scripts as panel_scripts
-from ...cosim.report.redrawn import redrawn
 from ...cosim.visible import visible
 from ...cosim.writing import markdown_table, write_text
 from .page import MISSED, Page, Picture, Row
@@ -61,16 +60,26 @@ pre span { display: inline-block; text-indent: 0; max-width: 100%; overflow-wrap
 """
 
 
-def write_page(page: Page, folder: Path) -> list[Path]:
-    """Write NAME.md, NAME.html and figures/NAME-*.png and .svg, and return the paths.
+def write_picture(paper: str, picture: Picture, folder: Path) -> str:
+    """Write figures/PAPER-STEM.png and .svg, and return the panels for the page.
 
     Raises ConfigError naming the file that cannot be written.
     """
-    written: list[Path] = []
-    for picture in page.pictures:
-        written += figures.save(picture.figure, folder / "figures", f"{page.name}-{picture.stem}")
-    images = {p.stem: written[2 * i] for i, p in enumerate(page.pictures)}
-    for suffix, text in ((".md", _markdown(page)), (".html", _html(page, images))):
+    figures.save(picture.figure, folder / "figures", f"{paper}-{picture.stem}")
+    return picture.panels
+
+
+def write_page(page: Page, folder: Path, panels: Mapping[str, str] | None = None) -> list[Path]:
+    """Write NAME.md, NAME.html and figures/NAME-*.png and .svg, and return the paths.
+
+    With the `panels` of all pictures by stem, these have been written before. Raises ConfigError naming the
+    file that cannot be written.
+    """
+    if panels is None:
+        panels = {picture.stem: write_picture(page.name, picture, folder) for picture in page.pictures}
+    beside = folder / "figures"
+    written = [beside / f"{page.name}-{stem}.{kind}" for stem in panels for kind in ("png", "svg")]
+    for suffix, text in ((".md", _markdown(page)), (".html", _html(page, panels, beside))):
         path = folder / f"{page.name}{suffix}"
         write_text(path, visible(text))
         written.append(path)
@@ -146,9 +155,10 @@ def _summary(page: Page) -> str:
     return f"{sentence(row.verdict for row in page.rows)}; {missed([page])}"
 
 
-def _html(page: Page, images: dict[str, Path]) -> str:
+def _html(page: Page, panels: Mapping[str, str], beside: Path) -> str:
+    """Return the page; the images are in the folder `beside`."""
     e = html.escape
-    pictures = "\n".join(_figure(page, p, images[p.stem]) for p in page.pictures)
+    pictures = "\n".join(_figure(page, p, panels[p.stem], beside) for p in page.pictures)
     own = f"<h2>{_OWN}</h2>\n<p>{e(_ABOUT_OWN)}</p>\n{_table(_OWN_HEAD, page.own)}" if page.own else ""
     return _document(
         page.title,
@@ -164,15 +174,14 @@ def _html(page: Page, images: dict[str, Path]) -> str:
     )
 
 
-def _figure(page: Page, picture: Picture, image: Path) -> str:
+def _figure(page: Page, picture: Picture, panels: str, beside: Path) -> str:
     """Return a picture with its caption: its panels, to zoom into, or else the image itself."""
     caption = html.escape(picture.caption)
-    panels = picture.panels or redrawn(picture.figure)
     if panels:
         link = f'<a href="figures/{page.name}-{picture.stem}.png">as a picture</a>'
         shown, caption = panels, f"{caption} ({link})"
     else:
-        data = base64.b64encode(image.read_bytes()).decode()
+        data = base64.b64encode((beside / f"{page.name}-{picture.stem}.png").read_bytes()).decode()
         shown = f'<img alt="{caption}" src="data:image/png;base64,{data}">'
     caption = f"<figcaption>{caption}</figcaption>"
     inside = f"{caption}{shown}" if panels else f"{shown}{caption}"  # a picture is seen at a glance

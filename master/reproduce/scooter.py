@@ -15,7 +15,7 @@ from ..studies.parallel import Task
 from . import printed
 from . import scooter_bounds as bounds
 from . import scooter_numbers as numbers
-from .page import Findings, Found, Page, Paper, at_least, at_most, holds, near, page
+from .page import Findings, Found, Page, Paper, Picture, at_least, at_most, holds, near, page
 from .scooter_identification import (
     PUBLISHED_GAIN,
     PUBLISHED_POLE,
@@ -67,10 +67,16 @@ def _cycle(name: str, bounded: bool) -> dict[str, float]:
     return {metric.name: metric.value for metric in results.metrics}
 
 
+def _identified(found: dict[str, Any]) -> ScooterIdentification:
+    return ScooterIdentification(found["identification"], tuple(found[f"at {v:g} km/h"] for v in SPEEDS))
+
+
+def _pictures(found: dict[str, Any]) -> tuple[Picture, ...]:
+    return pictures(found, _identified(found))
+
+
 def _page(found: dict[str, Any]) -> Page:
-    identified = ScooterIdentification(
-        found["identification"], tuple(found[f"at {v:g} km/h"] for v in SPEEDS)
-    )
+    identified = _identified(found)
     return page(
         "scooter",
         title="Speed and acceleration bounds for a light electric two-wheeler",
@@ -92,7 +98,7 @@ def _page(found: dict[str, Any]) -> Page:
             **_acceleration(found),
         },
         own=_own(found, identified),
-        pictures=pictures(found, identified),
+        pictures=_pictures(found),
         commands=(
             "evcosim identify scooter",
             "evcosim run scooter",
@@ -366,4 +372,4 @@ def _energy(found: dict[str, Any]) -> Findings:
     return rows
 
 
-PAPER = Paper("scooter", _runs, _page)
+PAPER = Paper("scooter", _runs, _page, _pictures)

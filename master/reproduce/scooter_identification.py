@@ -9,7 +9,7 @@ working point, 30 km/h, and the unit of the gain, km/h per %; sweep, amplitude, 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -67,15 +67,15 @@ class ScooterIdentification:
         rising = np.isfinite(test.esr)
         return float((100.0 * np.abs(test.measured - self.nonlinear) / test.measured)[rising].mean())
 
-    def figures(self) -> dict[str, Figure]:
-        """Draw Figs. 2, 3 and 4; return them as `fig2`, `fig3`, `fig4`."""
+    def drawings(self) -> dict[str, Callable[[], Figure]]:
+        """Return what draws Figs. 2, 3 and 4, as `fig2`, `fig3`, `fig4`."""
         from ...cosim.figures import identification as figures
 
         found = self.measured
         swept = (found.sweep.start, found.sweep.stop)
         published = (PUBLISHED_GAIN, PUBLISHED_POLE)
         return {
-            "fig2": figures.bode(
+            "fig2": lambda: figures.bode(
                 found.response,
                 found.fit,
                 swept,
@@ -83,7 +83,7 @@ class ScooterIdentification:
                 "From throttle to measured speed at 30 km/h",
                 published,
             ),
-            "fig3": figures.over_working_points(
+            "fig3": lambda: figures.over_working_points(
                 [each.working_point[1] for each in self.over_speed],
                 [each.fit for each in self.over_speed],
                 "speed [km/h]",
@@ -91,7 +91,7 @@ class ScooterIdentification:
                 "Gain and pole over speed",
                 (WORKING_POINT, *published),
             ),
-            "fig4": figures.prediction(
+            "fig4": lambda: figures.prediction(
                 found.prediction,
                 found.output_unit,
                 "Measured speed",
@@ -104,13 +104,13 @@ class ScooterIdentification:
         """Write the figures as fig2.png, fig2.svg and so on, and return their paths. Raises ConfigError."""
         from ...cosim.figures.draw import save
 
-        return [path for stem, figure in self.figures().items() for path in save(figure, folder, stem)]
+        return [path for stem, draw in self.drawings().items() for path in save(draw(), folder, stem)]
 
 
 def scooter_identification(
     speeds: Sequence[float] = SPEEDS, progress: PhaseProgress | None = None
 ) -> ScooterIdentification:
-    """Do the identifications of Figs. 2 to 4, in about 15 s; `speeds` [km/h] are those of Fig. 3.
+    """Do the identifications of Figs. 2 to 4, in some seconds; `speeds` [km/h] are those of Fig. 3.
 
     Raises as `identify` does.
     """

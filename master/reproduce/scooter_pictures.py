@@ -22,7 +22,7 @@ _CAPTIONS = {
 def pictures(found: Mapping[str, Any], identified: ScooterIdentification) -> tuple[Picture, ...]:
     """Return all pictures of the runs."""
     return (
-        *(Picture(stem, _CAPTIONS[stem], figure) for stem, figure in identified.figures().items()),
+        *(Picture(stem, _CAPTIONS[stem], draw) for stem, draw in identified.drawings().items()),
         *(
             Picture.over_time(stem, caption, run)
             for stem, caption, run in (
@@ -33,12 +33,12 @@ def pictures(found: Mapping[str, Any], identified: ScooterIdentification) -> tup
         Picture(
             "raw",
             "Beyond the paper: the throttle without the observer, and with it",
-            _without_observer(found),
+            lambda: _without_observer(found),
         ),
         Picture(
             "bounds",
             "Beyond the paper: the pull of Fig. 8 over both bounds; the drive has its own limit at 50 km/h",
-            scooter_bounds.figure(found),
+            lambda: scooter_bounds.figure(found),
         ),
     )
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import functools
-import itertools
 import multiprocessing
 import os
 import pickle
@@ -98,9 +97,15 @@ def cores() -> int:
 
 
 def run_all(
-    tasks: Sequence[Task[T]], workers: int | None = None, progress: TaskProgress | None = None
+    tasks: Sequence[Task[T]],
+    workers: int | None = None,
+    progress: TaskProgress | None = None,
+    then: Callable[[int, Outcome[T]], Sequence[Task[T]]] | None = None,
 ) -> list[Outcome[T]]:
     """Run all tasks in `workers` processes (default: one for each core) and return their outcomes in order.
+
+    `then` is called with the place of each task and its outcome as it ends, and returns the tasks that have
+    become possible: they are done after all others, and have the next places.
 
     A script that calls this needs `if __name__ == "__main__":` around its own calls, since every worker
     imports it; the functions of a notebook stand in a file beside it. Before any task is started it raises
@@ -111,16 +116,18 @@ def run_all(
         raise TypeError(f"workers = {short(workers)}: a whole number is needed, or None")
     if workers is not None and workers < 1:
         raise ConfigError(f"workers = {short(workers)}: at least one is needed")
-    queue = [packed(task, task.name) for task in tasks]
+    queue = [(task.name, packed(task, task.name)) for task in tasks]
     outcomes: dict[int, Outcome[T]] = {}
     if not tasks:
         return []
-    with _Pool(min(workers or cores(), len(tasks))) as pool:
-        for i, outcome in pool.work(tasks, queue):
+    with _Pool(workers or cores()) as pool:
+        for i, outcome in pool.work(queue):
             outcomes[i] = outcome
+            if then is not None:
+                queue += [(task.name, packed(task, task.name)) for task in then(i, outcome)]
             if progress is not None:
-                progress(len(outcomes), len(tasks), outcome.name)
-    return [outcomes[i] for i in range(len(tasks))]
+                progress(len(outcomes), len(queue), outcome.name)
+    return [outcomes[i] for i in range(len(queue))]
 
 
 @dataclasses.dataclass
@@ -134,10 +141,10 @@ class _Worker:
 
 
 class _Pool:
-    """The worker processes; leaving the `with` block kills all of them."""
+    """The worker processes, `size` at most; leaving the `with` block kills all of them."""
 
     def __init__(self, size: int) -> None:
-        self.size = size
+        self.size, self.submitted = size, 0
         self.workers: list[_Worker] = []
         self.context = multiprocessing.get_context("spawn")
 
@@ -154,22 +161,26 @@ class _Pool:
             _forget(worker)
         leftovers.remove_folder(self.folder)
 
-    def work(self, tasks: Sequence[Task[T]], queue: Sequence[bytes]) -> Iterator[tuple[int, Outcome[T]]]:
-        """Yield each task's place and outcome as it ends."""
-        waiting = iter(range(len(queue)))
-        for i in itertools.islice(waiting, self.size):
-            self._submit(self._start_worker(), i, queue)
+    def work(self, queue: Sequence[tuple[str, bytes]]) -> Iterator[tuple[int, Outcome[Any]]]:
+        """Yield each task's place and outcome as it ends.
+
+        `queue` has names and tasks, and may grow when one is yielded.
+        """
+        self._submit_all(queue)
         while busy := {w.pipe: w for w in self.workers if w.task >= 0}:
             for pipe in wait(list(busy)):
                 worker = busy[pipe]  # type: ignore[index] # `busy` has pipes alone
                 i, (value, failure) = worker.task, _received(worker)
-                yield i, Outcome(tasks[i].name, value, failure, seconds=time.perf_counter() - worker.begin)
+                outcome: Outcome[Any] = Outcome(
+                    queue[i][0], value, failure, seconds=time.perf_counter() - worker.begin
+                )
                 worker.task = -1
                 if not worker.process.is_alive():
                     self.workers.remove(worker)
                     _forget(worker)
-                if (following := next(waiting, None)) is not None:
-                    self._submit(worker if worker in self.workers else self._start_worker(), following, queue)
+                self._submit_all(queue)  # the caller may take long
+                yield i, outcome
+                self._submit_all(queue)
 
     def _start_worker(self) -> _Worker:
         ours, theirs = self.context.Pipe()
@@ -183,11 +194,17 @@ class _Pool:
         leftovers.add_child(process.pid, functools.partial(_kill, process.pid))
         return self.workers[-1]
 
-    @staticmethod
-    def _submit(worker: _Worker, i: int, queue: Sequence[bytes]) -> None:
-        worker.task, worker.begin = i, time.perf_counter()
-        with contextlib.suppress(OSError):  # it died while it was idle: receiving its outcome reports that
-            worker.pipe.send_bytes(queue[i])
+    def _submit_all(self, queue: Sequence[tuple[str, bytes]]) -> None:
+        """Give the tasks that wait to workers that do nothing, and to new ones."""
+        while self.submitted < len(queue):
+            idle = next((worker for worker in self.workers if worker.task < 0), None)
+            if idle is None and len(self.workers) >= self.size:
+                return
+            worker = idle or self._start_worker()
+            worker.task, worker.begin = self.submitted, time.perf_counter()
+            self.submitted += 1
+            with contextlib.suppress(OSError):  # it died while it was idle: its outcome reports that
+                worker.pipe.send_bytes(queue[worker.task][1])
 
 
 def _kill(process: int) -> None:

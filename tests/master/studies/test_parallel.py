@@ -32,6 +32,22 @@ def test_results_stand_in_the_order_of_the_tasks():
     assert outcomes[0].seconds > 0.3
 
 
+def test_what_a_task_makes_possible_is_done_after_all_others():
+    """Its outcome stands behind theirs, and it may make further ones possible."""
+    said = []
+
+    def then(place, outcome):
+        return [Task(f"{outcome.name}+", pow, (outcome.value, 2))] if len(outcome.name) < 3 else []
+
+    tasks = [Task(str(n), abs, (-n,)) for n in (2, 3)]
+    outcomes = run_all(tasks, 1, lambda *each: said.append(each), then)
+    assert [(o.name, o.value) for o in outcomes] == [
+        ("2", 2), ("3", 3), ("2+", 4), ("3+", 9), ("2++", 16), ("3++", 81),
+    ]  # fmt: skip # pairs
+    assert said == [(1, 3, "2"), (2, 4, "3"), (3, 5, "2+"), (4, 6, "3+"), (5, 6, "2++"), (6, 6, "3++")]
+    assert {o.name: o.value for o in run_all(tasks, 2, None, then)} == {o.name: o.value for o in outcomes}
+
+
 def test_workers_are_other_processes_and_leave_no_files():
     outcomes = [o.result() for o in run_all([Task("where", tasks.where)] * 3, workers=1)]
     (worker,) = {process for process, _ in outcomes}  # one worker does them all
