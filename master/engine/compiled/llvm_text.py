@@ -25,6 +25,7 @@ class Function:
         self._lines: list[str] = ["entry:"]
         self._seldom: list[str] = []
         self._declared: set[str] = set()
+        self._constants: dict[tuple[int, ...], str] = {}
         self._count = 0
         self.block = "entry"
 
@@ -84,6 +85,15 @@ class Function:
         """Return a word."""
         self.do(f"ret {WORD} {value}")
 
+    def mark(self) -> tuple[int, int, str]:
+        """Return the place at which the text is, for `undo`."""
+        return len(self._lines), len(self._seldom), self.block
+
+    def undo(self, mark: tuple[int, int, str]) -> None:
+        """Take back all that was written since."""
+        lines, seldom, self.block = mark
+        del self._lines[lines:], self._seldom[seldom:]
+
     # ---- memory
 
     def pointer(self, kind: str) -> str:
@@ -108,6 +118,13 @@ class Function:
         """Write a value to a place, in words, behind an address."""
         pointer = self.at(base, place, kind)
         self.do(f"store {kind} {value}, {self.pointer(kind)} {pointer}, align {align}")
+
+    def constant(self, values: Sequence[int]) -> str:
+        """Return the name of words that stand beside the code."""
+        name = self._constants.setdefault(tuple(values), f"@constant{len(self._constants)}")
+        words = ", ".join(f"{WORD} {value}" for value in values)
+        self._declared.add(f"{name} = internal constant [{len(values)} x {WORD}] [{words}], align 8")
+        return name
 
     # ---- calls
 

@@ -12,6 +12,7 @@ from ...machine.hands import Hand, HandedOver
 from ...machine.rows import CallRows, Cells, KernelTable, Recheck, direct, fill, table
 from ...unit import Unit
 from ..engine import Engine
+from ..fault_tables import Arrays
 from ..profile import Part, part_of
 from ..routes import Act
 from ..schedule import Action
@@ -68,6 +69,11 @@ class Program:
         self.hands = table(self._rows["hands"], L.HAND)
         self.spans = table(self._rows["spans"], L.SPAN)
         self.columns = engine.columns.astype(np.int64)
+
+    @property
+    def frames(self) -> Arrays | None:
+        """The tables of the frame path; None: the run has no frames."""
+        return self._engine.frames.arrays if self._engine.frames.senders else None
 
     @property
     def holds_python(self) -> bool:

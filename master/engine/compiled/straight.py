@@ -28,7 +28,8 @@ _LLVM = 300e6  # bytes of address space
 _SOURCES = tuple(
     f"evcosim.master.engine.compiled.{name}"
     for name in (
-        "straight", "straight_code", "straight_calls", "straight_values", "llvm_text", "structure", "program",
+        "straight", "straight_code", "straight_calls", "straight_values", "straight_frames", "straight_ways",
+        "straight_cells", "straight_numbers", "known_frames", "llvm_text", "structure", "program",
     )
 )  # fmt: skip # names
 _loaded: dict[str, Loaded] = {}
@@ -69,7 +70,7 @@ class Straight:
 def entry(structure: Structure) -> str:
     """Return the name of a structure's entry in the cache."""
     of = hashlib.sha256(key(structure).encode()).hexdigest()[:24]
-    return f"straight-{of}-{cache.digest(_SOURCES + cache.KERNEL.sources)}.bin"
+    return f"straight-{of}-{cache.digest(_SOURCES + cache.KERNEL.sources + cache.WIRE.sources)}.bin"
 
 
 def made(structure: Structure) -> bytes | None:

@@ -11,6 +11,8 @@ from __future__ import annotations
 from ...machine import tables as L
 from .llvm_text import DOUBLE, INT, WORD, Function, number
 from .straight_calls import Calls
+from .straight_frames import FramePath, is_written_out
+from .straight_numbers import Arithmetic, Number, UnknownForm
 from .straight_values import Memory
 from .structure import ALWAYS, Sent, Step, Structure
 
@@ -172,9 +174,7 @@ class _Loop:
             with f.seldom(f.let(f"icmp ne {WORD} {count}, 0")):
                 self._by_kernel(at, s, k)
         elif kind == L.WIRE_ACT:
-            state = bases[L.STATE]
-            given: list[tuple[str, str | int]] = [(WORD, f.load(WORD, "%t", L.WIRE)), (WORD, a), (WORD, b)]
-            self._act(at, INT, f.load(WORD, state, L.WIRE_CODE, fixed=True), [*given, (WORD, k)])
+            self._frame(at, a, b, k)
         elif kind == L.PYTHON_ACT:
             self._act(at, INT, f.load(WORD, bases[L.STATE], L.PYTHON, fixed=True), [(WORD, c), (WORD, k)])
         else:
@@ -197,6 +197,27 @@ class _Loop:
         result = f.call(answer, address, given)
         with f.seldom(f.let(f"icmp ne {answer} {result}, 0")):
             f.give(L.RAISED)
+
+    def _frame(self, at: int, what: int, i: int, k: str) -> None:
+        """Do an action of the frame path: written out if it can be, else by its own function."""
+        f, wire = self._f, self._f.load(WORD, "%t", L.WIRE, fixed=True)
+        frames = self._structure.frames
+        if frames is not None and is_written_out(frames, what, i):
+            self._note(at)
+            before = f.mark()
+            numbers = Arithmetic(f)
+            try:
+                result = FramePath(numbers, frames, wire).act(what, i, k)
+            except UnknownForm:
+                f.undo(before)
+            else:
+                if isinstance(result, Number) or result:
+                    wrong = f.let(f"icmp ne {WORD} {numbers.text(result, WORD)}, {L.DONE}")
+                    with f.seldom(wrong):
+                        f.give(L.RAISED)
+                return
+        code = f.load(WORD, self._bases[L.STATE], L.WIRE_CODE, fixed=True)
+        self._act(at, INT, code, [(WORD, wire), (WORD, what), (WORD, i), (WORD, k)])
 
     def _by_kernel(self, at: int, s: str, k: str) -> None:
         """Let the kernel's function for one operation do it."""

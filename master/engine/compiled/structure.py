@@ -16,6 +16,7 @@ import numpy as np
 from ...fmi.types import WIDE_CODES
 from ...machine import tables as L
 from ...machine.rows import KernelTable
+from .known_frames import Frames, frames_of
 
 if TYPE_CHECKING:
     from .program import Program
@@ -100,10 +101,11 @@ class Step:
 
 @dataclasses.dataclass(frozen=True)
 class Structure:
-    """The operations of a step in order, and the slots that are recorded."""
+    """The operations of a step in order, the slots that are recorded, and what is known of frames."""
 
     steps: tuple[Step, ...]
     columns: tuple[int, ...]
+    frames: Frames | None = None
 
 
 def structure_of(program: Program) -> Structure:
@@ -130,7 +132,8 @@ class _Reader:
             elif due != (op[L.EVERY], op[L.FIRST]):
                 due, group = (op[L.EVERY], op[L.FIRST]), i
             steps.append(self._step(op, group))
-        return Structure(tuple(steps), tuple(self._program.columns.tolist()))
+        frames = frames_of(self._program.frames) if self._program.frames is not None else None
+        return Structure(tuple(steps), tuple(self._program.columns.tolist()), frames)
 
     def _step(self, op: list[int], group: int) -> Step:
         kind, a, b, c = op[L.KIND], op[L.A], op[L.B], op[L.C]
@@ -204,7 +207,8 @@ def _is(value: float, zero: float) -> bool:
 
 def key(structure: Structure) -> str:
     """Return a text that is equal for equal structures."""
-    return repr(_plainly(structure))
+    frames = "" if structure.frames is None else structure.frames.text
+    return repr(_plainly((structure.steps, structure.columns))) + frames
 
 
 def _plainly(thing: Any) -> Any:
