@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...models.base import Model, variables
+from ..interface import exposed
 from . import ir
 from .basis import python_minor
 from .emit_description import description
 from .emit_expressions import constant
-from .emit_functions import Functions, comment, memory
+from .emit_functions import Functions, comment
 from .emit_types import c_name, definition, parts, type_name
 from .values import Type
 
@@ -27,7 +28,8 @@ def c_source(
     `identity` is that of its FMU, to which saved states belong, `token` the guid of its description, and
     `minor` the version of Python 3 that it follows, by default this one's.
     """
-    functions = Functions(program)
+    clock = [e.variable.name for e in exposed(model) if e.causality == "independent"]
+    functions = Functions(program, *clock)
     minor = minor or python_minor()
     pieces = [
         f"/* {program.name}: {comment(program.about)}\n\n   Made by evcosim of the model in Python. */",
@@ -38,10 +40,10 @@ def c_source(
             f"static const {type_name(t.type)} {c_name(t.name)} = {constant(t.value)};\n"
             for t in program.tables
         ),
-        memory(program),
+        functions.memory,
         "\n".join(f"{head};" for head in functions.heads()) + "\n",
         *functions.texts(),
-        *description(model, program, identity, token, functions.failing, functions.with_memory),
+        *description(model, program, identity, token, functions),
     ]
     text = "\n".join(piece for piece in pieces if piece)
     return "".join(f"{line}\n" for long in text.splitlines() for line in wrapped(long))

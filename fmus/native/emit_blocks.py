@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from . import ir
 from .emit_expressions import Scope, argument_list, expression, handed
 from .emit_inlining import derived_name
+from .emit_kept import Kept
 from .emit_types import c_name, type_name
 from .values import (
     BOOLEAN,
@@ -37,6 +38,7 @@ class Frame:
     scope: Scope
     failing: frozenset[str]
     unread: frozenset[str]
+    kept: Kept
     filled: frozenset[str] = frozenset()
     speaks: bool = False
 
@@ -217,12 +219,12 @@ def _statement(s: ir.Statement, declared: str, inner: dict[str, Type], frame: Fr
         case ir.SetLength():
             return [f"{_list(s.list, scope)}length = {expression(s.length, scope)};"]
         case ir.Checked():
-            given = ", ".join(
-                [*(expression(a, scope) for a in s.arguments), f"&{c_name(s.target.name)}", _FAILURE]
-            )
+            function, kept = frame.kept.call(frame.function.name, s)
+            arguments = [*(expression(a, scope) for a in s.arguments), *kept]
+            given = ", ".join([*arguments, f"&{c_name(s.target.name)}", _FAILURE])
             failed = f'model_raised(failure, "{s.place.file}", {s.place.line})'
             before = [_unset(s.target, True)] if declared else []
-            return [*before, f"if (!{s.function}({given})){_note(s.note)}", f"    return {failed};"]
+            return [*before, f"if (!{function}({given})){_note(s.note)}", f"    return {failed};"]
         case ir.Call():
             return _call(s, declared, frame)
         case ir.Derive():

@@ -10,6 +10,7 @@ from ..interface import exposed
 from . import ir
 from .emit_blocks import quoted
 from .emit_expressions import literal
+from .emit_functions import Functions
 from .emit_types import c_name, numbers, type_name
 from .values import BOOLEAN, INTEGER, REAL, EnumType, Scalar, Type
 
@@ -18,21 +19,13 @@ _KIND = {"Real": "r", "Integer": "i", "Boolean": "b", "Enumeration": "e"}
 
 
 def description(
-    model: type[Model],
-    program: ir.Program,
-    identity: str,
-    token: str,
-    failing: Set[str],
-    with_memory: Set[str],
+    model: type[Model], program: ir.Program, identity: str, token: str, functions: Functions
 ) -> Iterator[str]:
-    """Return the tables and the frame functions of a model, and at last the `model` that names them all.
-
-    `failing` and `with_memory` are the functions that can fail, and that are given the memory.
-    """
-    has_memory = any(f.remembers for f in program.functions)
+    """Return the tables and the frame functions of a model, and at last the `model` that names them all."""
+    has_memory = bool(functions.memory)
     yield from _variables(model, program)
     yield _state_fields(program)
-    frames = _Frames(model, program, failing, with_memory)
+    frames = _Frames(model, program, functions.failing, functions.with_memory)
     yield from frames.functions(has_memory)
     yield _model(model, program, identity, token, has_memory)
 

@@ -8,6 +8,7 @@ from . import ir
 from .emit_blocks import Frame, body, named, read
 from .emit_expressions import Scope
 from .emit_inlining import Calls, called, derived_name
+from .emit_kept import Kept
 from .emit_types import argument, c_name, type_name
 from .values import COMPLEX, ArrayType, EnumType, ListType, ParametersType, Scalar, StructType, Type
 
@@ -28,12 +29,11 @@ def _compared(function: ir.Function) -> list[ir.Local]:
     return [a for a in function.arguments if not isinstance(a.type, ParametersType)]
 
 
-def memory(program: ir.Program) -> str:
-    """Return the definition of what the remembered calls keep: the last one of each function."""
-    if not (kept := remembered(program)):
-        return ""
-    lines = []
-    for function in kept:
+def memory(program: ir.Program, values: int) -> str:
+    """Return the definition of what is kept between steps: the last call of each function that remembers
+    it, and so many values of the mathematical library; "" if that is nothing."""
+    lines = [f"    py_kept kept[{values}];"] if values else []
+    for function in remembered(program):
         assert function.returns is not None
         fields = [f"{type_name(a.type)} {c_name(a.name)};" for a in _compared(function)]
         fields = ["bool known;", *fields, f"{type_name(function.returns)} result;"]
@@ -42,9 +42,8 @@ def memory(program: ir.Program) -> str:
             *(f"        {field}" for field in fields),
             f"    }} {c_name(function.name)};",
         ]
-    return "\n".join(
-        ["/* the last call of each function that remembers it */", "typedef struct {", *lines, "} Memory;\n"]
-    )
+    about = "/* what is kept between steps: values of exp and the like, last calls of functions */"
+    return "\n".join([about, "typedef struct {", *lines, "} Memory;\n"]) if lines else ""
 
 
 def _same(type_: Type, a: str, b: str) -> str:
@@ -65,7 +64,8 @@ def _same(type_: Type, a: str, b: str) -> str:
 class Functions:
     """The functions of a program as C: which fail, which need the memory, their heads and bodies."""
 
-    def __init__(self, program: ir.Program) -> None:
+    def __init__(self, program: ir.Program, clock: str | None = None) -> None:
+        """`clock` is the name of the time among the inputs."""
         self._program = program
         self._derived = [
             (program.parameters, name, type_, by) for name, (type_, by) in program.parameters.derived.items()
@@ -73,15 +73,18 @@ class Functions:
         fails = {f.name for f in program.functions if f.can_fail}
         accessors = {derived_name(type_name(p), name): by for p, name, _, by in self._derived}
         self.failing = frozenset(fails | {name for name, by in accessors.items() if by in fails})
+        calls = Calls(program)
+        self._in_place = calls.in_place()
+        self._kept = Kept(program, calls.in_step, clock)
+        self.memory = memory(program, self._kept.count)
         self.with_memory = self._in_need_of_memory(accessors)
-        self._in_place = Calls(program).in_place()
         self._apart = frozenset([*accessors.values(), *(f"{f.name}_computed" for f in remembered(program))])
 
     def _in_need_of_memory(self, accessors: dict[str, str]) -> frozenset[str]:
-        """Return the functions that remember their calls, and those that call one of them, however deep."""
+        """Return the functions that keep something, and those that call one of them, however deep."""
         calls = {f.name: set(called(f.body)) for f in self._program.functions}
         calls |= {name: {by} for name, by in accessors.items()}
-        needing = {f.name for f in remembered(self._program)}
+        needing = {f.name for f in remembered(self._program)} | self._kept.functions
         while more := {name for name, its in calls.items() if its & needing} - needing:
             needing |= more
         return frozenset(needing)
@@ -132,7 +135,9 @@ class Functions:
         addresses = frozenset(a.name for a in f.arguments if isinstance(a.type, ListType | ParametersType))
         reads = set(read(f.body))
         unread = frozenset(x.name for x in f.locals if x.name not in reads)
-        frame = Frame(f, Scope(addresses, self.with_memory), self.failing, unread, speaks=self._speaks(f))
+        frame = Frame(
+            f, Scope(addresses, self.with_memory), self.failing, unread, self._kept, speaks=self._speaks(f)
+        )
         lines = body(frame)
         if frame.can_fail and f.returns is None and not (lines and lines[-1].startswith("return")):
             lines.append("return true;")

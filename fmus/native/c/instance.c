@@ -415,6 +415,7 @@ bool instance_step(instance *m, double t, double dt)
         set_time(m, t);
     if (!model.step(p, m->state, u, dt, m->memory, m->next_state, &m->failure))
         return failed(m);
+    m->sentence[0] = '\0';
     if (model.notice &&
         !model.notice(p, m->state, m->next_state, u, m->memory, m->sentence, MODEL_TEXT, &m->failure))
         return failed(m);

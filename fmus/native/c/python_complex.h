@@ -131,7 +131,11 @@ static inline py_complex py_complex_quotient(py_complex a, py_complex b)
 {
     const double re = fabs(b.re), im = fabs(b.im);
     py_complex quotient = {PY_NAN, PY_NAN};
-    if (re >= im) {
+    if (im == 0.0 && re > 0.0 && re <= DBL_MAX) { /* the ratio is a zero: the same numbers as below, sooner */
+        const double ratio = b.im * b.re;
+        quotient.re = (a.re + a.im * ratio) / b.re;
+        quotient.im = (a.im - a.re * ratio) / b.re;
+    } else if (re >= im) {
         const double ratio = b.im / b.re, denominator = b.re + b.im * ratio;
         quotient.re = (a.re + a.im * ratio) / denominator;
         quotient.im = (a.im - a.re * ratio) / denominator;
