@@ -5,6 +5,7 @@ Frames are strings of bits that are stuffed by search and replace. Times are in 
 
 from __future__ import annotations
 
+import bisect
 import dataclasses
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -79,15 +80,17 @@ class Off:
         Each stretch of recessive bits counts as many rows of 11 as are in it: those from the delimiter of a
         frame's acknowledgment (8 bits before its end) to the next frame's start.
         """
-        begins = [0] + [frame.end - 8 * bit for frame in frames]
-        ends = [frame.start for frame in frames] + [10**18]
+        later = bisect.bisect_right(frames, self.until, key=lambda frame: frame.start)  # no row is before it
+        begin = frames[later - 1].end - 8 * bit if later else 0
         left = 128
-        for begin, end in zip(begins, ends, strict=True):
+        for place in range(later, len(frames) + 1):
             begin = max(begin, self.until)
+            end = frames[place].start if place < len(frames) else 10**18
             rows = max(0, end - begin) // (11 * bit)
             if rows >= left:
                 return begin + left * 11 * bit
             left -= rows
+            begin = frames[place].end - 8 * bit
         raise AssertionError("the last stretch has no end")
 
 
