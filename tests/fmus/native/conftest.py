@@ -15,6 +15,7 @@ from evcosim.fmus.catalog import Experiment
 from evcosim.fmus.native.package import NativeParts, build_native, identity_of, token_of
 from evcosim.fmus.recipes import digest_of
 from evcosim.models.base import Model
+from support.compiled_once import compiled_once as compiled_once
 from support.needs import need_c_compiler
 
 HANDMADE = Path(__file__).with_name("handmade")
@@ -54,6 +55,11 @@ def handmade_parts(name: str, more: str = "") -> NativeParts:
     head = "".join(f"#define {key} {value}\n" for key, value in defined.items())
     text = more + head + KINDS[name] + (HANDMADE / "model.c").read_text(encoding="utf-8")
     return NativeParts(model, text, digest, Experiment(), "1.2", "MIT")
+
+
+@pytest.fixture(autouse=True)
+def _compiled_once(compiled_once: None) -> None:
+    """Compile the same sources once."""
 
 
 class Pair(NamedTuple):

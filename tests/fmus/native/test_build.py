@@ -21,6 +21,7 @@ from evcosim.fmus.native.errors import ToolchainError, Unsupported
 from evcosim.fmus.native.package import build_native
 from evcosim.fmus.recipes import recipe_of
 from evcosim.models.base import Model
+from support import compiled_once
 from support.needs import need_c_compiler
 
 MODEL = '''
@@ -127,6 +128,7 @@ def test_a_native_fmu_is_one_of_ours_and_the_same_when_it_is_built_anew() -> Non
     assert fmpy.read_model_description(first).modelName == "Battery"
     assert records.is_own(_digest(content))
     assert not records.is_own(_digest(content + b" "))
+    compiled_once.forget()
     assert native_built("Battery", anew=True).read_bytes() == content
 
 
@@ -147,6 +149,7 @@ def test_a_damaged_one_is_made_anew(capsys: pytest.CaptureFixture[str]) -> None:
 def test_another_translator_runtime_python_or_model_is_another_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(toolchain, "compiled", lambda folder, sources, target: b"a library")
     names = {native_built("Battery").name}
     for changed in ("emit_blocks.py", "c/instance.c", "c/python_math.h"):
         shutil.copytree(build._HERE, tmp_path / changed.replace("/", "-"))

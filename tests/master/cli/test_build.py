@@ -11,6 +11,7 @@ import pytest
 
 from evcosim.fmus.native import toolchain
 from support.answers import refused
+from support.compiled_once import compiled_once as compiled_once
 from support.needs import need_c_compiler
 
 
@@ -112,7 +113,7 @@ class {name}(Model):
 
 
 @pytest.fixture
-def own(tmp_path):
+def own(tmp_path, compiled_once):
     """A file with a model that has a native form, and one that has none."""
     need_c_compiler()
     (tmp_path / "mine.py").write_text(MODEL.format(name="Taken", step=TAKEN))
