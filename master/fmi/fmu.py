@@ -15,11 +15,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from ...cosim.archive import archive_limits
 from ...cosim.errors import counted, nearest
 from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
 from ..builtin import looking_once, state_of
-from .archive import FmuError, archive_limits, entries_of, extract, read_entry
+from .archive import FmuError, entries_of, extract, read_entry
 from .description import read_description
 from .types import BOOLEAN, ENUMERATION, INTEGER, REAL, STRING, FmiType, fmi_type
 
