@@ -35,7 +35,10 @@ def folder_of(digest: str) -> list[Path]:
 
 
 def library_of(digest: str) -> str:
-    """Return where the machine code of the native FMU of a SHA-256 came from; "" where nothing is known."""
+    """Return where the machine code of the native FMU of a SHA-256 came from; "" where nothing is noted.
+
+    It is "shipped with evcosim" or "compiled by gcc".
+    """
     return _noted(digest)[2]
 
 

@@ -108,6 +108,16 @@ def is_ours(name: str, path: Path, digest: str) -> bool:
     return records.is_own(digest) or is_builtin(name, path)
 
 
+def library_of(digest: str) -> str:
+    """Return where the machine code of a native FMU came from, by the SHA-256 of its file.
+
+    It is noted in the cache of who built it: "shipped with evcosim" or "compiled by gcc"; "" for any other.
+    """
+    from ..fmus import records
+
+    return records.library_of(digest)
+
+
 @contextlib.contextmanager
 def looking_once() -> Iterator[None]:
     """Within the `with` block built-in FMUs are looked for once, however many units have them."""
@@ -145,6 +155,13 @@ class Built(NamedTuple):
     name: str
     path: Path
     left: str = ""
+
+    @property
+    def library(self) -> str:
+        """The origin of the machine code of a native one; "" for any other."""
+        from ..fmus import cache
+
+        return library_of(cache.digest_of(self.path))
 
 
 def build_fmu(name: str, folder: Path | None = None, native: Wanted | None = None) -> Built:

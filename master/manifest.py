@@ -14,6 +14,7 @@ from ..cosim.plan.faults import described
 from ..cosim.plan.unit_plan import UnitPlan
 from ..cosim.swap.sampled import sampled_in
 from ..cosim.system.system import Isolation, System
+from .builtin import library_of
 from .engine.bus_statistics import bus_statistics
 from .engine.effective_delays import effective_delays
 from .engine.engine import Engine
@@ -93,7 +94,7 @@ def _unit(unit: UnitPlan, prepared: Prepared, isolation: Isolation) -> dict[str,
         "tolerance_from": origin,
         "isolation": isolation,
         "map": prepared.system.file.units[unit.name].map.model_dump(exclude_defaults=True),
-    }
+    } | ({"library": library} if (library := library_of(fmu.digest)) else {})
 
 
 def _defaults(unit: UnitPlan) -> dict[str, Any]:

@@ -82,14 +82,6 @@ def content_of(
     return _noted(native_parts(recipe, model or _model(recipe)), wanted, folder)
 
 
-def library_of(path: Path) -> str:
-    """Return where the machine code of a native FMU came from; "" for a file that is none of this machine's.
-
-    It is noted of the bytes of the file, and stays in the cache with it.
-    """
-    return records.library_of(cache.digest_of(path))
-
-
 def _require_libraries(wanted: Wanted, built_in: bool) -> None:
     """Raise ToolchainError for a platform that is unknown, or for which nothing makes libraries here.
 

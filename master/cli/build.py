@@ -69,8 +69,8 @@ def build(
     how = _native(native, platform or [], fmi)
     for name in dict.fromkeys(names or known):
         for made in build_models(Path(name), output, how) if name in own else [build_fmu(name, output, how)]:
-            if made.left:
-                print(f"{made.name}: left in Python, because {made.left}")
+            if said := f"left in Python, because {made.left}" if made.left else made.library:
+                print(f"{made.name}: {said}")
             print(made.path)
     if not own and how is None and (notice := compile_engine()):
         complain(f"warning: {notice}")

@@ -33,6 +33,7 @@ def described(
 
     Raises ConfigError if it is no FMU, no variable has such a causality, or with `strict` it has defects.
     """
+    from ..builtin import library_of
     from ..fmi.fmu import read_fmu
 
     fmu = read_fmu(path, strict)
@@ -52,6 +53,7 @@ def described(
         "license": md.license or "",
         "platforms": list(fmu.platforms),
         "binary_for_this_machine": _has_binary(fmu),
+        "library": library_of(fmu.digest),
         "sources": [name for name in fmu.entries if name.startswith("sources/") and name[-1] != "/"],
         "unpacked_size": fmu.unpacked,
         "python": fmu.holds_python,
@@ -160,6 +162,7 @@ def show(about: dict[str, Any]) -> None:
         ("version", about["version"]),
         ("license", about["license"]),
         ("platforms", ", ".join(about["platforms"]) + (" (runs Python)" if about["python"] else "")),
+        ("native", about["library"]),
         ("sources", _sources(about)),
         *(field for name, found in can for field in _listed(name, map(_with_meaning, found))),
         *_listed("limits", map(_with_meaning, about["limits"])),

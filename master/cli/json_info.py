@@ -162,6 +162,7 @@ INFO_FMU = record(
         "license": text("Its license."),
         "platforms": listed("The platforms that it has libraries for."),
         "binary_for_this_machine": flag("Whether it runs here as it is."),
+        "library": text('Of a native FMU built here: "shipped with evcosim", or which compiler; else "".'),
         "sources": listed("Its source files."),
         "unpacked_size": whole("Bytes of its files."),
         "python": flag("Whether it runs Python code."),

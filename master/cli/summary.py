@@ -28,6 +28,7 @@ def show(finished: FinishedRun) -> None:
         *([("ended", manifest["ended"])] if "ended" in manifest else []),
         ("units", f"{', '.join(manifest['order'])} ({_algorithm(manifest)})"),
     ]
+    fields += [("native" if i == 0 else "", text) for i, text in enumerate(_native(manifest["units"]))]
     fields.append(("isolated", _isolated(manifest["units"])))
     fields += [("reads" if i == 0 else "", text) for i, text in enumerate(manifest["outside"])]
     for i, (signal, about) in enumerate(manifest["saturations"].items()):
@@ -65,6 +66,15 @@ def _isolated(units: dict[str, Any]) -> str:
     isolated = [name for name, unit in units.items() if unit["isolation"] == "process"]
     each = "each " if len(isolated) > 1 else ""
     return f"{', '.join(isolated)} ({each}in a process of its own)" if isolated else "none"
+
+
+def _native(units: dict[str, Any]) -> list[str]:
+    """Return which units are machine code of our own, and where that came from."""
+    origins = {name: unit["library"] for name, unit in units.items() if "library" in unit}
+    return [
+        f"{', '.join(name for name, each in origins.items() if each == origin)} ({origin})"
+        for origin in dict.fromkeys(origins.values())
+    ]
 
 
 def _next(finished: FinishedRun) -> list[str]:

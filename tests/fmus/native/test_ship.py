@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from evcosim.fmus import cache, records
 from evcosim.fmus.native import build, package, ship, shipped, toolchain
-from evcosim.fmus.native.build import content_of, difference, library_of, native_built, why_not
+from evcosim.fmus.native.build import content_of, difference, native_built, why_not
 from evcosim.fmus.native.errors import ToolchainError
 from evcosim.fmus.native.wanted import Wanted
 from evcosim.fmus.recipes import catalog_recipe
@@ -65,7 +66,7 @@ def test_a_shipped_library_is_the_one_that_a_compiler_makes_here(made: list[ship
 @pytest.mark.parametrize("name", NAMES)
 def test_no_compiler_is_needed(folder: Path, name: str) -> None:
     path = native_built(name)
-    assert library_of(path) == "shipped with evcosim"
+    assert records.library_of(cache.digest_of(path)) == "shipped with evcosim"
     assert why_not(name) == "" == difference(name)
     assert native_built(name, anew=True).read_bytes() == path.read_bytes()
 

@@ -130,11 +130,14 @@ def entries(path):
 
 def test_a_model_of_ones_own_becomes_native(evcosim, own):
     made = evcosim("build", "mine.py", "--native")
-    assert (made.code, made.out.strip()) == (0, str(own / "Taken.fmu"))
+    compiler = toolchain.named(toolchain.compiler(toolchain.here()))
+    lines = [f"Taken: compiled by {compiler}", str(own / "Taken.fmu")]
+    assert (made.code, made.out.splitlines()) == (0, lines)
     assert "sources/model.c" in entries("Taken.fmu")
     assert not [entry for entry in entries("Taken.fmu") if entry.endswith(".py")]
     shown = evcosim("info", "Taken.fmu").out
     assert "FMI 2.0 Co-Simulation" in shown and "python" not in shown.lower()
+    assert f"compiled by {compiler}\n" in shown
     assert evcosim("build", "mine.py", "--native", "--fmi", "3", "-o", "three").code == 0
     assert "FMI 3.0 Co-Simulation" in evcosim("info", "three/Taken.fmu").out
 
@@ -148,6 +151,7 @@ def test_it_runs_as_the_one_in_python_does_in_the_process_of_evcosim(evcosim, ow
         assert evcosim(*run, "-o", f"out-{folder}").code == 0
         units = json.loads(Path(f"out-{folder}/run.json").read_text())["units"]
         assert [unit["isolation"] for unit in units.values()] == ["none"]
+        assert ["library" in unit for unit in units.values()] == [folder == "native"]
         tables.append(Path(f"out-{folder}/results.csv").read_bytes())
     assert tables[0] == tables[1]
 
@@ -170,7 +174,8 @@ def test_a_native_fmu_without_its_library_is_compiled_again(evcosim, own):
 def test_a_model_without_a_native_form_is_left_in_python_with_the_reason(evcosim, own):
     line = own.joinpath("two.py").read_text().partition("sum(")[0].count("\n") + 1
     made = evcosim("build", "two.py", "--native")
-    first, second, path = made.out.splitlines()
+    origin, first, second, path = made.out.splitlines()
+    assert origin.startswith("First: compiled by ")
     assert (made.code, first, path) == (0, str(own / "First.fmu"), str(own / "Second.fmu"))
     assert second.startswith(f"Second: left in Python, because two.py:{line}: sum(")
     assert "sources/model.c" in entries("First.fmu")
@@ -233,9 +238,12 @@ def test_half_a_native_fmu_is_refused(evcosim, own):
 
 def test_a_built_in_model_becomes_native_in_the_cache_and_in_a_folder(evcosim, own, monkeypatch):
     monkeypatch.setenv("EVCOSIM_CACHE", str(own / "cache"))
-    cached = Path(evcosim("build", "Battery", "--native").out.strip())
+    cached = Path(evcosim("build", "Battery", "--native").out.splitlines()[-1])
     assert cached.parent == own / "cache" and cached.name.startswith("Battery_native_")
-    assert evcosim("build", "Battery", "--native=require", "-o", "made").out.strip() == "made/Battery.fmu"
+    assert (
+        evcosim("build", "Battery", "--native=require", "-o", "made").out.splitlines()[-1]
+        == "made/Battery.fmu"
+    )
     assert Path("made/Battery.fmu").read_bytes() == cached.read_bytes()
-    three = Path(evcosim("build", "Battery", "--native", "--fmi", "3").out.strip())
+    three = Path(evcosim("build", "Battery", "--native", "--fmi", "3").out.splitlines()[-1])
     assert three != cached and "FMI 3.0" in evcosim("info", str(three)).out

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import re
 import shlex
 
 import pytest
+
+from evcosim.master.cli import summary
+from support.needs import need_c_compiler
 
 
 def test_final_values_where_there_are_no_metrics(evcosim, system):
@@ -51,6 +56,25 @@ def test_a_run_says_what_its_faults_hit(evcosim, tmp_path):
         "run", "scooter", "--scenario", tmp_path / "lost.toml", "--stop-time", "1", "--no-plot", "--json"
     )
     assert [fault["frames"] for fault in data.json["faults"]] == [20, 0]
+
+
+def test_a_run_says_where_its_native_units_came_from(evcosim, tmp_path):
+    need_c_compiler()
+    path = tmp_path / "pack.toml"
+    path.write_text('name = "pack"\n[units.pack]\nfmu = "Battery"\n[experiment]\nstop_time = 0.1\n')
+    shown = evcosim("run", path, "--units", "native", "--no-plot", "--no-report").out
+    said = re.search(r"^native +pack \((compiled by \w+|shipped with evcosim)\)$", shown, re.MULTILINE)
+    assert said
+    (folder,) = (tmp_path / "results").iterdir()
+    assert json.loads((folder / "run.json").read_text())["units"]["pack"]["library"] == said[1]
+    assert "\nnative" not in evcosim("run", path, "--no-plot", "--no-report").out
+
+
+def test_native_units_are_listed_by_where_they_came_from():
+    origins = {"a": "shipped with evcosim", "b": "", "c": "compiled by gcc", "d": "shipped with evcosim"}
+    units = {name: {"library": origin} if origin else {} for name, origin in origins.items()}
+    assert summary._native(units) == ["a, d (shipped with evcosim)", "c (compiled by gcc)"]
+    assert summary._native({"b": {}}) == []
 
 
 def test_a_run_says_what_is_isolated_where_results_are_and_what_to_type_next(evcosim, tmp_path):
