@@ -36,7 +36,7 @@ NAMES = {
     "toolbox_container": "fmu-manipulation-toolbox {} container FMU",
 }
 _OWN = "evcosim"
-_UNIT_STEPS = {"c": 200_000, "python": 20_000}
+_UNIT_STEPS = {"c": 1_000_000, "python": 20_000}
 """Steps of all units together, where a run has many units: so long that a step's time is steady."""
 
 Group = tuple[Kind, bool, bool]
@@ -69,7 +69,7 @@ def _arguments() -> argparse.Namespace:
         prog="python -m benchmarks", description=(__doc__ or "").split("\n\n")[0]
     )
     parser.add_argument("--rounds", type=int, default=3, help="how often each is measured (default: 3)")
-    parser.add_argument("--steps", type=int, default=10_000, help="steps of a run (default: 10000)")
+    parser.add_argument("--steps", type=int, default=100_000, help="steps of a run at most (default: 100000)")
     parser.add_argument("--units", type=int, nargs="+", default=[2, 5, 20, 100], help="units in the ring")
     parser.add_argument(
         "--python", type=_interpreter, action="append", default=[], metavar="MASTER=PATH",

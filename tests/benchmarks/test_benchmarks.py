@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as ring
-from benchmarks import bus, coldstart, memory, native, scaling, slaves, worker
+from benchmarks import bus, coldstart, memory, native, scaling, slaves, systems, worker
 from benchmarks.asking import Figure, ask, measured
 from benchmarks.case import Case, quantized, reference
 from benchmarks.page import put
@@ -169,7 +169,7 @@ def test_a_page_keeps_what_stands_round_the_place(tmp_path: Path) -> None:
         put(page, "y", "")
 
 
-@pytest.mark.parametrize("module", [ring, scaling, slaves, native, coldstart, memory, bus])
+@pytest.mark.parametrize("module", [ring, scaling, slaves, native, coldstart, memory, bus, systems])
 def test_help_says_what_is_measured(
     module: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -185,3 +185,13 @@ def test_each_way_over_a_bus_is_measured(monkeypatch: pytest.MonkeyPatch) -> Non
     best = {way: bus.measured(way, 2, 50) for way in bus.WAYS}
     assert min(best.values()) > 0.0
     assert bus.report(best).count("|") == 5 * (2 + len(bus.WAYS))
+
+
+def test_a_system_is_measured_with_native_units(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is said of it is the system's: its step, and as many variables as it records."""
+    need_c_compiler()
+    monkeypatch.chdir(ROOT)
+    cost = systems.measured(systems.RIDES["braking"]._replace(stop_time=0.5))
+    assert (cost.recorded, cost.step) == (32, 0.01)
+    assert cost.microseconds > 0.0
+    assert "| a name | 32 | 2.5 | 4,000 |" in systems.report({"a name": cost._replace(microseconds=2.5)})
