@@ -30,13 +30,15 @@ def forget() -> None:
     _MADE.clear()
 
 
-def _compiled(folder: Path, sources: Sequence[str], target: toolchain.Platform) -> bytes:
-    command = toolchain.compiler(target)
+def _compiled(
+    folder: Path, sources: Sequence[str], target: toolchain.Platform, command: Sequence[str] = ()
+) -> bytes:
+    command = command or toolchain.compiler(target)
     path = shutil.which(command[0])
     if path is None or path != _OWN.get(command[0]):
-        return _COMPILED(folder, sources, target)
+        return _COMPILED(folder, sources, target, command)
     files = tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()) if file.is_file())
     key = (path, *command[1:], target, *sources, files)
     if key not in _MADE:
-        _MADE[key] = _COMPILED(folder, sources, target)
+        _MADE[key] = _COMPILED(folder, sources, target, command)
     return _MADE[key]

@@ -19,6 +19,7 @@ from evcosim.fmus.native.build import content_of, difference, native_built, why_
 from evcosim.fmus.native.errors import ToolchainError
 from evcosim.fmus.native.wanted import Wanted
 from evcosim.fmus.recipes import catalog_recipe
+from support import compiled_once
 from support.needs import give_up, need_c_compiler, need_linux
 
 NAMES = ("WheelSpeedEstimator", "BrakeActuator")
@@ -147,6 +148,7 @@ def test_who_names_a_compiler_is_given_what_it_compiles(
 
 def test_the_same_libraries_are_the_same_files(made: list[ship.Library], tmp_path: Path) -> None:
     target = toolchain.here()
+    compiled_once.forget()
     again = list(ship.libraries(NAMES[1:], target, toolchain.compiler(target)))
     assert again == [each for each in made if each.name == NAMES[1]]
     for order, place in ((made, tmp_path / "a"), (made[::-1], tmp_path / "b")):
