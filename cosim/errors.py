@@ -90,9 +90,15 @@ def nearest(word: str, words: Iterable[str]) -> str:
 
 
 def short(value: object) -> str:
-    """Return a value as Python writes it, cut where it is long; an integer of thousands of digits in hex."""
+    """Return a value as Python writes it, cut where it is long; an integer of thousands of digits in hex.
+
+    A list with such an integer, which Python refuses to write, is named by its type.
+    """
     huge = isinstance(value, int) and value.bit_length() > 2000  # Python writes some thousand digits at most
-    text = f"{value:#x}" if huge else repr(value)
+    try:
+        text = f"{value:#x}" if huge else repr(value)
+    except ValueError:
+        text = f"a {type(value).__name__} with an integer of thousands of digits"
     return text if len(text) <= 80 else f"{text[:77]}..."
 
 

@@ -11,13 +11,15 @@ import re
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..cosim.errors import ConfigError, nearest, short
 from ..cosim.file_names import check_name, near_file
 from ..cosim.reading import is_file
 from ..cosim.writing import reason
-from ..fmus.native.wanted import Wanted as Wanted  # for the verb that builds
+
+if TYPE_CHECKING:  # the process of an isolated unit in C imports nothing of the FMUs in Python
+    from ..fmus.native.wanted import Wanted as Wanted
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -162,6 +164,13 @@ class Built(NamedTuple):
         from ..fmus import cache
 
         return library_of(cache.digest_of(self.path))
+
+
+def wanted(require: bool, platforms: tuple[str, ...], fmi: int) -> Wanted:
+    """Return a wish for native FMUs, for `build_fmu` and `build_models`."""
+    from ..fmus.native.wanted import Wanted
+
+    return Wanted(require, platforms, fmi)
 
 
 def build_fmu(name: str, folder: Path | None = None, native: Wanted | None = None) -> Built:

@@ -87,6 +87,11 @@ CALLS: dict[str, list[Callable[[Any], object]]] = {
         lambda x: driven(lambda s: s.override("vehicle.throttle", x)),
         lambda x: driven(lambda s: s.override("ecu.speed_measured", x)),
     ],
+    "Simulation.follow.values": [
+        lambda x: driven(lambda s: s.follow("vehicle.throttle", x)),
+        lambda x: driven(lambda s: s.follow("vehicle.throttle", [x])),
+        lambda x: driven(lambda s: s.follow("vehicle.throttle", [0.0, x])),
+    ],
     "Simulation.bias.value": [lambda x: driven(lambda s: s.bias("vehicle.throttle", x))],
     "BusVariation.delay_steps": [lambda x: simulated(bus=BusVariation(delay_steps=x))],
     "BusVariation.resolution": [lambda x: simulated(bus=BusVariation(resolution=x))],

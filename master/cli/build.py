@@ -106,7 +106,7 @@ _WITH = {"--native": "--native=auto"}
 def _native(native: str | None, platforms: list[str], fmi: int | None) -> Wanted | None:
     """Return the native FMUs that are asked for; None for FMUs of Python. Raises ConfigError."""
     from ...cosim.errors import ConfigError, nearest
-    from ..builtin import Wanted
+    from ..builtin import wanted
 
     if native is None:
         for option, given in (("--platform", bool(platforms)), ("--fmi", fmi is not None)):
@@ -119,4 +119,4 @@ def _native(native: str | None, platforms: list[str], fmi: int | None) -> Wanted
         )
     if fmi not in (None, 2, 3):
         raise ConfigError(f"--fmi {fmi}: native FMUs are of FMI 2 or 3")
-    return Wanted(native == "require", tuple(dict.fromkeys(platforms)), fmi or 2)
+    return wanted(native == "require", tuple(dict.fromkeys(platforms)), fmi or 2)
