@@ -187,13 +187,21 @@ static bool settable(instance *m, instance_kind kind, references r, size_t count
     return instance_is(m, SETTABLE) && instance_can_set(m, kind, r, count);
 }
 
+/* Read any reals. */
+MODEL_APART fmi2Status get_reals(instance *m, references r, size_t count, fmi2Real values[])
+{
+    if (!m)
+        return fmi2Error;
+    if (!readable(m, real_kind, r, count))
+        return error(m, "fmi2GetReal");
+    for (size_t k = 0; k < count; k++)
+        values[k] = instance_real(m, r[k]);
+    return fmi2OK;
+}
+
 EXPORT fmi2Status fmi2GetReal(fmi2Component c, references r, size_t count, fmi2Real values[])
 {
-    if (!c)
-        return fmi2Error;
-    if (instance_is(c, KNOWN) && instance_ready(c) && instance_get_reals(c, real_kind, r, count, values))
-        return fmi2OK;
-    return error(c, "fmi2GetReal");
+    return c && instance_get_run(c, r, count, values) ? fmi2OK : get_reals(c, r, count, values);
 }
 
 EXPORT fmi2Status fmi2GetInteger(fmi2Component c, references r, size_t count, fmi2Integer values[])
@@ -226,14 +234,22 @@ EXPORT fmi2Status fmi2GetString(fmi2Component c, references r, size_t count, fmi
     return readable(c, string_kind, r, count) ? fmi2OK : error(c, "fmi2GetString");
 }
 
+/* Write any reals. */
+MODEL_APART fmi2Status set_reals(instance *m, references r, size_t count, const fmi2Real values[])
+{
+    if (!m)
+        return fmi2Error;
+    if (!settable(m, real_kind, r, count))
+        return error(m, "fmi2SetReal");
+    for (size_t k = 0; k < count; k++)
+        instance_put_real(m, r[k], values[k]);
+    instance_was_set(m);
+    return fmi2OK;
+}
+
 EXPORT fmi2Status fmi2SetReal(fmi2Component c, references r, size_t count, const fmi2Real values[])
 {
-    if (!c)
-        return fmi2Error;
-    if (!instance_is(c, SETTABLE) || !instance_set_reals(c, real_kind, r, count, values))
-        return error(c, "fmi2SetReal");
-    instance_was_set(c);
-    return fmi2OK;
+    return c && instance_set_run(c, r, count, values) ? fmi2OK : set_reals(c, r, count, values);
 }
 
 EXPORT fmi2Status fmi2SetInteger(fmi2Component c, references r, size_t count, const fmi2Integer values[])

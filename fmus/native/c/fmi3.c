@@ -219,15 +219,24 @@ static bool settable(instance *m, instance_kind kind, const fmi3ValueReference r
     return instance_is(m, SETTABLE) && instance_can_set(m, kind, r, count) && one_each(m, count, values);
 }
 
-GET(Float64)
+/* Read any reals. */
+MODEL_APART fmi3Status get_reals(instance *m, const fmi3ValueReference r[], size_t count, double values[],
+                                 size_t value_count)
 {
     if (!m)
         return fmi3Error;
-    if (count != value_count ? readable(m, float64, r, count, value_count)
-                             : instance_is(m, KNOWN) && instance_ready(m) &&
-                                   instance_get_reals(m, float64, r, count, values))
+    if (!readable(m, float64, r, count, value_count))
+        return error(m, "fmi3GetFloat64");
+    for (size_t k = 0; k < count; k++)
+        values[k] = instance_real(m, r[k]);
+    return fmi3OK;
+}
+
+GET(Float64)
+{
+    if (m && count == value_count && instance_get_run(m, r, count, values))
         return fmi3OK;
-    return error(m, "fmi3GetFloat64");
+    return get_reals(m, r, count, values, value_count);
 }
 
 GET(Int32)
@@ -263,16 +272,25 @@ GET(Boolean)
     return fmi3OK;
 }
 
-SET(Float64)
+/* Write any reals. */
+MODEL_APART fmi3Status set_reals(instance *m, const fmi3ValueReference r[], size_t count, const double values[],
+                                 size_t value_count)
 {
     if (!m)
         return fmi3Error;
-    if (count != value_count
-            ? !settable(m, float64, r, count, value_count)
-            : !instance_is(m, SETTABLE) || !instance_set_reals(m, float64, r, count, values))
+    if (!settable(m, float64, r, count, value_count))
         return error(m, "fmi3SetFloat64");
+    for (size_t k = 0; k < count; k++)
+        instance_put_real(m, r[k], values[k]);
     instance_was_set(m);
     return fmi3OK;
+}
+
+SET(Float64)
+{
+    if (m && count == value_count && instance_set_run(m, r, count, values))
+        return fmi3OK;
+    return set_reals(m, r, count, values, value_count);
 }
 
 SET(Int32)

@@ -180,53 +180,39 @@ static inline void instance_put_boolean(instance *m, uint32_t reference, bool va
     *(bool *)instance_at(m, reference) = value;
 }
 
-/* Read reals, those of references that follow each other as the run of numbers that they are. */
-static inline bool instance_get_reals(instance *m, instance_kind kind, const uint32_t *references,
-                                      size_t count, double *values)
+/* Read reals that are current, those of references that follow each other as the run of numbers that they are.
+   False for all others, which may be right too. */
+static inline bool instance_get_run(const instance *m, const uint32_t *references, size_t count, double *values)
 {
+    if (m->stale || !(KNOWN >> m->phase & 1))
+        return false;
     for (size_t k = 0; k < count;) {
-        const uint32_t first = references[k];
-        const size_t run = first < m->count ? m->places[first].run : 0, left = count - k;
-        const size_t most = run < left ? run : left;
-        if (run == 0)
-            return instance_unknown(m, kind, references, count);
-        const double *const at = instance_at(m, first);
-        size_t n = 0;
-        do {
-            values[k + n] = at[n];
-            n++;
-        } while (n < most && references[k + n] == first + n);
-        k += n;
+        uint32_t next = references[k];
+        if (next >= m->count || m->places[next].run == 0)
+            return false;
+        const double *at = instance_at(m, next);
+        const size_t run = m->places[next].run, end = run < count - k ? k + run : count;
+        do
+            values[k++] = *at++;
+        while (k < end && references[k] == ++next);
     }
     return true;
 }
 
-/* Return true where all references are of one run of reals that can be set now; there is at least one. */
-static inline bool instance_is_run(const instance *m, const uint32_t *references, size_t count)
+/* Write reals of one such run between steps. False for all others, which may be right too. */
+static inline bool instance_set_run(instance *m, const uint32_t *references, size_t count, const double *values)
 {
-    const uint32_t first = references[0];
-    if (first >= m->count || count > m->places[first].run || !(m->places[first].settable >> m->phase & 1))
+    const uint32_t first = count > 0 ? references[0] : UINT32_MAX;
+    if (m->phase != STEPPING || first >= m->count || count > m->places[first].run ||
+        !(m->places[first].settable & IN_STEPPING))
         return false;
     for (size_t k = 1; k < count; k++)
         if (references[k] != first + k)
             return false;
-    return true;
-}
-
-/* Write reals, all of them or none. */
-static inline bool instance_set_reals(instance *m, instance_kind kind, const uint32_t *references,
-                                      size_t count, const double *values)
-{
-    if (count > 0 && instance_is_run(m, references, count)) {
-        double *const at = instance_at(m, references[0]);
-        for (size_t k = 0; k < count; k++)
-            at[k] = values[k];
-        return true;
-    }
-    if (!instance_can_set(m, kind, references, count))
-        return false;
+    double *const run = instance_at(m, first);
     for (size_t k = 0; k < count; k++)
-        instance_put_real(m, references[k], values[k]);
+        run[k] = values[k];
+    m->stale |= m->follows;
     return true;
 }
 
