@@ -60,6 +60,16 @@ def keep_some(name: str, content: bytes, most: int) -> str:
     return cache.keep(name, content) or cache.leave(f"{name.partition('-')[0]}-*", most)
 
 
+def held_digest(path: Path) -> str:
+    """Return the SHA-256 of a file of the cache that is as its record says; "" for any other file."""
+    from ..fmus import cache
+
+    with contextlib.suppress(OSError):
+        if path.parent == cache.folder() and cache.once(path, lambda: "held" if cache.holds(path) else ""):
+            return cache.digest_of(path)
+    return ""
+
+
 def state_of(path: str) -> tuple[int, ...] | None:
     """Return the state of a file, which stays the same until it is written; None if it was just now.
 

@@ -20,22 +20,7 @@ FOLDERS = ("api", "models", "fmus", "cosim", "master")
 
 # module of a library: who uses it, and the names, with dots where a name is looked up in a name
 NAMES = {
-    "fmpy": ("master/fmi", "freeLibrary platform platform_tuple sharedLibraryExtension"),
-    "fmpy.fmi1": (
-        "master/fmi/log.py",
-        "fmi1CallbackAllocateMemoryTYPE fmi1CallbackFreeMemoryTYPE fmi1CallbackFunctions.logger "
-        "fmi1CallbackFunctions.allocateMemory fmi1CallbackFunctions.freeMemory "
-        "fmi1CallbackFunctions.stepFinished fmi1CallbackLoggerTYPE",
-    ),
-    "fmpy.fmi2": (
-        "master/fmi/log.py, fmi2.py",
-        "addLoggerProxy calloc free fmi2CallbackAllocateMemoryTYPE fmi2CallbackFreeMemoryTYPE "
-        "fmi2CallbackFunctions.logger fmi2CallbackFunctions.allocateMemory fmi2CallbackFunctions.freeMemory "
-        "fmi2CallbackFunctions.componentEnvironment fmi2CallbackLoggerTYPE "
-        "fmi2EventInfo.newDiscreteStatesNeeded fmi2EventInfo.terminateSimulation "
-        "fmi2EventInfo.valuesOfContinuousStatesChanged fmi2EventInfo.nominalsOfContinuousStatesChanged "
-        "fmi2EventInfo.nextEventTimeDefined fmi2EventInfo.nextEventTime",
-    ),
+    "fmpy.logging": ("master/fmi/callbacks.py", "addLoggerProxy"),  # its library, by its path
     "fmpy.model_description": (
         "master/fmi/description.py, supplement.py, validation.py",
         "Unknown ValidationError read_model_description",

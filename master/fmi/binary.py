@@ -1,4 +1,4 @@
-"""The check of a shared library's header, before this machine loads it.
+"""Shared libraries of this machine: their names in an FMU, and the check of a header before one is loaded.
 
 The system's loader says "No such file" of a library for another machine, and ends the process over one that
 is cut off. Only ELF (Linux) is looked into; elsewhere the loader's own words must do.
@@ -18,8 +18,23 @@ _OTHERS = {
     b"\xca\xfe\xba\xbe": "a library for macOS",
     b"version https://git-lfs": "a pointer of Git LFS, not the library itself",
 }
+_SYSTEMS = {"win32": ("win", "windows"), "darwin": ("darwin", "darwin")}
+_PROCESSORS = {"arm64": "aarch64", "amd64": "x86_64", "x86pc": "x86", "i386": "x86", "i686": "x86"}
+SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+"""The end of the names of shared libraries."""
 _HEADER, _SEGMENT = struct.Struct("<16xHHIQQQIHHH"), struct.Struct("<II5Q")
 _LOADED = 1  # the type of a segment that is mapped into memory
+
+
+def folder_of_libraries(version: str) -> str:
+    """Return the folder in `binaries` with the libraries for this machine, by the version of FMI."""
+    short, long = _SYSTEMS.get(sys.platform, (sys.platform, sys.platform))
+    if version[0] in "12":
+        return f"{short}{64 if sys.maxsize > 2**32 else 32}"
+    machine = platform.machine().lower()
+    processor = _PROCESSORS.get(machine, machine)
+    narrow = processor == "x86_64" and sys.maxsize < 2**32  # Python for 32 bits on a machine of 64
+    return f"{'x86' if narrow else processor}-{long}"
 
 
 def problem(path: Path) -> str:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import ctypes
 from pathlib import Path
 
-from fmpy.fmi2 import fmi2EventInfo
-
 from ...cosim.plan.unit_plan import FmuSteps
 from .exchange import ModelExchange
 from .instance import Instance
@@ -15,6 +13,19 @@ from .transfer import Call, StepCall
 
 _INVISIBLE, _LOGGING = ctypes.c_int(0), ctypes.c_int(1)  # fmi2Boolean
 _MODEL_EXCHANGE, _CO_SIMULATION = ctypes.c_int(0), ctypes.c_int(1)
+
+
+class _EventInfo(ctypes.Structure):
+    """fmi2EventInfo."""
+
+    _fields_ = [
+        ("newDiscreteStatesNeeded", ctypes.c_int),
+        ("terminateSimulation", ctypes.c_int),
+        ("nominalsOfContinuousStatesChanged", ctypes.c_int),
+        ("valuesOfContinuousStatesChanged", ctypes.c_int),
+        ("nextEventTimeDefined", ctypes.c_int),
+        ("nextEventTime", ctypes.c_double),
+    ]
 
 
 class Fmi2Unit(Instance):
@@ -82,5 +93,5 @@ class Fmi2ModelExchange(ModelExchange, Fmi2Unit):
     _derivatives = "GetDerivatives"
 
     def _discrete_states(self) -> Call:
-        self._answer = fmi2EventInfo()
+        self._answer = _EventInfo()
         return self._bound("NewDiscreteStates", ctypes.byref(self._answer))

@@ -19,9 +19,11 @@ from ...cosim.archive import archive_limits
 from ...cosim.errors import counted, nearest
 from ...cosim.interface import InterfaceType, UnitInterface, VariableInfo
 from ...cosim.units.measure import BASE_UNITS, UnitOfMeasure
-from ..builtin import looking_once, state_of
+from ..builtin import held_digest, looking_once, state_of
 from .archive import FmuError, entries_of, extract, read_entry
+from .binary import SUFFIX, folder_of_libraries
 from .description import read_description
+from .stored import Said, store, stored
 from .types import BOOLEAN, ENUMERATION, INTEGER, REAL, STRING, FmiType, fmi_type
 
 __all__ = ["Fmu", "FmuError", "check_runnable", "is_true", "read_fmu"]
@@ -39,7 +41,8 @@ class Fmu:
     description that were tolerated, one sentence each with what was assumed;
     `negated` are the variables of FMI 1.0 whose value is that of their reference with the other sign;
     `sampled` are the outputs that evcosim's annotation calls so (None: there is none);
-    `wanted` is the interface to use, where it is not the default (see `using`).
+    `wanted` is the interface to use, where it is not the default (see `using`); `sha256` is that of a
+    file of the cache, which is as its record says; "": it is read to be known.
     """
 
     path: Path
@@ -50,6 +53,7 @@ class Fmu:
     negated: frozenset[str] = frozenset()
     sampled: frozenset[str] | None = None
     wanted: InterfaceType | None = None
+    sha256: str = ""
 
     def using(self, interface: InterfaceType | None) -> Fmu:
         """Return the FMU by this interface (None: Co-Simulation where there is one, else Model Exchange).
@@ -65,7 +69,7 @@ class Fmu:
     @functools.cached_property
     def digest(self) -> str:
         """SHA-256 of the file."""
-        return hashlib.sha256(self.path.read_bytes()).hexdigest()
+        return self.sha256 or hashlib.sha256(self.path.read_bytes()).hexdigest()
 
     @functools.cached_property
     def interface(self) -> UnitInterface:
@@ -84,10 +88,8 @@ class Fmu:
     @property
     def binary(self) -> str:
         """The entry of the library for this machine, which need not be there."""
-        from fmpy import platform, platform_tuple, sharedLibraryExtension
-
-        folder = platform if self.description.fmiVersion[0] in "12" else platform_tuple
-        return f"binaries/{folder}/{self.kind.modelIdentifier}{sharedLibraryExtension}"
+        folder = folder_of_libraries(self.description.fmiVersion)
+        return f"binaries/{folder}/{self.kind.modelIdentifier}{SUFFIX}"
 
     @property
     def interface_type(self) -> InterfaceType:
@@ -193,6 +195,17 @@ def _unless_written(path: Path, place: str) -> Fmu:
 
 
 def _read(path: Path) -> Fmu:
+    """Read an FMU; one that evcosim built and has read before is known by its digest."""
+    digest = held_digest(path)
+    said = stored(digest) if digest else None
+    if said is None:
+        said = _said(path)
+        if digest:
+            said = store(digest, said)
+    return Fmu(path, *said, sha256=digest)
+
+
+def _said(path: Path) -> Said:
     entries = entries_of(path)
     names = tuple(entry.filename for entry in entries)
     if _DESCRIPTION not in names:
@@ -201,7 +214,7 @@ def _read(path: Path) -> Fmu:
     if any("\\" in entry.orig_filename for entry in entries):
         defects = ("the archive separates folders with '\\'; they are taken as folders", *defects)
     size = sum(entry.file_size for entry in entries)
-    return Fmu(path, description, names, size, defects, negated, sampled)
+    return Said(description, names, size, defects, negated, sampled)
 
 
 def _elsewhere(names: tuple[str, ...]) -> str:

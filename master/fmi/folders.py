@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ...cosim.errors import ShortageError
 from ...cosim.leftovers import remove_folder
-from ..builtin import cache_folder, unpacked
+from ..builtin import unpacked
 from .fmu import Fmu, FmuError, is_true
 
 
@@ -48,7 +48,7 @@ def take(fmu: Fmu, unit: str) -> Path:
 
 
 def _folder(fmu: Fmu, unit: str) -> _Folder:
-    if fmu.path.parent == cache_folder() and (kept := unpacked(fmu.path, fmu.binary)) is not None:
+    if fmu.sha256 and (kept := unpacked(fmu.path, fmu.binary)) is not None:  # a file of the cache
         return _Folder(kept, kept=True)
     try:
         return _Folder(fmu.extract(), kept=False)

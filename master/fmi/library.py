@@ -13,8 +13,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from fmpy import freeLibrary
-
 from . import binary
 from .fmu import Fmu, FmuError
 
@@ -51,7 +49,11 @@ class Library:
 
     def close(self) -> None:
         """Unload the library."""
-        freeLibrary(self._library._handle)
+        handle = ctypes.c_void_p(self._library._handle)
+        if sys.platform == "win32":
+            ctypes.windll.kernel32.FreeLibrary(handle)
+        else:
+            ctypes.CDLL(None).dlclose(handle)
 
 
 def load_library(fmu: Fmu, folder: Path, prefix: str) -> Library:

@@ -9,16 +9,8 @@ import itertools
 from collections.abc import Callable, Iterator
 from typing import ClassVar
 
-from fmpy.fmi1 import fmi1CallbackAllocateMemoryTYPE as AllocateMemory1
-from fmpy.fmi1 import fmi1CallbackFreeMemoryTYPE as FreeMemory1
-from fmpy.fmi1 import fmi1CallbackFunctions
-from fmpy.fmi1 import fmi1CallbackLoggerTYPE as Logger1
-from fmpy.fmi2 import addLoggerProxy, calloc, fmi2CallbackFunctions, free
-from fmpy.fmi2 import fmi2CallbackAllocateMemoryTYPE as AllocateMemory
-from fmpy.fmi2 import fmi2CallbackFreeMemoryTYPE as FreeMemory
-from fmpy.fmi2 import fmi2CallbackLoggerTYPE as Logger
-
 from ..warned import WarningKinds
+from .callbacks import Callbacks2, CoSimulationCallbacks1, Logger, ModelExchangeCallbacks1, complete
 
 STATUS = ("OK", "Warning", "Discard", "Error", "Fatal", "Pending")
 _KEPT = 100
@@ -28,12 +20,6 @@ _queues: dict[int, UnitLog] = {}
 # a unit of FMI 1.0 is known by its component, which there is only when instantiation ends
 _instantiating: list[UnitLog] = []
 _ids = itertools.count(1)
-
-
-class _ModelCallbacks(ctypes.Structure):
-    """The callback structure of FMI 1.0 Model Exchange."""
-
-    _fields_ = [("logger", Logger1), ("allocateMemory", AllocateMemory1), ("freeMemory", FreeMemory1)]
 
 
 class UnitLog:
@@ -50,28 +36,19 @@ class UnitLog:
         self._keys = [self.id]
         _queues[self.id] = self
 
-    def callbacks(self) -> fmi2CallbackFunctions:
+    def callbacks(self) -> Callbacks2:
         """Return FMI 2.0's callback structure for the instantiation; keep it as long as the unit lives."""
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = _receive
-        callbacks.allocateMemory = AllocateMemory(calloc)
-        callbacks.freeMemory = FreeMemory(free)
-        callbacks.componentEnvironment = self.id
-        # FMPy's native proxy formats the variadic arguments, which ctypes cannot; it remembers one
-        # logger for the whole process, hence the single callback and the queues by environment
-        addLoggerProxy(ctypes.byref(callbacks))
+        callbacks = Callbacks2(componentEnvironment=self.id)
+        complete(callbacks, _receive)  # a single one for the process, hence the queues by environment
         return callbacks
 
-    def callbacks_1(self, steps: bool = True) -> fmi1CallbackFunctions | _ModelCallbacks:
+    def callbacks_1(self, steps: bool = True) -> CoSimulationCallbacks1 | ModelExchangeCallbacks1:
         """Return FMI 1.0's callback structure; keep it as long as the unit lives.
 
         `steps` is true for Co-Simulation; its structure, which is passed by value, has a member more.
         """
-        callbacks = fmi1CallbackFunctions() if steps else _ModelCallbacks()
-        callbacks.logger = ctypes.cast(_receive, Logger1)
-        callbacks.allocateMemory = AllocateMemory1(calloc)
-        callbacks.freeMemory = FreeMemory1(free)
-        addLoggerProxy(ctypes.byref(callbacks))
+        callbacks = CoSimulationCallbacks1() if steps else ModelExchangeCallbacks1()
+        complete(callbacks, _receive)
         return callbacks
 
     @contextlib.contextmanager

@@ -6,6 +6,7 @@ import struct
 import sys
 from pathlib import Path
 
+import fmpy
 import pytest
 
 from evcosim.master.fmi import binary
@@ -63,3 +64,29 @@ def test_one_that_is_cut_off_anywhere_within_its_segments(tmp_path: Path, whole:
     cuts = [length for length in range(0, len(whole), 997) if problem(tmp_path, whole[:length])]
     assert cuts and cuts == list(range(0, cuts[-1] + 1, 997))
     assert cuts[-1] > len(whole) / 3
+
+
+def test_libraries_of_this_machine_are_where_fmpy_looks_for_them() -> None:
+    assert binary.folder_of_libraries("1.0") == binary.folder_of_libraries("2.0") == fmpy.platform
+    assert binary.folder_of_libraries("3.0") == fmpy.platform_tuple
+    assert fmpy.sharedLibraryExtension == binary.SUFFIX
+
+
+@pytest.mark.parametrize(
+    ("system", "machine", "bits", "old", "new"),
+    [
+        ("win32", "AMD64", 64, "win64", "x86_64-windows"),
+        ("win32", "AMD64", 32, "win32", "x86-windows"),
+        ("darwin", "arm64", 64, "darwin64", "aarch64-darwin"),
+        ("darwin", "x86_64", 64, "darwin64", "x86_64-darwin"),
+        ("linux", "aarch64", 64, "linux64", "aarch64-linux"),
+        ("linux", "i686", 32, "linux32", "x86-linux"),
+    ],
+)
+def test_the_folders_of_other_machines(
+    system: str, machine: str, bits: int, old: str, new: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "platform", system)
+    monkeypatch.setattr(sys, "maxsize", 2 ** (bits - 1) - 1)
+    monkeypatch.setattr("platform.machine", lambda: machine)
+    assert (binary.folder_of_libraries("2.0"), binary.folder_of_libraries("3.0")) == (old, new)
