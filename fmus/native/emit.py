@@ -44,6 +44,7 @@ def c_source(
         "\n".join(f"{head};" for head in functions.heads()) + "\n",
         *functions.texts(),
         *description(model, program, identity, token, functions),
+        '#include "step.h"',
     ]
     text = "\n".join(piece for piece in pieces if piece)
     return "".join(f"{line}\n" for long in text.splitlines() for line in wrapped(long))

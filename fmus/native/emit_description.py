@@ -86,7 +86,7 @@ def _state_fields(program: ir.Program) -> str:
 _FIELD = {REAL: "r", INTEGER: "i", BOOLEAN: "b"}
 
 
-# -- frames: the functions of a model with the arguments that instance.c has ---------------------------------
+# -- frames: the functions of a model with the arguments that step.h and instance.c have ---------------------
 
 
 class _Frames:
@@ -117,7 +117,8 @@ class _Frames:
     def _frame(self, name: str, function: str, given: str, values: list[str], made: str, to: str) -> str:
         memory = ["memory"] if function in self._with_memory else []
         target = f"({made} *){to}"
-        head = f"static bool {name}_frame(void *p, {given}, void *memory, void *{to}, model_failure *failure)"
+        kind = "static bool" if name == "initial" else "MODEL_IN_PLACE bool"
+        head = f"{kind} {name}_frame(void *p, {given}, void *memory, void *{to}, model_failure *failure)"
         unused = [] if memory else ["    (void)memory;"]
         if name == "outputs" and not self._feeds_through:
             unused.append("    (void)u;")
@@ -131,8 +132,8 @@ class _Frames:
         memory = ["memory"] if function in self._with_memory else []
         return "\n".join(
             [
-                "static bool notice_frame(void *p, const void *x, const void *next, const void *u,",
-                "                         void *memory, char *text, size_t size, model_failure *failure)",
+                "MODEL_IN_PLACE bool notice_frame(void *p, const void *x, const void *next, const void *u,",
+                "        void *memory, char *text, size_t size, model_failure *failure)",
                 "{",
                 *([] if memory else ["    (void)memory;"]),
                 "    model_text said = model_begin(text, size);",

@@ -34,13 +34,18 @@ raise rand realloc remainder remove remquo rename rewind rint round scalbn scanf
 sprintf sqrt srand sscanf strcat strchr strcmp strcpy strlen strncat strncmp strncpy strstr strtod strtol
 system tan tanh tgamma tmpfile trunc ungetc vprintf
 """
-_TAKEN = frozenset(f"{_LANGUAGE} {_OWN} {_LIBRARY}".split())
+_INSTANCE = """
+instance ALL_IN_USE REAL INTEGER BOOLEAN ENUMERATION SAID_SENTENCES LONGEST_RUN CREATED INITIALIZING STEPPING
+ENDED PARAMETERS INPUTS OUTPUTS TIME RECORDS IN_CREATED IN_INITIALIZING IN_STEPPING IN_ENDED KNOWN SETTABLE
+"""
+_TAKEN = frozenset(f"{_LANGUAGE} {_OWN} {_LIBRARY} {_INSTANCE}".split())
 """Names that mean something else in a file of C: the language, its library, the frame of our own."""
+_BEGINNINGS = ("py_", "model_", "instance_", "PY_", "MODEL_")
 
 
 def c_name(name: str) -> str:
     """Return a name of Python as one of C; a name that is taken there gets a `_`."""
-    return f"{name}_" if name in _TAKEN or name.startswith(("py_", "model_")) else name
+    return f"{name}_" if name in _TAKEN or name.startswith(_BEGINNINGS) else name
 
 
 def type_name(type_: Type) -> str:

@@ -1,4 +1,5 @@
-/* One instance of the model (instance.h). What it does, and when, is what fmus/slave.py does in Python. */
+/* One instance of the model (instance.h), but for its steps (step.h). What it does, and when, is what fmus/slave.py
+   does in Python. */
 #include "instance.h"
 
 #include <inttypes.h>
@@ -9,12 +10,6 @@
 #include <string.h>
 
 enum { ALIGNMENT = 16, NUMBER_TEXT = PY_REPR_SIZE };
-
-#if defined __GNUC__ /* what a step seldom does is no part of its function */
-#define APART static __attribute__((cold, noinline))
-#else
-#define APART static
-#endif
 
 /* -- texts ---------------------------------------------------------------------------------------- */
 
@@ -67,8 +62,7 @@ bool instance_refuse(instance *m, const char *format, ...)
     return false;
 }
 
-/* Make the model's failure the reason: exception, its text and its place. */
-APART bool failed(instance *m)
+bool instance_failed(instance *m)
 {
     end_whole(m->failure.text, sizeof m->failure.text);
     return instance_refuse(m, "%s: %s (%s:%d)", m->failure.exception, m->failure.text, m->failure.file,
@@ -242,23 +236,15 @@ void instance_reset(instance *m)
 
 /* -- time and steps ------------------------------------------------------------------------------- */
 
-static inline void set_time(instance *m, double time)
-{
-    m->time = time;
-    if (m->clock)
-        *m->clock = time;
-}
-
 void instance_set_start(instance *m, double time)
 {
-    set_time(m, time);
+    instance_set_time(m, time);
     m->reached = time;
     if (m->clock && m->phase < STEPPING)
         m->stale = true;
 }
 
-/* Refuse an output that does not fit 32 bits. */
-static bool integers_fit(instance *m)
+bool instance_integers_fit(instance *m)
 {
     for (uint32_t k = 0; k < m->integer_count; k++) {
         const model_variable *v = &model.variables[m->integers[k]];
@@ -268,28 +254,6 @@ static bool integers_fit(instance *m)
                                    m->integer_word);
     }
     return true;
-}
-
-/* Compute the outputs of a state, and keep them if all is well. */
-static bool show(instance *m, const unsigned char *state)
-{
-    unsigned char *const made = m->next_outputs;
-    if (!model.outputs(m->records[PARAMETERS], state, m->records[INPUTS], m->memory, made, &m->failure))
-        return failed(m);
-    if (m->integer_count && !integers_fit(m))
-        return false;
-    m->next_outputs = m->records[OUTPUTS];
-    m->records[OUTPUTS] = made;
-    m->stale = false;
-    return true;
-}
-
-/* Make the next state the state. */
-static inline void keep_state(instance *m)
-{
-    unsigned char *const made = m->next_state;
-    m->next_state = m->state;
-    m->state = made;
 }
 
 /* Write a parameter's value as Python shows it. */
@@ -344,16 +308,16 @@ static bool initialize(instance *m)
         model.forget(m->records[PARAMETERS], m->memory);
     m->derived = true;
     if (!model.initial(m->records[PARAMETERS], m->records[INPUTS], m->memory, m->next_state, &m->failure))
-        return failed(m);
-    if (!show(m, m->next_state))
+        return instance_failed(m);
+    if (!instance_show(m, m->next_state))
         return false;
-    keep_state(m);
+    instance_keep_state(m);
     return true;
 }
 
 bool instance_refresh(instance *m)
 {
-    return m->phase < STEPPING ? initialize(m) : show(m, m->state);
+    return m->phase < STEPPING ? initialize(m) : instance_show(m, m->state);
 }
 
 bool instance_start(instance *m)
@@ -379,8 +343,7 @@ static bool is_new(instance *m, const char *sentence)
     return true;
 }
 
-/* Make the model's sentence a notice, once. */
-APART void tell(instance *m, double time)
+void instance_tell(instance *m, double time)
 {
     if (!is_new(m, m->sentence))
         return;
@@ -393,8 +356,7 @@ APART void tell(instance *m, double time)
     m->notice = m->text;
 }
 
-/* Refuse a step: it is not the time for it, or it has no length. */
-APART bool no_step(instance *m, double dt)
+bool instance_no_step(instance *m, double dt)
 {
     char shown[NUMBER_TEXT];
     if (m->phase < STEPPING)
@@ -403,31 +365,6 @@ APART bool no_step(instance *m, double dt)
         return instance_refuse(m, "it was terminated");
     return instance_refuse(m, "the step is %s s: it must be finite and longer than 0",
                            real_text(dt, "", shown));
-}
-
-bool instance_step(instance *m, double t, double dt)
-{
-    unsigned char *const p = m->records[PARAMETERS], *const u = m->records[INPUTS];
-    m->notice = NULL;
-    if (m->phase != STEPPING || !(0.0 < dt && dt < INFINITY))
-        return no_step(m, dt);
-    if (m->clock)
-        set_time(m, t);
-    if (!model.step(p, m->state, u, dt, m->memory, m->next_state, &m->failure))
-        return failed(m);
-    m->sentence[0] = '\0';
-    if (model.notice &&
-        !model.notice(p, m->state, m->next_state, u, m->memory, m->sentence, MODEL_TEXT, &m->failure))
-        return failed(m);
-    if (m->clock && m->follows)
-        set_time(m, t + dt);
-    if (!show(m, m->next_state))
-        return false;
-    keep_state(m);
-    m->reached = t + dt;
-    if (m->sentence[0])
-        tell(m, t + dt);
-    return true;
 }
 
 /* -- references ----------------------------------------------------------------------------------- */

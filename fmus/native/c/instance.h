@@ -95,14 +95,39 @@ void instance_set_start(instance *m, double time);
 /* Check the parameters, compute the first state and its outputs, and fix the parameters. */
 bool instance_start(instance *m);
 
-/* Advance from t by dt. A step that fails leaves state and outputs as they were. */
+/* Advance from t by dt. A step that fails leaves state and outputs as they were. (step.h) */
 bool instance_step(instance *m, double t, double dt);
+
+/* Compute the outputs of a state, and keep them if all is well. (step.h) */
+bool instance_show(instance *m, const unsigned char *state);
+
+/* What a step seldom does: make the model's failure the reason, make its sentence a notice, once; refuse a step, since
+   it is not the time for it or it has no length; refuse an output that does not fit 32 bits. */
+MODEL_SELDOM bool instance_failed(instance *m);
+MODEL_SELDOM void instance_tell(instance *m, double time);
+MODEL_SELDOM bool instance_no_step(instance *m, double dt);
+bool instance_integers_fit(instance *m);
 
 /* Put together why the step at t failed: `call at t = ... s: ...` */
 const char *instance_step_message(instance *m, const char *call, double t, bool percent_doubled);
 
 /* Compute the outputs (before the start also the state) anew where they are stale. */
 bool instance_refresh(instance *m);
+
+static inline void instance_set_time(instance *m, double time)
+{
+    m->time = time;
+    if (m->clock)
+        *m->clock = time;
+}
+
+/* Make the next state the state. */
+static inline void instance_keep_state(instance *m)
+{
+    unsigned char *const made = m->next_state;
+    m->next_state = m->state;
+    m->state = made;
+}
 
 static inline bool instance_ready(instance *m)
 {

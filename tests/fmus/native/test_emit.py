@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import random
+import re
 import struct
 import subprocess
 from pathlib import Path
@@ -18,6 +19,7 @@ from typing import Any
 import pytest
 
 from evcosim.fmus.native import emit, ir, toolchain
+from evcosim.fmus.native.emit_types import c_name
 from evcosim.fmus.native.lower import lower
 from evcosim.fmus.native.values import BOOLEAN, INTEGER, REAL, ListType, Type
 from support.ir_interpreter import Failed, Interpreter
@@ -296,10 +298,10 @@ def library(model: Any, program: ir.Program, folder: Path) -> ctypes.CDLL:
         lines.append(f'__attribute__((visibility("default"))) {head}\n{{\n    return {made};\n}}')
     given = "static Parameters given = {.a = 1.5};\n"
     (folder / "model.c").write_text(emit.c_source(model, program, "id", "{t}") + given + "\n".join(lines))
-    for file in RUNTIME.glob("*.h"):
+    runtime = ["failure.c", "instance.c", "saved.c"]
+    for file in (*RUNTIME.glob("*.h"), *(RUNTIME / name for name in runtime)):
         (folder / file.name).write_bytes(file.read_bytes())
-    (folder / "failure.c").write_bytes((RUNTIME / "failure.c").read_bytes())
-    command = ["cc", *toolchain.EXACT, "-O1", "-fPIC", "-shared", "model.c", "failure.c"]
+    command = ["cc", *toolchain.EXACT, "-O1", "-fPIC", "-shared", "model.c", *runtime]
     done = subprocess.run([*command, "-o", "it.so", "-lm"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[:3000]
     return ctypes.CDLL(str(folder / "it.so"))
@@ -397,3 +399,19 @@ def test_a_step_is_computed_in_place_and_what_is_known_already_is_not() -> None:
         "static State initial(",
     ):
         assert source.count(f"\n{head}") == 2, head  # declared and defined
+
+
+def test_no_name_of_a_model_is_one_of_the_runtime() -> None:
+    """Every name that model.c finds in the headers gets a `_` where a model has it too."""
+    headers = [RUNTIME / name for name in ("instance.h", "model.h", "failure.h", "step.h")]
+    text = re.sub(r"/\*.*?\*/", "", "".join(header.read_text() for header in headers), flags=re.DOTALL)
+    constants = [
+        re.findall(r"\w+(?=\s*(?:=|,|$))", within)
+        for within in re.findall(r"enum \{(.*?)\}", text, re.DOTALL)
+    ]
+    defined = {name for names in constants for name in names if not name.isdigit()}
+    types = set(re.findall(r"^\}? ?(?:typedef .* )?(\w+);$", text, re.MULTILINE))
+    functions = set(re.findall(r"^[\w *]*\b(\w+)\(", text, re.MULTILINE)) - {"__attribute__"}
+    found = {*defined, *types, *functions}
+    assert {"SETTABLE", "REAL", "ALL_IN_USE", "instance", "instance_step", "model_begin"} <= found
+    assert [name for name in sorted(found) if c_name(name) == name] == []

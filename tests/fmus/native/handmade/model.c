@@ -234,3 +234,5 @@ const model_description model = {
     notice,
     forget,
 };
+
+#include "step.h"
