@@ -27,7 +27,8 @@ _MATHEMATICAL = (
 EXACT = ("-std=c99", "-ffp-contract=off", *(f"-fno-builtin-{name}" for name in _MATHEMATICAL.split()))
 """Flags without which a library computes something else than Python."""
 
-_FLAGS = ("-O2", "-fvisibility=hidden", *EXACT)
+_SCALAR = ("-fno-tree-vectorize", "-fno-tree-slp-vectorize")  # pairs of numbers cost a step more
+_FLAGS = ("-O3", *_SCALAR, "-fvisibility=hidden", *EXACT)
 _SHOWN = 12  # lines of a compiler's messages
 _TIME = 600.0  # s; zig compiles the libraries of a platform at its first use
 
