@@ -331,14 +331,16 @@ bool instance_start(instance *m)
 /* Return true for a sentence that was not told before, as long as there is room to remember it. */
 static bool is_new(instance *m, const char *sentence)
 {
-    uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a, of eight characters at once; the high bits go down too */
-    for (size_t left = strlen(sentence), n; left > 0; left -= n, sentence += n) {
-        uint64_t characters = 0;
-        n = left < sizeof characters ? left : sizeof characters;
-        memcpy(&characters, sentence, n);
+    uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a, of eight characters at once; high bits go down too */
+    size_t left = strlen(sentence);
+    for (uint64_t characters; left >= sizeof characters; left -= sizeof characters) {
+        memcpy(&characters, sentence, sizeof characters);
         hash = (hash ^ characters) * UINT64_C(1099511628211);
         hash ^= hash >> 32;
+        sentence += sizeof characters;
     }
+    for (; left > 0; left--)
+        hash = (hash ^ (unsigned char)*sentence++) * UINT64_C(1099511628211);
     for (size_t k = 0; k < m->said_count; k++)
         if (m->said[k] == hash)
             return false;
@@ -348,10 +350,9 @@ static bool is_new(instance *m, const char *sentence)
     return true;
 }
 
-void instance_tell(instance *m, double time)
+/* Make the model's sentence a notice. */
+MODEL_SELDOM MODEL_APART void tell_first(instance *m, double time)
 {
-    if (!is_new(m, m->sentence))
-        return;
     char shown[NUMBER_TEXT];
     real_text(time, ".9g", shown);
     end_whole(m->sentence, MODEL_TEXT);
@@ -359,6 +360,12 @@ void instance_tell(instance *m, double time)
     if (m->said_count == SAID_SENTENCES)
         add(m, " (the last of %d different notices: no other one is told)", SAID_SENTENCES);
     m->notice = m->text;
+}
+
+void instance_tell(instance *m, double time)
+{
+    if (is_new(m, m->sentence))
+        tell_first(m, time);
 }
 
 bool instance_no_step(instance *m, double dt)

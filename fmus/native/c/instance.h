@@ -104,7 +104,7 @@ bool instance_show(instance *m, const unsigned char *state);
 /* What a step seldom does: make the model's failure the reason, make its sentence a notice, once; refuse a step, since
    it is not the time for it or it has no length; refuse an output that does not fit 32 bits. */
 MODEL_SELDOM bool instance_failed(instance *m);
-MODEL_SELDOM void instance_tell(instance *m, double time);
+void instance_tell(instance *m, double time);
 MODEL_SELDOM bool instance_no_step(instance *m, double dt);
 bool instance_integers_fit(instance *m);
 
