@@ -11,6 +11,7 @@ import functools
 import multiprocessing
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -32,9 +33,12 @@ _OF_A_SHELL = re.compile(r"""[|&;<>()$`\\"*?\[\]{}~]""")
 def run(line: str, folder: Path, environment: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
     """Run a line of a shell in a folder; return its exit code, stdout and stderr.
 
-    A shell runs it unless it is `evcosim` with arguments and no more: quotes and a comment at most.
+    A shell runs it unless it is `evcosim`, or `python` and a script, with arguments and no more: quotes and a
+    comment at most.
     """
-    if not line.startswith("evcosim ") or _OF_A_SHELL.search(re.sub("'[^']*'", "", line.split(" #")[0])):
+    if not re.match(r"evcosim |python \w+\.py\b", line) or _OF_A_SHELL.search(
+        re.sub("'[^']*'", "", line.split(" #")[0])
+    ):
         return subprocess.run(line, shell=True, cwd=folder, env=environment, capture_output=True, text=True)
     arguments = shlex.split(line, comments=True)
     with tempfile.TemporaryDirectory() as kept:
@@ -136,9 +140,14 @@ def _carry_out(arguments: list[str], folder: Path, environment: dict[str, str], 
     for path, descriptor in ((out, 1), (err, 2)):
         with path.open("wb") as file:
             os.dup2(file.fileno(), descriptor)
-    _take_over(arguments, folder, environment)
+    program, *given = arguments
+    _take_over(given if program == "python" else arguments, folder, environment)
     forking = multiprocessing.get_context("fork")
     multiprocessing.get_context = lambda method=None: forking  # type: ignore # this process's workers: `run_all`
+    if program == "python":
+        sys.path.insert(0, str(folder))
+        runpy.run_path(str(folder / given[0]), run_name="__main__")
+        return
     from evcosim.master.cli import main
 
     sys.exit(main())
