@@ -23,9 +23,9 @@ static inline uint64_t py_kept_bits(double x)
     return bits;
 }
 
-static inline bool py_is_kept(const py_kept *kept, double first, double second)
+static inline bool py_is_kept(const py_kept *kept, double first)
 {
-    return kept->known && kept->first == py_kept_bits(first) && kept->second == py_kept_bits(second);
+    return kept->known && kept->first == py_kept_bits(first);
 }
 
 static inline void py_keep(py_kept *kept, double first, double second, double value)
@@ -39,7 +39,7 @@ static inline void py_keep(py_kept *kept, double first, double second, double va
 #define PY_KEPT(FUNCTION)                                                                                    \
     static inline bool py_kept_##FUNCTION(double x, py_kept *kept, double *result, py_failure *failure)      \
     {                                                                                                        \
-        if (py_is_kept(kept, x, 0.0)) {                                                                      \
+        if (py_is_kept(kept, x)) {                                                                           \
             *result = kept->value;                                                                           \
             return true;                                                                                     \
         }                                                                                                    \
@@ -63,7 +63,7 @@ PY_KEPT(cosh)
 /* a ** b */
 static inline bool py_kept_pow(double a, double b, py_kept *kept, double *result, py_failure *failure)
 {
-    if (py_is_kept(kept, a, b)) {
+    if (py_is_kept(kept, a) && kept->second == py_kept_bits(b)) {
         *result = kept->value;
         return true;
     }
