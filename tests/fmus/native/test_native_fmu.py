@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import shutil
 import sys
 import zipfile
@@ -15,6 +16,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from evcosim.fmus.native import toolchain
+from evcosim.fmus.native.build import native_built
 from evcosim.fmus.native.package import build_native, native_content
 from evcosim.master.fmi.compilation import compile_fmu
 from support.needs import need_c_compiler
@@ -103,6 +105,48 @@ def test_a_reference_beyond_31_bits(unit: Any) -> None:
     unit.initialize()
     said = refused(unit, "getReal", [4294967295, 99])
     assert said == "fmi2GetReal: there is no Real variable with value reference 99, 4294967295"
+
+
+# -- lists of values -----------------------------------------------------------------------------------------
+
+
+def test_lists_of_any_references_are_as_each_by_itself(load: Callable[[Path], Any]) -> None:
+    need_c_compiler()
+    unit, draw = load(native_built("Scooter")), random.Random(1)
+    real = [v.valueReference for v in unit.variables.values() if v.type == "Real"]
+    inputs = [v.valueReference for v in unit.variables.values() if v.causality == "input"]
+    assert (len(real), len(inputs)) == (25, 4)
+    unit.initialize({"throttle": 60.0})
+    get, put = unit.fmu.getReal, unit.fmu.setReal
+    for k in range(200):
+        if k % 4 == 0:
+            unit.fmu.doStep(0.1 * k, 0.4)
+        chosen = draw.choice([_run(draw, real), _run(draw, real)[::-1], draw.choices(real, k=9)])
+        assert get(chosen) == [get([r])[0] for r in chosen]
+        given = draw.choice([_run(draw, inputs), _run(draw, inputs)[::-1], draw.sample(inputs, 3)])
+        values = [draw.uniform(0.0, 9.0) for _ in given]
+        before = dict(zip(real, get(real), strict=True))
+        put(given, values)
+        assert get(inputs) == [dict(zip(given, values, strict=True)).get(r, before[r]) for r in inputs]
+
+
+def test_of_a_list_with_a_fixed_parameter_nothing_is_set(load: Callable[[Path], Any]) -> None:
+    need_c_compiler()
+    unit = load(native_built("Scooter"))
+    unit.initialize()
+    places = {name: v.valueReference for name, v in unit.variables.items()}
+    last, first = places["initial_speed"], places["throttle"]
+    assert first == last + 1
+    expected = "fmi2SetReal: initial_speed is a fixed parameter: it cannot be set after the initialization"
+    for given in ([last, first], [first, last]):
+        assert refused(unit, "setReal", given, [7.0, 7.0]) == expected
+        assert unit.fmu.getReal([last, first]) == [0.0, 0.0]
+
+
+def _run(draw: random.Random, references: list[int]) -> list[int]:
+    """Return some references, one after the other."""
+    first = draw.randrange(len(references))
+    return references[first : draw.randint(first, len(references)) + 1]
 
 
 # -- logs ----------------------------------------------------------------------------------------------------
