@@ -21,6 +21,7 @@ from fmpy.logging import addLoggerProxy
 from evcosim.fmus.build import build, build_model, names
 from evcosim.fmus.catalog import CATALOG
 from evcosim.models.base import Model, Variable, variables
+from support.importing import in_an_importer as in_an_importer
 
 TOYS = Path(__file__).parent / "toys"
 STEP = 0.01

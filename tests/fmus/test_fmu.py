@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
@@ -129,13 +125,14 @@ def test_a_state_from_initialization_can_be_restored(subject, load, bits, random
     assert bits(unit.get()) == bits(before)
 
 
-def test_it_runs_where_neither_evcosim_nor_pythonfmu_can_be_imported(subject, tmp_path):
-    script = f"""
+def test_it_runs_where_neither_evcosim_nor_pythonfmu_can_be_imported(subject, in_an_importer):
+    in_an_importer(f"""
 import sys
 class Wall:
     def find_spec(self, name, path=None, target=None):
         if name.split(".")[0] in ("evcosim", "pythonfmu", "mixed", "mixed_helper"):
             raise ModuleNotFoundError(f"{{name}} is behind the wall")
+assert "evcosim" not in sys.modules and "pythonfmu" not in sys.modules
 sys.meta_path.insert(0, Wall())
 import fmpy
 path = list(sys.path)
@@ -143,15 +140,18 @@ result = fmpy.simulate_fmu({str(subject.path)!r}, stop_time=0.5)
 assert len(result) > 2, result
 assert sys.path == path, "the FMU left something in sys.path"
 assert "evcosim" not in sys.modules
-"""
-    subprocess.run([sys.executable, "-c", script], check=True, cwd=tmp_path, timeout=60)
+""")
 
 
-def test_the_command_fmpy_simulate_runs_it(subject, tmp_path):
-    command = Path(sys.executable).with_name("fmpy")
+def test_the_command_fmpy_simulate_runs_it(subject, in_an_importer, tmp_path):
     output = tmp_path / "result.csv"
     arguments = ["simulate", str(subject.path), "--stop-time", "0.2", "--output-file", str(output)]
-    subprocess.run([command, *arguments], check=True, capture_output=True, cwd=tmp_path, timeout=60)
+    in_an_importer(f"""
+import sys
+from fmpy.cli import main
+sys.argv = ["fmpy", *{arguments!r}]
+sys.exit(main())
+""")
     assert len(output.read_text().splitlines()) > 2
 
 

@@ -32,7 +32,7 @@ def program(name: str) -> ir.Program:
 
 
 @pytest.mark.parametrize("name", CATALOG)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_program_computes_what_its_model_does(name: str, seed: int) -> None:
     compare(model_named(name), program(name), seed, steps=8)
