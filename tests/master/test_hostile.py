@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from evcosim.cosim.errors import ConfigError, RunError
 from evcosim.master.fmi.fmu import FmuError
+from support import warm
 from support.hostile import page, runs
 from support.hostile.case import WHOLE, Case
 from support.hostile.cases import CASES, GROUPS
@@ -25,7 +27,18 @@ def good_rows() -> list[float]:
     return y
 
 
-@pytest.mark.usefixtures("warm_units")
+@pytest.fixture(scope="module")
+def engine_loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """The machine code of the engine is loaded, as by the first run of a process: its files stay open."""
+    need_linux()
+    with pytest.MonkeyPatch.context() as forking:
+        warm.context()
+        forking.setattr(subprocess, "Popen", warm.popen)
+        outcome = runs.run(tmp_path_factory.mktemp("good"), Case("good", "", "", WHOLE), 2)
+    assert outcome.rows == WHOLE, outcome.said
+
+
+@pytest.mark.usefixtures("engine_loaded", "warm_units")
 @pytest.mark.parametrize(("case", "fmi"), [pytest.param(*key, id=f"{key[0].name}-{key[1]}") for key in CASES])
 def test_the_master_survives(tmp_path: Path, case: Case, fmi: int) -> None:
     need_linux()
