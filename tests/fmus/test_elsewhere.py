@@ -7,7 +7,7 @@ import subprocess
 import sys
 import sysconfig
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -103,6 +103,15 @@ def test_fmpy_needs_the_factor_between_units(tmp_path: Path) -> None:
     assert speeds == pytest.approx([49.8, 30.2], abs=0.05)
 
 
+def test_the_difference_of_a_trial_is_that_of_its_rows() -> None:
+    job = trials.jobs("BoundController", "python")["run"]._replace(count=4)
+    ((*rows, last),) = trials.reference(job)
+    assert trials.difference(job, [[*rows, last]]) == 0.0
+    assert trials.difference(job, [[*rows, last | {"throttle": 1.001 * last["throttle"]}]]) > trials.RIGHT
+    assert trials.difference(job, [[*rows, last | {"throttle": float("nan")}]]) == float("inf")
+    assert trials.difference(job, [rows]) == "[3] rows instead of 4 for each instance"
+
+
 def test_the_tables_of_the_page_are_what_was_recorded() -> None:
     for name, text in pages.tables(pages.recorded()).items():
         assert f"<!-- {name} -->\n{text}\n<!-- end {name} -->" in PAGE, name
@@ -135,3 +144,21 @@ def test_every_importer_of_the_record_is_one_that_can_be_tried() -> None:
     in_c = {"a host in C", "fmusim", "fmuCheck"}
     known = {one.name for one in importers.IN_PYTHON} | in_c | {"FMPy's command line"}
     assert set(pages.recorded()["importers"]) == known
+
+
+def where(kind: str, is_so: Callable[[dict[str, Any]], bool]) -> set[str]:
+    """Return the importers of which something holds with a kind of FMU."""
+    return {name for name, found in pages.recorded()["importers"].items() if is_so(found[kind])}
+
+
+@pytest.mark.parametrize("kind", trials.KINDS)
+def test_the_page_says_in_words_what_was_recorded(kind: str) -> None:
+    none = {"native 3": {"libcosimpy", "fmuCheck", "sofirpy"}}.get(kind, {"fmuloader"})
+    assert where(kind, lambda found: found["loaded"]["models"] == 0) == none
+    rounded = {"fmusim", "fmuCheck"} - none
+    assert where(kind, lambda found: (found.get("exact", {}).get("largest") or 0.0) > 0.0) == rounded
+    assert where(kind, lambda found: "nothing" in found.get("refusal", ())) == {"ecospy"}
+    assert where(kind, lambda found: bool(found.get("state", {}).get("others"))) == {"fmusim"}
+    for what in ("run", "exact", "parameters", "two"):
+        assert where(kind, lambda found: bool(found.get(what, {}).get("others"))) == set(), what  # noqa: B023
+    assert f"All {len(names())} built-in models" in PAGE

@@ -91,7 +91,9 @@ def in_c(programs: dict[str, Path]) -> list[Importer]:
         version = _said([program, "--version"]).split()[1]
         found.append(Importer("fmusim", _fmusim(program), version, frozenset({"parameters", "state"})))
     if "fmuCheck" in programs:
-        found.append(Importer("fmuCheck", _fmu_check(programs["fmuCheck"]), "2.0.4", frozenset()))
+        program = programs["fmuCheck"]
+        version = _said([program]).split("checker ")[1].split()[0]
+        found.append(Importer("fmuCheck", _fmu_check(program), version, frozenset()))
     return found
 
 

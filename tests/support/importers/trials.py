@@ -167,7 +167,7 @@ def reference(job: Job) -> Rows:
 
 
 def difference(job: Job, rows: Rows) -> Finding:
-    """Return how far rows are from the reference, in shares of the range of an output."""
+    """Return how far rows are from the reference, in shares of an output's range or, if constant, value."""
     expected = reference(job)
     if [len(of_one) for of_one in rows] != [job.count] * len(job.inputs):
         return f"{[len(of_one) for of_one in rows]} rows instead of {job.count} for each instance"
@@ -175,9 +175,10 @@ def difference(job: Job, rows: Rows) -> Finding:
     for found, right in zip(rows, expected, strict=True):
         for name in found[0]:
             values = [row[name] for row in right]
-            scale = max(values) - min(values) or max(map(abs, values)) or 1.0
-            apart = max(abs(a[name] - b) for a, b in zip(found, values, strict=True))
-            worst = max(worst, apart / scale if math.isfinite(apart) else math.inf)
+            size, spread = max(map(abs, values)), max(values) - min(values)
+            scale = (spread if spread > RIGHT * size else size) or 1.0  # else it would be rounding itself
+            apart = [abs(a[name] - b) for a, b in zip(found, values, strict=True)]
+            worst = max(worst, max(apart) / scale if all(map(math.isfinite, apart)) else math.inf)
     return worst
 
 
