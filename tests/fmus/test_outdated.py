@@ -14,9 +14,12 @@ from evcosim.fmus.build import build
 from evcosim.fmus.from_file import build_wanted
 from evcosim.fmus.native.wanted import Wanted
 from evcosim.fmus.outdated import changed_source, model_files
+from support.compiled_once import compiled_once as compiled_once
 from support.needs import need_c_compiler
 
 from .test_from_file import TWICE
+
+pytestmark = pytest.mark.usefixtures("compiled_once")
 
 KINDS = {
     "python": (None, ""),
