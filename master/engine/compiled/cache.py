@@ -157,9 +157,14 @@ def entry(piece: Piece, kind: str = "bin") -> str:
 def digest(sources: tuple[str, ...]) -> str:
     """Return a digest of these modules, of the libraries that compile them and of this processor."""
     parts = [_source(name) for name in (*sources, *_COMPILING)]
-    parts += [importlib.metadata.version(name).encode() for name in _LIBRARIES]
+    parts += [_version(name) for name in _LIBRARIES]
     parts += [sys.version.encode(), _processor()]
     return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]
+
+
+@functools.cache  # reading the metadata of a distribution takes a millisecond
+def _version(distribution: str) -> bytes:
+    return importlib.metadata.version(distribution).encode()
 
 
 @functools.cache

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import ctypes
 import importlib
-import importlib.metadata
 import importlib.util
 import io
 import sys
@@ -55,14 +54,12 @@ def test_another_source_library_or_processor_gives_another_entry(
         assert cache.entry(piece) not in entries
         entries.append(cache.entry(piece))
 
-    source, version = cache._source, importlib.metadata.version
+    source, version = cache._source, cache._version
     for name in (*piece.sources, flat.__name__, compiling.__name__):
         monkeypatch.setattr(cache, "_source", lambda each, name=name: source(each) + b"\n" * (each == name))
         another()
     for name in ("numba", "llvmlite"):
-        monkeypatch.setattr(
-            importlib.metadata, "version", lambda each, name=name: version(each) + "0" * (each == name)
-        )
+        monkeypatch.setattr(cache, "_version", lambda each, name=name: version(each) + b"0" * (each == name))
         another()
     monkeypatch.setattr(sys, "version", "another")
     another()
