@@ -77,7 +77,7 @@ def _state_fields(program: ir.Program) -> str:
             items = [table, str(len(values))]
         kind = _FIELD.get(row.type, "e") if isinstance(row.type, Scalar) else "e"
         place = f"offsetof({name}, {row.place})"
-        rows.append(f"    {{'{kind}', {place}, {row.length}, {row.stride}, ALL_IN_USE, {', '.join(items)}}},")
+        rows.append(f"    {{'{kind}', {place}, {row.length}, {row.stride}, {', '.join(items)}}},")
     if not rows:
         return ""
     return "\n".join([*tables.values(), "static const model_field state_fields[] = {", *rows, "};\n"])

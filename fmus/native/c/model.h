@@ -33,16 +33,12 @@ typedef struct {
     const char *items_text; /* "0 known_speed, 1 estimated_speed" */
 } model_variable;
 
-enum { ALL_IN_USE = -1 };
-
-/* `count` numbers of a state that is saved, each `stride` bytes after the one before it: a field, an array, a
-   list, or one field of each record in an array or a list. */
+/* `count` numbers of a state that is saved, each `stride` bytes after the one before it: a field, an array, or
+   one field of each record in an array. */
 typedef struct {
     char type; /* 'r' double, 'i' int64_t, 'b' bool, 'e' item of an enumeration, an int64_t */
     size_t offset;
     size_t count, stride;
-    ptrdiff_t length; /* of a list: offset of the int64_t, a field before this one, that says how many are in
-                         use; else ALL_IN_USE */
     const int32_t *items; /* values of an enumeration */
     size_t item_count;
 } model_field;

@@ -176,22 +176,11 @@ static void number(stream *s, char type, unsigned char *at, const int32_t *items
     }
 }
 
-/* The numbers of one field of the state; those of a list that are not in use are zeros. Its length is a field
-   before it. */
+/* The numbers of one field of the state. */
 static void field(stream *s, const model_field *f, unsigned char *state)
 {
-    int64_t used = (int64_t)f->count;
-    if (f->length != ALL_IN_USE) {
-        memcpy(&used, state + f->length, sizeof used);
-        if (used < 0 || used > (int64_t)f->count)
-            s->sound = false, used = 0;
-    }
-    for (size_t k = 0; k < f->count; k++) {
-        unsigned char unused[NUMBER_BYTES] = {0};
-        const bool counts = (int64_t)k < used;
-        number(s, !counts && f->type == 'e' ? 'i' : f->type,
-               counts ? state + f->offset + k * f->stride : unused, f->items, f->item_count);
-    }
+    for (size_t k = 0; k < f->count; k++)
+        number(s, f->type, state + f->offset + k * f->stride, f->items, f->item_count);
 }
 
 static void variables(stream *s, instance_snapshot *saved)

@@ -40,13 +40,13 @@ class Settings:
 
 @record
 class Memory:
-    """A sum, the mode of the last step, a count, and up to three numbers."""
+    """A sum, the mode of the last step, a count, and three numbers."""
 
     total: float = var(0.0, "", "Sum")
     last: Mode = var(Mode.NEUTRAL, "", "Mode")
     count: int = var(0, "", "Steps")
     seen: bool = var(False, "", "`on` was true")
-    queue: tuple[float, ...] = var(0.0, "", "The last sums, three at most")
+    queue: tuple[float, float, float] = var(0.0, "", "The last three sums")
 
 
 def begin(p: Settings, speed: float, clock: float) -> Memory:
@@ -55,7 +55,7 @@ def begin(p: Settings, speed: float, clock: float) -> Memory:
         raise RuntimeError("100 % sure %s %n \u00fc")
     if p.word == 2:
         raise ValueError("")
-    return Memory(speed + clock + p.part, Mode.NEUTRAL, 0, False, ())
+    return Memory(speed + clock + p.part, Mode.NEUTRAL, 0, False, (-1.0, -1.0, -1.0))
 
 
 def advance(p: Settings, x: Memory, u: Driven | Untimed, clock: float, dt: float) -> Memory:
@@ -63,7 +63,7 @@ def advance(p: Settings, x: Memory, u: Driven | Untimed, clock: float, dt: float
     total = x.total + dt * (0.1 * u.speed + clock) / p.divisor
     if p.active and u.lever is p.mode:
         total = total * 1.1 + p.part
-    queue = (total,) if u.steps < 0 else (*x.queue, total)[-3:]
+    queue = (total, total, total) if u.steps < 0 else (*x.queue[1:], total)
     return Memory(total, u.lever, x.count + 1, x.seen or u.on, queue)
 
 
@@ -76,7 +76,7 @@ def sentence(p: Settings, x: Memory, after: Memory, u: Driven | Untimed) -> str:
 
 def oldest(x: Memory) -> float:
     """Return the oldest number."""
-    return x.queue[0] if x.queue else -1.0
+    return x.queue[0]
 
 
 @record

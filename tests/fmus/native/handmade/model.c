@@ -32,10 +32,7 @@ typedef struct {
     double total;
     int64_t last, count;
     bool seen;
-    struct {
-        int64_t n;
-        double at[QUEUE];
-    } queue;
+    double queue[QUEUE];
 } State;
 
 typedef struct {
@@ -74,7 +71,7 @@ static bool initial(void *parameters, const void *inputs, void *memory, void *st
 {
     Parameters *p = parameters;
     const Inputs *u = inputs;
-    State x = {0.0, NEUTRAL, 0, false, {0, {0.0}}};
+    State x = {0.0, NEUTRAL, 0, false, {-1.0, -1.0, -1.0}};
 #ifdef PLAIN
     const double clock = 0.0;
 #else
@@ -108,14 +105,8 @@ static bool step(void *parameters, const void *state, const void *inputs, double
     made.total = x->total + dt * (0.1 * u->speed + clock) / p->divisor;
     if (p->active && u->lever == p->mode)
         made.total = made.total * 1.1 + part(p);
-    if (u->steps < 0) {
-        made.queue.n = 0;
-    } else if (made.queue.n == QUEUE) {
-        for (int k = 1; k < QUEUE; k++)
-            made.queue.at[k - 1] = made.queue.at[k];
-        made.queue.n--;
-    }
-    made.queue.at[made.queue.n++] = made.total;
+    for (int k = 0; k < QUEUE; k++)
+        made.queue[k] = u->steps < 0 || k == QUEUE - 1 ? made.total : x->queue[k + 1];
     made.last = u->lever;
     made.count = x->count + 1;
     made.seen = x->seen || u->on;
@@ -143,7 +134,7 @@ static bool outputs(void *parameters, const void *state, const void *inputs, voi
     y.is_on = u->on;
 #endif
     y.last = x->last;
-    y.oldest = x->queue.n ? x->queue.at[0] : -1.0;
+    y.oldest = x->queue[0];
     *(Outputs *)outputs = y;
     return true;
 }
@@ -195,12 +186,11 @@ static const model_variable variables[] = {
 #define X(field) offsetof(State, field)
 
 static const model_field fields[] = {
-    {'r', X(total), 1, sizeof(double), ALL_IN_USE, NULL, 0},
-    {'e', X(last), 1, sizeof(int64_t), ALL_IN_USE, modes, 3},
-    {'i', X(count), 1, sizeof(int64_t), ALL_IN_USE, NULL, 0},
-    {'b', X(seen), 1, sizeof(bool), ALL_IN_USE, NULL, 0},
-    {'i', X(queue.n), 1, sizeof(int64_t), ALL_IN_USE, NULL, 0},
-    {'r', X(queue.at), QUEUE, sizeof(double), X(queue.n), NULL, 0},
+    {'r', X(total), 1, sizeof(double), NULL, 0},
+    {'e', X(last), 1, sizeof(int64_t), modes, 3},
+    {'i', X(count), 1, sizeof(int64_t), NULL, 0},
+    {'b', X(seen), 1, sizeof(bool), NULL, 0},
+    {'r', X(queue), QUEUE, sizeof(double), NULL, 0},
 };
 
 const model_description model = {
