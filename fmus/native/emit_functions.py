@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from . import ir
-from .emit_blocks import Frame, body, named, read
+from .emit_blocks import Frame, body, read
 from .emit_expressions import Scope
 from .emit_inlining import Calls, called, derived_name
 from .emit_kept import Kept
@@ -141,10 +142,10 @@ class Functions:
         lines = body(frame)
         if frame.can_fail and f.returns is None and not (lines and lines[-1].startswith("return")):
             lines.append("return true;")
-        mentioned = set(named(f.body))
-        unused = [c_name(a.name) for a in f.arguments if a.name not in mentioned]
-        frames = (("failure", frame.can_fail), ("said", frame.speaks), ("memory", f.name in self.with_memory))
         text = "\n".join(lines)
+        written = set(re.findall(r"\w+", text))
+        unused = [c_name(a.name) for a in f.arguments if c_name(a.name) not in written]
+        frames = (("failure", frame.can_fail), ("said", frame.speaks), ("memory", f.name in self.with_memory))
         unused += [name for name, given in frames if given and name not in text]
         lines = [f"(void){name};" for name in unused] + lines
         inner = "".join(f"    {line}\n" for line in lines)

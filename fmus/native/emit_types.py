@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -23,7 +24,7 @@ auto break case char const continue default do double else enum extern float for
 register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
 bool true false assert errno offsetof isnan isinf isfinite signbit NULL NAN INFINITY
 """
-_OWN = "model failure memory result said variables state_fields forget"
+_OWN = "model failure memory result said known variables state_fields forget EOF"
 _LIBRARY = """
 abort abs acos acosh asin asinh atan atan2 atanh atexit atof atoi atol bsearch calloc cbrt ceil clearerr
 copysign cos cosh div erf erfc exit exp exp2 expm1 fabs fclose fdim feof ferror fflush fgetc fgets floor fma
@@ -40,12 +41,22 @@ ENDED PARAMETERS INPUTS OUTPUTS TIME RECORDS IN_CREATED IN_INITIALIZING IN_STEPP
 """
 _TAKEN = frozenset(f"{_LANGUAGE} {_OWN} {_LIBRARY} {_INSTANCE}".split())
 """Names that mean something else in a file of C: the language, its library, the frame of our own."""
-_BEGINNINGS = ("py_", "model_", "instance_", "PY_", "MODEL_")
+_PATTERN = re.compile(
+    r"py_\w+|model_\w+|instance_\w+|PY_\w+|MODEL_\w+"  # of the runtime
+    r"|E[A-Z0-9]{2,}|\w+_t|(INT|UINT|PTRDIFF|SIZE|SIG|WCHAR|WINT|DBL|FLT|LDBL|FP|HUGE|EXIT|MATH|RAND|MB)\w*_\w+"
+    r"|(acos|asin|atan|atan2|cos|sin|tan|acosh|asinh|atanh|cosh|sinh|tanh|exp|exp2|expm1|frexp|ilogb|ldexp"
+    r"|log|log10|log1p|log2|logb|modf|scalbn|scalbln|cbrt|fabs|hypot|pow|sqrt|erf|erfc|lgamma|tgamma|ceil|floor"
+    r"|nearbyint|rint|l?lrint|l?lround|round|trunc|fmod|remainder|remquo|copysign|nan|nextafter|nexttoward"
+    r"|fdim|fmax|fmin|fma|l?l?abs|l?l?div)[fl]?"
+    r"|(is|fpclass|sign)[a-z]{3,}|(mem|str|wc|mb)[a-z]+"
+    r"|(real|integer|complex|bool|int64_t|[A-Z]\w*)_(x|list_)\d+"  # of arrays and lists
+    r"|\w+_(known|turn|stop)"  # of what is kept, and of loops
+)
 
 
 def c_name(name: str) -> str:
     """Return a name of Python as one of C; a name that is taken there gets a `_`."""
-    return f"{name}_" if name in _TAKEN or name.startswith(_BEGINNINGS) else name
+    return f"{name}_" if name in _TAKEN or _PATTERN.fullmatch(name) else name
 
 
 def type_name(type_: Type) -> str:

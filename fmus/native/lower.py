@@ -17,6 +17,7 @@ from types import FunctionType
 from ...models.base import Model
 from . import ir
 from .errors import Unsupported
+from .lower_classes import check_classes
 from .lower_frame import Lowered, Lowering
 from .lower_functions import FunctionFrame
 from .lower_source import FunctionNode, NeedsNumber, first_line, source_of
@@ -33,7 +34,7 @@ from .lower_values import (
     is_parameters,
     value_key,
 )
-from .values import REAL, ListType, ParametersType, StructType, Type
+from .values import REAL, EnumType, ListType, ParametersType, StructType, Type
 
 __all__ = ["Unsupported", "lower"]
 
@@ -71,12 +72,22 @@ class _Program(Lowering):
             notice = self._root("notice", [("before", x), ("after", x), ("u", u)], None)
         functions = self._reached([f for f in (initial, step, outputs, notice) if f is not None])
         used = [t for f in functions for t in _types_of(f)]
+        check_classes([*self._classes(functions)])
         tables = tuple(t for t in self.types.tables.values() if any(_reads(f, t.name) for f in functions))
         types = self.types.ordered([*used, self.parameters, u, x, y, *(t.type for t in tables)])
         return ir.Program(
             self.model.__name__, first_line(self.model), self.parameters, u, x, y, types, tables,
             self._without_clashes(functions), initial, step, outputs, notice,
         )  # fmt: skip # as they are declared
+
+    def _classes(self, functions: Sequence[ir.Function]) -> Iterator[type]:
+        """Return the classes of the values that the program computes with."""
+        for type_ in (t for f in functions for part in _parts(f) for t in [getattr(part, "type", None)]):
+            if isinstance(type_, EnumType):
+                yield type_.enumeration
+        for struct in self.types.structs:
+            if struct.python is not None:
+                yield struct.python
 
     def _state(self, initial: str) -> StructType:
         """Return the type of the state: as it is declared, else as `initial` returns it."""
@@ -103,6 +114,9 @@ class _Program(Lowering):
         ]
         lowered = self._specialized(Callable(function), bound, name, expected, name == "notice")
         assert lowered.function is not None
+        if lowered.function.returns is None and name != "notice":
+            module, node = source_of(function)[1], source_of(function)[0]
+            raise module.refuse(node, "a path without return", "return a value on every path")
         return lowered.function.name
 
     # -- specializations -----------------------------------------------------------------------------------
@@ -229,6 +243,7 @@ class _Program(Lowering):
     def _without_clashes(self, functions: list[ir.Function]) -> tuple[ir.Function, ...]:
         """Return the functions with variables that have no name of a function, a table or a type."""
         taken = {f.name for f in functions} | {t.name for t in self.types.tables.values()}
+        taken |= {f"{f.name}_computed" for f in functions if f.remembers}
         taken |= {t.name for t in self.types.structs} | {self.parameters.name}
         return tuple(_renamed_locals(f, taken) for f in functions)
 

@@ -256,6 +256,10 @@ def _contained(frame: Frame, node: ast.AST, negated: bool, left: Value, right: V
     item = frame.simple(node, left)
     tests = []
     for other in frame.items(node, right):
+        if not (_is_number(left) or _is_number(other)):
+            raise frame.refuse(
+                node, "`in` takes a NaN for equal to itself, `==` does not", "write x == a or x == b"
+            )
         found = compare(frame, node, ast.NotEq() if negated else ast.Eq(), item, other)
         tests.append(frame.expr(node, found))
     if not tests:
@@ -264,6 +268,13 @@ def _contained(frame: Frame, node: ast.AST, negated: bool, left: Value, right: V
     for test in tests[1:]:
         joined = ir.Operation(BOOLEAN, "and" if negated else "or", (joined, test))
     return Run(joined)
+
+
+def _is_number(value: Value) -> bool:
+    """Return True for a value that is no NaN: a whole number, or one that is known."""
+    if isinstance(value, Known):
+        return value.value == value.value
+    return isinstance(value, Run) and is_integral(value.type)
 
 
 def _identical(frame: Frame, node: ast.AST, negated: bool, left: Value, right: Value) -> Known | Run:

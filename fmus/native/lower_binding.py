@@ -43,6 +43,8 @@ def bind(
         raise frame.refuse(node, f"{len(values)} values for {len(places)} parameters", "give it as many")
     defaults = _defaults(code, [p.arg for p in places])
     have = {name for name, _ in bound}
+    if twice := have & set(named):
+        raise frame.refuse(node, f"{', '.join(sorted(twice))} is given twice", "give it once")
     for p in [*places, *args.kwonlyargs]:
         if p.arg in have:
             continue

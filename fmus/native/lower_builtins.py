@@ -170,6 +170,10 @@ def _complex(frame: Frame, node: ast.Call, given: Sequence[Value]) -> Value:
 def _divmod(frame: Frame, node: ast.Call, given: Sequence[Value]) -> Value:
     _count(frame, node, given, 2)
     a, b = (frame.simple(node, value) for value in given)
+    if REAL in (a.type, b.type) and all(x.type is REAL or is_integral(x.type) for x in (a, b)):
+        numbers = as_real(a.expr), as_real(b.expr)
+        quotient = frame.checked(node, REAL, "py_float_divmod_floordiv", numbers)
+        return Group((quotient, frame.checked(node, REAL, "py_float_mod", numbers)))
     return Group((binary(frame, node, ast.FloorDiv(), a, b), binary(frame, node, ast.Mod(), a, b)))
 
 

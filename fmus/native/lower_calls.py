@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from . import ir
 from .lower_builtins import find
+from .lower_classes import refuse_own_rules
 from .lower_frame import Frame
 from .lower_sequences import elements
 from .lower_text import glued, is_text, show
@@ -56,13 +57,13 @@ def called(frame: Frame, node: ast.Call) -> Value:
     if method is not None:
         return method
     callee = frame.value(node.func)
-    given = elements(frame, node.args)
-    named: dict[str, Value] = {}
-    for keyword in node.keywords:
-        if keyword.arg is None:
-            raise frame.refuse(node, "`**` in a call", "write the arguments by their names")
-        named[keyword.arg] = frame.value(keyword.value)
-    return call_value(frame, node, callee, given, named)
+    mark = len(frame.block)
+    if any(keyword.arg is None for keyword in node.keywords):
+        raise frame.refuse(node, "`**` in a call", "write the arguments by their names")
+    found = elements(frame, [*node.args, *(keyword.value for keyword in node.keywords)])
+    count = len(found) - len(node.keywords)
+    named = {keyword.arg or "": v for keyword, v in zip(node.keywords, found[count:], strict=True)}
+    return call_value(frame, node, frame.held(mark, callee), found[:count], named)
 
 
 def call_value(
@@ -199,13 +200,18 @@ def _of_object(frame: Frame, node: ast.Call) -> Value | None:
     if isinstance(of, Run) and of.type is COMPLEX and attr == "conjugate":
         return Run(ir.Apply(COMPLEX, "py_complex_conjugate", (of.expr,)))
     if attr == "_replace" and (is_named_tuple(getattr(of, "python", None)) or isinstance(of, Run)):
-        return _replaced(frame, node, [of], {k.arg or "": frame.value(k.value) for k in node.keywords})
+        return _replaced(frame, node, [of], _by_keyword(frame, node))
     if isinstance(of, Run) and isinstance(of.type, StructType) and of.type.python is not None:
         return None  # a method of the model's own class
     if isinstance(of, Known) and not isinstance(of.value, dict | list | tuple | set | str | float | int):
         return None
     instead = _METHODS.get(attr, "write it with operators, or as a function")
     raise frame.refuse(node, f"the method {attr} of {described(of)}", instead)
+
+
+def _by_keyword(frame: Frame, node: ast.Call) -> dict[str, Value]:
+    values = frame.values([k.value for k in node.keywords])
+    return {k.arg or "": value for k, value in zip(node.keywords, values, strict=True)}
 
 
 def _joined(frame: Frame, node: ast.Call) -> tuple[str, list[Value]]:
@@ -223,6 +229,8 @@ def _made(
     frame: Frame, node: ast.Call, python: type, given: Sequence[Value], named: dict[str, Value]
 ) -> Value:
     """Return a new object of a class."""
+    if is_enumeration(python) or is_named_tuple(python) or dataclasses.is_dataclass(python):
+        refuse_own_rules(frame, node, python)
     if is_enumeration(python):
         return _item(frame, node, python, given)
     if python is functools.partial:
@@ -244,6 +252,7 @@ def _made(
         raise frame.refuse(node, "a text", "write an f-string in the exception")
     init = vars(python).get("__init__")
     if isinstance(init, types.FunctionType) and python.__new__ is object.__new__:
+        refuse_own_rules(frame, node, python)
         return frame.call(node, Callable(init, (Known(python),)), given, named)
     if python.__module__ == "numpy" or python.__module__.startswith("numpy."):
         raise frame.refuse(

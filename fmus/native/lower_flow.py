@@ -10,6 +10,7 @@ from . import ir
 from .lower_arithmetic import truth_of
 from .lower_frame import Env, Frame, Loop
 from .lower_intervals import Interval, interval
+from .lower_order import check_lazy
 from .lower_sequences import items, length_of
 from .lower_source import own_nodes, stored
 from .lower_values import Group, Known, Missing, Run, Value, as_integer, literal, same, type_name
@@ -101,8 +102,10 @@ def loop(frame: Frame, node: ast.For | ast.While) -> bool:
     if node.orelse:
         raise frame.refuse(node.orelse[0], "`else` of a loop", "set a variable before `break`, and test it")
     if isinstance(node, ast.For):
-        turns = iteration(frame, node.iter)
+        mark = len(frame.block)
+        turns = iteration(frame, node.iter, node)
         if turns is None:
+            del frame.block[mark:]
             return _written_out(frame, node)
     else:
         turns = None
@@ -277,16 +280,18 @@ def _without(env: Env, node: ast.For | ast.While) -> Env:
 # -- what a `for` goes through -------------------------------------------------------------------------------
 
 
-def iteration(frame: Frame, node: ast.expr) -> Turns | None:
-    """Return the turns of `for ... in node`; None for items that must be written out one by one."""
+def iteration(frame: Frame, node: ast.expr, of: ast.For) -> Turns | None:
+    """Return the turns of a loop over `node`; None for items that must be written out one by one."""
     if isinstance(node, ast.Call) and not node.keywords:
         called = frame.value(node.func)
         if isinstance(called, Known) and called.value is range:
             return _range(frame, node)
         if isinstance(called, Known) and called.value is enumerate and len(node.args) == 1:
-            inner = iteration(frame, node.args[0])
+            inner = iteration(frame, node.args[0], of)
             return None if inner is None or inner.is_range else _with(inner, lambda k, v: Group((Run(k), v)))
+    since = len(frame.block)
     value = frame.value(node)
+    check_lazy(frame, of, value, since)
     if isinstance(value, Known) and isinstance(value.value, range):
         r = value.value
         return Turns(literal(r.start), literal(r.stop), r.step, Run, True)

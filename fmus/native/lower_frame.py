@@ -17,10 +17,12 @@ from .lower_types import Names, Types
 from .lower_values import (
     Callable,
     Code,
+    Group,
     Known,
     Missing,
     Run,
     Value,
+    Words,
     described,
     mentions,
     reads_list,
@@ -223,11 +225,36 @@ class Frame(abc.ABC):
 
     def held(self, mark: int, value: Value) -> Value:
         """Return a value that was read before the statements from `mark` on, as it was then."""
-        if not isinstance(value, Run) or not reads_list(value.expr) or not self._changes(self.block[mark:]):
-            return value
-        target = self.temporary(value.type, "before")
-        self.block.insert(mark, ir.Assign(target, value.expr))
-        return Run(target)
+        return self._kept_before([mark], value) if self._changes(self.block[mark:]) else value
+
+    def _kept_before(self, mark: list[int], value: Value) -> Value:
+        """Return a value with what it reads of lists kept before the statement at `mark`, which moves on."""
+        match value:
+            case Run():
+                return Run(self._read_before(mark, value.expr))
+            case Group():
+                return dataclasses.replace(
+                    value, items=tuple(self._kept_before(mark, v) for v in value.items)
+                )
+            case Callable():
+                return dataclasses.replace(
+                    value, bound=tuple(self._kept_before(mark, v) for v in value.bound)
+                )
+            case Words():
+                pieces = (
+                    p if isinstance(p, str) else ir.Shown(self._read_before(mark, p.value), p.spec)
+                    for p in value.pieces
+                )
+                return Words(tuple(pieces))
+        return value
+
+    def _read_before(self, mark: list[int], e: ir.Expression) -> ir.Expression:
+        if not reads_list(e):
+            return e
+        target = self.temporary(e.type, "before")
+        self.block.insert(mark[0], ir.Assign(target, e))
+        mark[0] += 1
+        return target
 
     @staticmethod
     def _changes(block: Sequence[ir.Statement]) -> bool:

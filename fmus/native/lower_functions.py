@@ -191,6 +191,9 @@ class FunctionFrame(Frame):
         e = self.expr(target, value)
         if isinstance(e.type, ListType):
             raise self.refuse(target, "a list in an object", "write tuple(a)")
+        python = self.env[self.self_name]
+        if isinstance(python, Known) and hasattr(getattr(python.value, target.attr, None), "__set__"):
+            raise self.refuse(target, "a property that is assigned", "give the attribute another name")
         local = self.temporary(e.type, target.attr)
         self.store(local, Run(e), target)
         self.temporaries.discard(local.name)

@@ -11,7 +11,7 @@ from .lower_frame import Frame
 from .lower_intervals import interval
 from .lower_text import is_text
 from .lower_types import is_enumeration, is_named_tuple
-from .lower_values import Group, Known, Run, Value, as_integer, described, literal
+from .lower_values import Group, Known, Run, Value, as_integer, described, literal, reads_list
 from .values import BOOLEAN, INTEGER, ArrayType, EnumType, ListType, StructType, is_integral
 
 LONGEST = 256  # items that are written one by one
@@ -25,6 +25,8 @@ def items(frame: Frame, node: ast.AST, value: Value) -> list[Value]:
         return _known_items(frame, node, value.value)
     if isinstance(value, Run):
         type_ = value.type
+        if isinstance(value.expr, ir.Make) and isinstance(type_, ListType):
+            return [Run(item) for item in value.expr.items]
         if isinstance(type_, ArrayType | ListType):
             of = frame.simple(node, value).expr if isinstance(type_, ArrayType) else value.expr
             length = type_.length if isinstance(type_, ArrayType) else type_.capacity
@@ -240,27 +242,36 @@ def repeated(frame: Frame, node: ast.BinOp) -> Value | None:
 
 def elements(frame: Frame, nodes: list[ast.expr]) -> list[Value]:
     """Return the values of a display or of arguments, with those behind a star one by one."""
-    if not any(isinstance(node, ast.Starred) for node in nodes):
-        return frame.values(nodes)
     found: list[Value] = []
-    for node, value in zip(nodes, frame.values([_unstarred(n) for n in nodes]), strict=True):
-        found += items(frame, node, value) if isinstance(node, ast.Starred) else [value]
-    return found
-
-
-def _unstarred(node: ast.expr) -> ast.expr:
-    return node.value if isinstance(node, ast.Starred) else node
+    marks = []
+    for node in nodes:
+        if isinstance(node, ast.Starred):
+            found.append(Group(tuple(items(frame, node, frame.value(node.value)))))
+        else:
+            found.append(frame.value(node))
+        marks.append(len(frame.block))
+    held = [frame.held(marks[k], found[k]) for k in reversed(range(len(nodes)))][::-1]
+    parts = (
+        value.items if isinstance(node, ast.Starred) and isinstance(value, Group) else (value,)
+        for node, value in zip(nodes, held, strict=True)
+    )
+    return [value for part in parts for value in part]
 
 
 def comprehension(frame: Frame, node: ast.ListComp | ast.GeneratorExp) -> list[Value]:
     """Return the values of a comprehension over what has a known length."""
     names = {n.id for g in node.generators for n in ast.walk(g.target) if isinstance(n, ast.Name)}
     hidden = {name: frame.env.get(name) for name in names}
-    found = list(_turns(frame, node, 0))
-    for name, value in hidden.items():
+    found: list[Value] = []
+    marks: list[int] = []
+    for value in _turns(frame, node, 0):
+        found.append(value)
+        marks.append(len(frame.block))
+    found = [frame.held(marks[k], found[k]) for k in reversed(range(len(found)))][::-1]
+    for name, before in hidden.items():
         frame.env.pop(name, None)
-        if value is not None:
-            frame.env[name] = value
+        if before is not None:
+            frame.env[name] = before
     return found
 
 
@@ -281,7 +292,8 @@ def _turns(frame: Frame, node: ast.ListComp | ast.GeneratorExp, depth: int) -> I
 def _bind(frame: Frame, target: ast.expr, value: Value) -> None:
     """Give the variable of a comprehension its value, which needs no variable of its own."""
     if isinstance(target, ast.Name):
-        frame.env[target.id] = value
+        reads = isinstance(value, Run) and reads_list(value.expr)
+        frame.env[target.id] = frame.keep(value.expr) if reads and isinstance(value, Run) else value
         return
     if not isinstance(target, ast.Tuple | ast.List):
         raise frame.refuse(target, "this target in a comprehension", "write a name")

@@ -138,8 +138,9 @@ def unpack(frame: Frame, target: ast.expr, value: Value) -> None:
     elif isinstance(target, ast.Tuple | ast.List):
         _unpack_items(frame, target, value)
     elif isinstance(target, ast.Subscript):
-        of, index = _element(frame, target)
-        _set(frame, target, of, index, value)
+        mark = len(frame.block)
+        of, index = _element(frame, target, "py_list_set_index")
+        _set(frame, target, of, index, frame.held(mark, value))
     elif isinstance(target, ast.Attribute) and _is_self(frame, target):
         frame.assign_self(target, value)
     elif isinstance(target, ast.Attribute):
@@ -252,7 +253,7 @@ def _forget_derived(frame: Frame, name: str) -> None:
 
 def _augmented(frame: Frame, node: ast.AugAssign) -> None:
     if isinstance(node.target, ast.Subscript):
-        of, index = _element(frame, node.target)
+        of, index = _element(frame, node.target, "py_list_index")  # it is read first
         kept = index if isinstance(index, ir.Literal | ir.Local) else frame.keep(index).expr
         assert isinstance(of.type, ListType)
         before = Run(ir.Item(of.type.item, of, kept))
@@ -271,8 +272,8 @@ def _computed(frame: Frame, node: ast.AugAssign, before: Value) -> Value:
     return binary(frame, node, node.op, frame.held(mark, before), after)
 
 
-def _element(frame: Frame, target: ast.Subscript) -> tuple[ir.Local, ir.Expression]:
-    """Return the list and the index of an item that is given a value."""
+def _element(frame: Frame, target: ast.Subscript, check: str) -> tuple[ir.Local, ir.Expression]:
+    """Return the list and the index of an item that is given a value; `check` fails for another index."""
     if isinstance(target.slice, ast.Slice):
         raise frame.refuse(target, "a part of a list that is given a value", "write a loop over its items")
     of, index = frame.values([target.value, target.slice])
@@ -282,7 +283,7 @@ def _element(frame: Frame, target: ast.Subscript) -> tuple[ir.Local, ir.Expressi
         raise frame.refuse(target, "a list within another value", "give the list a name of its own")
     if of.expr in frame.arguments:
         frame.changes_arguments = True
-    return of.expr, checked_index(frame, target, of.expr, index, "py_list_set_index")
+    return of.expr, checked_index(frame, target, of.expr, index, check)
 
 
 def _set(frame: Frame, node: ast.AST, of: ir.Local, index: ir.Expression, value: Value) -> None:
@@ -312,6 +313,7 @@ def _raise(frame: Frame, node: ast.Raise) -> None:
     if len(given) > 1 or (isinstance(node.exc, ast.Call) and node.exc.keywords):
         raise frame.refuse(node, "an exception with several values", "write one text: an f-string")
     text: ir.Text = pieces_of(frame, given[0], frame.value(given[0])) if given else ()
+    _check_text(frame, node, text)
     frame.emit(ir.Raise(python.__name__, text or ("",), frame.module.place(node)))
 
 
@@ -336,4 +338,11 @@ def say(frame: Frame, node: ast.Return, value: ast.expr | None) -> None:
             say(frame, node, value.orelse)
         frame.emit(ir.If(test.expr, tuple(then), tuple(otherwise)))
         return
-    frame.emit(ir.Say(pieces_of(frame, value, frame.value(value))))
+    text = pieces_of(frame, value, frame.value(value))
+    _check_text(frame, node, text)
+    frame.emit(ir.Say(text))
+
+
+def _check_text(frame: Frame, node: ast.AST, text: ir.Text) -> None:
+    if any("\0" in piece for piece in text if isinstance(piece, str)):
+        raise frame.refuse(node, "a text with a null character, which ends a text of C", "leave it out")

@@ -17,10 +17,15 @@ def formatted(frame: Frame, node: ast.JoinedStr) -> Value:
     """Return an f-string as pieces, or as a text where all of it is known."""
     pieces: list[str | ir.Shown] = []
     for part in node.values:
+        mark = len(frame.block)
         if isinstance(part, ast.Constant):
-            pieces.append(str(part.value))
-        elif isinstance(part, ast.FormattedValue):
-            pieces += _shown(frame, part)
+            new: ir.Text = (str(part.value),)
+        else:
+            assert isinstance(part, ast.FormattedValue)
+            new = _shown(frame, part)
+        before = frame.held(mark, Words(tuple(pieces)))
+        assert isinstance(before, Words)
+        pieces = [*before.pieces, *new]
     return joined(tuple(pieces))
 
 

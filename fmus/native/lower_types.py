@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import enum
 import functools
+import re
 from collections.abc import Sequence
 from types import FunctionType
 
@@ -37,6 +38,10 @@ from .values import (
 _LETTERS: dict[Type, str] = {REAL: "r", INTEGER: "i", BOOLEAN: "b", COMPLEX: "c"}
 
 
+_OF_C = re.compile(r"\w+_(computed|frame)|(minimum|maximum|items)_\d+|items_of_\w+")
+"""Names that a file of C has beside those of the program (emit_functions, emit_description)."""
+
+
 class Names:
     """Names that are given out once each."""
 
@@ -45,6 +50,7 @@ class Names:
 
     def new(self, wanted: str) -> str:
         """Return the name, or with a number behind it where it is taken."""
+        wanted = f"own_{wanted}" if _OF_C.fullmatch(wanted) else wanted
         name, number = wanted, 2
         while name in self._taken:
             name, number = f"{wanted}_{number}", number + 1

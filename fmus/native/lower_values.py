@@ -200,8 +200,10 @@ def is_simple(e: ir.Expression) -> bool:
 
 
 def reads_list(e: object) -> bool:
-    """Return True if an expression reads an item of a list, which a call may change."""
+    """Return True if an expression reads of a list, which a call may change; the list itself is not read."""
     if isinstance(e, ir.Item) and isinstance(e.of.type, ListType):
+        return True
+    if isinstance(e, ir.Invoke) and any(isinstance(a.type, ListType) for a in e.arguments):
         return True
     if isinstance(e, tuple):
         return any(reads_list(part) for part in e)

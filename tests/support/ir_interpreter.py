@@ -39,6 +39,7 @@ def _index(kind: str) -> Callable[[int, int], int]:
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "py_float_div": operator.truediv,
     "py_float_floordiv": operator.floordiv,
+    "py_float_divmod_floordiv": lambda a, b: divmod(a, b)[0],
     "py_float_mod": operator.mod,
     "py_float_pow": operator.pow,
     "py_float_max": max,

@@ -73,6 +73,13 @@ static inline bool py_float_divmod(double a, double b, double *quotient, double 
     return true;
 }
 
+/* The first of divmod(a, b), whose failure has a text of its own: Objects/floatobject.c, float_divmod */
+static inline bool py_float_divmod_floordiv(double a, double b, double *result, py_failure *failure)
+{
+    double remainder;
+    return py_float_divmod(a, b, result, &remainder, failure);
+}
+
 /* True for 1.0, -3.0 ...: Objects/floatobject.c, DOUBLE_IS_ODD_INTEGER */
 static inline bool py_float_is_odd(double x)
 {

@@ -23,10 +23,12 @@ from evcosim.fmus.native.emit_types import c_name
 from evcosim.fmus.native.lower import lower
 from evcosim.fmus.native.values import BOOLEAN, INTEGER, REAL, ListType, Type
 from support.ir_interpreter import Failed, Interpreter
+from support.lowered import compare
 from support.needs import need_c_compiler
-from support.small_model import small
+from support.small_model import cases, small
 
 RUNTIME = Path(emit.__file__).parent / "c"
+NAMES = cases(Path(__file__).with_name("taken_names.txt"))
 COUNT, CALLS = 150, 12
 LIST = ListType(REAL, 4)
 PLACE = ir.Place("chance.py", 7)
@@ -377,9 +379,24 @@ for k in range(p.n):
 return Small.State(y)""")
     source = emit.c_source(model, lower(model), "id", "{t}")
     assert source.count("k_stop = ") == 2
-    (tmp_path / "model.c").write_text(source)
+    is_c_without_warnings(source, tmp_path)
+
+
+def is_c_without_warnings(source: str, folder: Path) -> None:
+    (folder / "model.c").write_text(source)
     command = ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{RUNTIME}", "model.c"]
-    subprocess.run(command, cwd=tmp_path, check=True)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[:2000]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_that_is_taken_in_c_is_that_of_a_model_too(name: str, tmp_path: Path) -> None:
+    need_c_compiler()
+    model = NAMES[name].model()
+    program = lower(model)
+    is_c_without_warnings(emit.c_source(model, program, "id", "{t}"), tmp_path)
+    for seed in range(4):
+        compare(model, program, seed, steps=3)
 
 
 def test_a_step_is_computed_in_place_and_what_is_known_already_is_not() -> None:
@@ -413,5 +430,5 @@ def test_no_name_of_a_model_is_one_of_the_runtime() -> None:
     types = set(re.findall(r"^\}? ?(?:typedef .* )?(\w+);$", text, re.MULTILINE))
     functions = set(re.findall(r"^[\w *]*\b(\w+)\(", text, re.MULTILINE)) - {"__attribute__"}
     found = {*defined, *types, *functions}
-    assert {"SETTABLE", "REAL", "ALL_IN_USE", "instance", "instance_step", "model_begin"} <= found
+    assert {"SETTABLE", "REAL", "instance", "instance_step", "model_begin"} <= found
     assert [name for name in sorted(found) if c_name(name) == name] == []

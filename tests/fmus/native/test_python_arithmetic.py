@@ -169,6 +169,7 @@ CMATH = "isnan isinf isfinite exp cosh sinh tanh cos sin tan sqrt log log10 phas
 EXPECTED: dict[str, Callable[..., Any]] = {
     "py_float_div": lambda a, b: a / b,
     "py_float_floordiv": lambda a, b: a // b,
+    "py_float_divmod_floordiv": lambda a, b: divmod(a, b)[0],
     "py_float_mod": lambda a, b: a % b,
     "py_float_divmod": divmod,
     "py_float_pow": _real_power,
@@ -405,6 +406,7 @@ def test_a_specification_that_is_not_understood(specification):
 WORDS = [
     ("py_float_div", (1.0, 0.0), "float division by zero", "division by zero"),
     ("py_float_floordiv", (1.0, 0.0), "float floor division by zero", "division by zero"),
+    ("py_float_divmod_floordiv", (1.0, 0.0), "float divmod()", "division by zero"),
     ("py_float_divmod", (1.0, 0.0), "float divmod()", "division by zero"),
     ("py_float_pow", (0.0, -1.0), "0.0 cannot be raised to a negative power", "zero to a negative power"),
     ("py_int_floordiv", (1, 0), "integer division or modulo by zero", "division by zero"),

@@ -115,8 +115,8 @@ def test_the_form_has_no_gaps(unit: Any) -> None:
     phase, stale, time, reached, gain = struct.unpack_from("<bbddd", content, stamp)
     assert (phase, stale, gain) == (2, 0, 2.5)
     assert time == reached == 1.5 + 0.1 * 3 + 0.1
-    # 6 parameters of 8 bytes and one of 1, 4 and 1 inputs, 5 and 1 outputs, 3 numbers, a truth value, 3 numbers
-    assert len(content) == stamp + 18 + (49 + 33 + 41) + (3 * 8 + 1 + 3 * 8)
+    # 6 parameters of 8 bytes and one of 1, 4 and 1 inputs, 5 and 1 outputs, 6 numbers, a truth value
+    assert len(content) == stamp + 18 + (49 + 33 + 41) + (6 * 8 + 1)
 
 
 def test_a_state_before_the_start(pairs: Callable[[str], Any], load: Load) -> None:
