@@ -181,7 +181,7 @@ def test_what_is_imported_of_fmpy_is_listed():
 def test_names_that_begin_with_an_underscore_are_listed():
     """Those of other modules: what an object, a class or this package has of its own is no matter here."""
     listed = {part for _, names in NAMES.values() for name in names.split() for part in name.split(".")}
-    documented = {"_exit", "_fields_", "__cxa_atexit"}  # os, ctypes, the C++ ABI
+    documented = {"_exit", "_fields_", "_missing_", "__cxa_atexit"}  # os, ctypes, enum, the C++ ABI
     ours = {node.name for _, node in sources() if isinstance(node, ast.FunctionDef | ast.ClassDef)}
     ours |= {node.attr for _, node in sources() if isinstance(node, ast.Attribute) and set_here(node)}
     for file, node in sources():
