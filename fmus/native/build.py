@@ -37,7 +37,12 @@ def native_built(name: str, anew: bool = False, wanted: Wanted = DEFAULT) -> Pat
     digest = _digest(catalog_digests(name).model)
     kind = Wanted(False, wanted.platforms, wanted.fmi)
     key = _short(digest.encode(), b"%d" % python_minor(), repr(kind).encode())
-    return cache.fetch(f"{name}_native_{key[:12]}.fmu", lambda: _made(name, digest, anew, wanted), anew)
+    entry = f"{name}_native_{key[:12]}.fmu"
+    path = cache.fetch(entry, lambda: _made(name, digest, anew, wanted), anew)
+    if path.parent == cache.folder() and not records.is_own(cache.digest_of(path)):
+        # its record was damaged or removed: without one it would be a stranger's for good
+        return cache.fetch(entry, lambda: _made(name, digest, anew, wanted), anew=True)
+    return path
 
 
 def why_not(name: str) -> str:

@@ -100,6 +100,20 @@ def fake_compiler(folder: Path, text: str) -> Path:
     return path
 
 
+@pytest.mark.parametrize("content", [None, b"", b"damaged"])
+def test_an_fmu_whose_record_is_lost_is_made_anew_and_stays_ours(
+    content: bytes | None, own_cache: Path
+) -> None:
+    built = native_built("Rider")
+    (record,) = own_cache.glob("built-here-*")
+    record.unlink() if content is None else record.write_bytes(content)
+    assert not records.is_own(record.name.removeprefix("built-here-"))
+    before = built.read_bytes()
+    assert native_built("Rider") == built
+    assert built.read_bytes() == before
+    assert records.is_own(record.name.removeprefix("built-here-"))
+
+
 def test_a_native_fmu_is_found_without_model_translator_and_compiler(
     own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
